@@ -1,0 +1,1 @@
+//! Cost, and the error at that cost.

@@ -1,0 +1,1 @@
+//! Fits linearly transformed cosines.

@@ -1,0 +1,2 @@
+//! Float64 truth for area lights, for tests, fitting and benchmarks.
+pub mod ggx;

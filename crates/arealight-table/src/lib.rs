@@ -1,0 +1,1 @@
+//! Light tables to and from files.

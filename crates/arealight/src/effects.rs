@@ -1,0 +1,82 @@
+//! What a scene calls for. The set becomes one specialisation constant, and the driver's compiler removes
+//! the code of every effect that is not in it.
+
+bitflags::bitflags! {
+    /// A set of effects: the lobes, light properties and surface inputs that a shade pass must handle.
+    ///
+    /// The bits are those of `shaders/include/arealight/effects.glsl`; a test compares the two. A set that is
+    /// too large only costs time; a set that is too small for the lights is refused when they are packed for
+    /// a pass ([`Effects::missing_for`]).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub struct Effects: u32 {
+        /// The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
+        const DIFFUSE = 1 << 0;
+        /// The GGX lobe: some surface reflects specularly.
+        const GLOSSY = 1 << 1;
+        /// Some light lights both of its sides.
+        const TWO_SIDED = 1 << 2;
+        /// Some surface has a dielectric reflectance other than F0 = 0.04, F90 = 1 (an index of refraction,
+        /// a specular colour or weight), so the G-buffer's fourth image is read.
+        const SPECULAR_INPUT = 1 << 3;
+    }
+}
+
+impl Effects {
+    /// The effects in words, in the order of their bits, for people to read.
+    pub fn names(self) -> Vec<&'static str> {
+        [
+            (Self::DIFFUSE, "diffuse"),
+            (Self::GLOSSY, "glossy"),
+            (Self::TWO_SIDED, "two_sided"),
+            (Self::SPECULAR_INPUT, "specular_input"),
+        ]
+        .into_iter()
+        .filter_map(|(effect, name)| self.contains(effect).then_some(name))
+        .collect()
+    }
+
+    /// What `lights` call for beyond this set, with the name of the first light that does.
+    pub fn missing_for<'a>(self, lights: &'a [crate::PolygonLight]) -> Option<(Self, &'a str)> {
+        if self.contains(Self::TWO_SIDED) {
+            return None;
+        }
+        lights.iter().find(|light| light.two_sided).map(|light| (Self::TWO_SIDED, light.name.as_str()))
+    }
+}
+
+impl std::fmt::Display for Effects {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.is_empty() { f.write_str("none") } else { f.write_str(&self.names().join(", ")) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PolygonLight;
+    use glam::{DVec3, Vec3};
+
+    fn light(name: &str, two_sided: bool) -> PolygonLight {
+        PolygonLight {
+            name: name.into(),
+            vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+            radiance: Vec3::ONE,
+            two_sided,
+        }
+    }
+
+    #[test]
+    fn every_effect_has_a_name() {
+        assert_eq!(Effects::all().names().len(), Effects::all().iter().count());
+        assert_eq!(Effects::empty().to_string(), "none");
+        assert_eq!((Effects::DIFFUSE | Effects::TWO_SIDED).to_string(), "diffuse, two_sided");
+    }
+
+    #[test]
+    fn a_set_too_small_names_the_light() {
+        let lights = [light("lamp", false), light("sign", true)];
+        assert_eq!(Effects::GLOSSY.missing_for(&lights), Some((Effects::TWO_SIDED, "sign")));
+        assert_eq!(Effects::TWO_SIDED.missing_for(&lights), None);
+        assert_eq!(Effects::GLOSSY.missing_for(&lights[..1]), None);
+    }
+}

@@ -1,0 +1,230 @@
+//! The manifest: every kernel with its SPIR-V, bindings, constants and group size. A test reads the same
+//! facts back out of the SPIR-V, so the two cannot drift.
+
+/// What a binding holds. All are in descriptor set 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BindingKind {
+    /// A sampled image, read by texel; no sampler.
+    SampledImage,
+    /// A storage image.
+    StorageImage,
+    /// A storage buffer.
+    StorageBuffer,
+}
+
+/// What a kernel does to a binding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// Reads only.
+    Read,
+    /// Writes only.
+    Write,
+    /// Reads and writes.
+    ReadWrite,
+}
+
+/// A binding of descriptor set 0; its number is its place in [`Kernel::bindings`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Binding {
+    /// Its name in the GLSL.
+    pub name: &'static str,
+    /// What it holds.
+    pub kind: BindingKind,
+    /// What is done to it.
+    pub access: Access,
+    /// Content, encoding and smallest sufficient format.
+    pub content: &'static str,
+}
+
+/// A compute kernel.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Kernel {
+    /// The file's name without its ending.
+    pub name: &'static str,
+    /// SPIR-V 1.3 for Vulkan 1.1, entry point `main`; a multiple of four bytes.
+    pub spirv: &'static [u8],
+    /// Work items a group in x, y and z.
+    pub local_size: [u32; 3],
+    /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel.
+    pub push_constant_size: u32,
+    /// The bindings of set 0, by number.
+    pub bindings: &'static [Binding],
+    /// Specialisation constants that the kernel has.
+    pub constants: &'static [u32],
+}
+
+impl Kernel {
+    /// How many groups cover `items`.
+    pub fn groups_for(&self, items: [u32; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|i| items[i].div_ceil(self.local_size[i]))
+    }
+
+    /// The SPIR-V as words, in the machine's byte order.
+    pub fn words(&self) -> Vec<u32> {
+        self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    }
+}
+
+/// Ids of the specialisation constants, the same in every kernel.
+pub mod constant {
+    /// [`crate::Effects`] as bits.
+    pub const EFFECTS: u32 = 0;
+    /// [`crate::FormFactor`].
+    pub const FORM_FACTOR: u32 = 1;
+    /// [`crate::plan::PositionSource`].
+    pub const POSITION_SOURCE: u32 = 2;
+    /// [`crate::plan::Output`].
+    pub const OUTPUT: u32 = 3;
+}
+
+const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
+    Binding { name, kind, access: Access::Read, content }
+}
+
+const fn write(name: &'static str, kind: BindingKind, access: Access, content: &'static str) -> Binding {
+    Binding { name, kind, access, content }
+}
+
+const TABLE: Binding = read(
+    "table_image",
+    BindingKind::SampledImage,
+    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitude; rgba16f or rgba32f",
+);
+const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
+const LIGHT_VERTICES: Binding =
+    read("light_vertices", BindingKind::StorageBuffer, "vec4[]: position relative to the origin, 0");
+const G_POSITION: Binding = read(
+    "g_position",
+    BindingKind::SampledImage,
+    "position relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f)",
+);
+const G_NORMAL: Binding = read(
+    "g_normal",
+    BindingKind::SampledImage,
+    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors)",
+);
+const G_BASE_COLOR: Binding = read(
+    "g_base_color",
+    BindingKind::SampledImage,
+    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves)",
+);
+const G_SPECULAR: Binding = read(
+    "g_specular",
+    BindingKind::SampledImage,
+    "dielectric F0 in rgb, dielectric F90 in a (rgba8 unorm); read only with Effects::SPECULAR_INPUT, \
+     else bind any image",
+);
+
+/// Shades a G-buffer with polygon lights. Push constants: [`crate::gpu::ShadeConstants`].
+pub static SHADE: Kernel = Kernel {
+    name: "shade",
+    spirv: include_bytes!("../spirv/shade.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
+    bindings: &[
+        TABLE,
+        LIGHTS,
+        LIGHT_VERTICES,
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        write(
+            "radiance_image",
+            BindingKind::StorageImage,
+            Access::ReadWrite,
+            "outgoing radiance in rgb, 1 in a where there is a surface (rgba16f or rgba32f)",
+        ),
+    ],
+    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::POSITION_SOURCE, constant::OUTPUT],
+};
+
+/// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
+pub static EVAL: Kernel = Kernel {
+    name: "eval",
+    spirv: include_bytes!("../spirv/eval.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: size_of::<crate::gpu::EvalConstants>() as u32,
+    bindings: &[
+        TABLE,
+        LIGHTS,
+        LIGHT_VERTICES,
+        read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
+        write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
+    ],
+    constants: &[constant::EFFECTS, constant::FORM_FACTOR],
+};
+
+/// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:
+/// [`crate::gpu::ReferenceConstants`].
+pub static REFERENCE: Kernel = Kernel {
+    name: "reference",
+    spirv: include_bytes!("../spirv/reference.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ReferenceConstants>() as u32,
+    bindings: &[
+        LIGHTS,
+        LIGHT_VERTICES,
+        read("light_sampling", BindingKind::StorageBuffer, "GpuLightSampling[], one a light"),
+        read("light_triangles", BindingKind::StorageBuffer, "GpuLightTriangle[]"),
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        write(
+            "radiance_image",
+            BindingKind::StorageImage,
+            Access::ReadWrite,
+            "the dispatch's weighted mean is added (rgba32f)",
+        ),
+    ],
+    constants: &[],
+};
+
+/// Finds the surface that each pixel sees, by walking a hierarchy of triangles, and writes a G-buffer. For
+/// our own tools and tests: a host brings its own. Push constants: [`crate::gpu::VisibilityConstants`].
+pub static VISIBILITY: Kernel = Kernel {
+    name: "visibility",
+    spirv: include_bytes!("../spirv/visibility.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::VisibilityConstants>() as u32,
+    bindings: &[
+        read("nodes", BindingKind::StorageBuffer, "GpuBvhNode[]"),
+        read("triangles", BindingKind::StorageBuffer, "GpuTriangle[]"),
+        read("materials", BindingKind::StorageBuffer, "GpuMaterial[]"),
+        read("textures", BindingKind::StorageBuffer, "GpuTexture[]"),
+        read("texels", BindingKind::StorageBuffer, "uint[]: RGBA8, red in the low byte"),
+        write(
+            "out_position",
+            BindingKind::StorageImage,
+            Access::Write,
+            "g_position of the shade kernel (rgba32f)",
+        ),
+        write(
+            "out_normal",
+            BindingKind::StorageImage,
+            Access::Write,
+            "g_normal of the shade kernel (rgba32f)",
+        ),
+        write("out_base_color", BindingKind::StorageImage, Access::Write, "g_base_color (rgba16f)"),
+        write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba16f)"),
+        write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
+    ],
+    constants: &[],
+};
+
+/// Every kernel.
+pub static ALL: [&Kernel; 4] = [&SHADE, &EVAL, &REFERENCE, &VISIBILITY];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_module_is_spirv() {
+        for kernel in ALL {
+            assert_eq!(kernel.spirv.len() % 4, 0, "{}", kernel.name);
+            assert_eq!(kernel.words()[0], 0x0723_0203, "{}: SPIR-V's magic number", kernel.name);
+        }
+    }
+}

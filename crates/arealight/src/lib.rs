@@ -1,0 +1,48 @@
+//! The vocabulary of Arealight: analytic area lights by linearly transformed cosines (LTC).
+//!
+//! A polygon, a material and a view go in; radiance comes out, with a known error, a known cost, and no
+//! noise. This crate says what a light, a material, a table and a kernel *are*; it knows nothing of Vulkan
+//! and of files. Every other crate speaks it.
+//!
+//! # Conventions
+//! - SI radiometry, linear Rec. 709 colour. A light's radiance is W/(m² sr), constant over a one-sided
+//!   emitter whose front is the right-hand side of its vertex order; a two-sided light lights both.
+//! - Right-handed. Matrices are column-major and act on column vectors. Angles are in radians.
+//! - `roughness` is perceptual, `alpha = roughness²`. GGX with height-correlated Smith masking-shadowing and
+//!   Schlick's Fresnel term.
+//! - Shading happens relative to an origin that the host chooses near the camera: world positions are
+//!   `f64` here and `f32` relative to that origin on the GPU.
+//! - Table axes: roughness, and `sqrt(1 - cos theta_view)`; see [`LightTable`].
+//!
+//! # The rooms
+//! | module | holds |
+//! |---|---|
+//! | [`light`] | polygon lights and how they are packed for the GPU |
+//! | [`material`] | metallic-roughness materials and the surface they make |
+//! | [`effects`] | what a scene calls for, and nothing else |
+//! | [`quality`] | the rungs of the quality ladder |
+//! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
+//! | [`gpu`] | data laid out as the GPU reads it |
+//! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
+//! | [`plan`] | which kernel runs, specialised how, over how many groups |
+
+pub mod effects;
+pub mod gpu;
+pub mod kernels;
+pub mod light;
+pub mod material;
+pub mod plan;
+pub mod quality;
+pub mod table;
+
+pub use effects::Effects;
+pub use light::{LightError, PackedLights, PolygonLight};
+pub use material::{Material, Surface};
+pub use quality::{FormFactor, Quality};
+pub use table::{LightTable, TableDescription, TableError, TableSample};
+
+/// The smallest GGX alpha that is shaded; smaller ones are raised to it.
+///
+/// At 1e-4 a lobe is 0.01 degrees wide, narrower than a pixel of any camera. Below it the products of the
+/// polygon walk would leave float32's range of exact behaviour that is tested.
+pub const MIN_ALPHA: f64 = 1e-4;

@@ -1,0 +1,249 @@
+//! Polygon lights, and how they are packed for the GPU.
+
+use crate::gpu::GpuLight;
+use glam::{DVec3, Vec3};
+
+/// A flat polygon that emits constant radiance.
+///
+/// Any number of vertices from three on, convex or concave, without holes. The front is the right-hand side
+/// of the vertex order: seen from the front, the vertices run counter-clockwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolygonLight {
+    /// A name for messages; it need not be unique.
+    pub name: String,
+    /// World positions, in the scene's unit of length.
+    pub vertices: Vec<DVec3>,
+    /// Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
+    pub radiance: Vec3,
+    /// Whether the back emits too.
+    pub two_sided: bool,
+}
+
+/// Why a light cannot be used. The light is named, and nothing is packed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum LightError {
+    /// A polygon has three vertices or more.
+    #[error("light '{light}': vertices: {count} given, a polygon has at least 3")]
+    TooFewVertices {
+        /// The light's name.
+        light: String,
+        /// How many vertices it has.
+        count: usize,
+    },
+    /// A vertex is NaN, infinite, or farther from the origin than float32 reaches.
+    #[error("light '{light}': vertices[{index}]: {value} is not a finite float32 position")]
+    VertexNotFinite {
+        /// The light's name.
+        light: String,
+        /// The vertex.
+        index: usize,
+        /// Its position.
+        value: DVec3,
+    },
+    /// Radiance is NaN, infinite or negative.
+    #[error("light '{light}': radiance: {value} must be finite and not negative")]
+    BadRadiance {
+        /// The light's name.
+        light: String,
+        /// The radiance given.
+        value: Vec3,
+    },
+    /// More vertices or lights than a 32-bit index reaches.
+    #[error("{count} light vertices: at most {} fit one buffer", u32::MAX)]
+    TooMany {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl PolygonLight {
+    /// Checks that the light can be shaded.
+    ///
+    /// # Errors
+    /// [`LightError`] names the light and the field that is wrong.
+    pub fn validate(&self) -> Result<(), LightError> {
+        let light = || self.name.clone();
+        if self.vertices.len() < 3 {
+            return Err(LightError::TooFewVertices { light: light(), count: self.vertices.len() });
+        }
+        for (index, &value) in self.vertices.iter().enumerate() {
+            if !value.as_vec3().is_finite() {
+                return Err(LightError::VertexNotFinite { light: light(), index, value });
+            }
+        }
+        if !self.radiance.is_finite() || self.radiance.min_element() < 0.0 {
+            return Err(LightError::BadRadiance { light: light(), value: self.radiance });
+        }
+        Ok(())
+    }
+
+    /// Area times normal, by Newell's sum over the vertices: its direction is the front, its length the area
+    /// (unit of length squared). Zero for a degenerate polygon.
+    pub fn area_vector(&self) -> DVec3 {
+        let anchor = self.vertices.first().copied().unwrap_or_default();
+        let offsets = self.vertices.iter().map(|v| *v - anchor);
+        let next = self.vertices.iter().cycle().skip(1).map(|v| *v - anchor);
+        offsets.zip(next).map(|(a, b)| a.cross(b)).sum::<DVec3>() * 0.5
+    }
+
+    /// Vertex indices of triangles that cover the polygon once, three a triangle, in the polygon's
+    /// orientation. Empty for a degenerate polygon.
+    pub fn triangles(&self) -> Vec<u32> {
+        let normal = self.area_vector().normalize_or_zero();
+        if normal == DVec3::ZERO {
+            return Vec::new();
+        }
+        // Project onto the polygon's plane, so that its front is counter-clockwise in two dimensions
+        let (tangent, bitangent) = normal.any_orthonormal_pair();
+        let anchor = self.vertices[0];
+        let flat = self.vertices.iter().map(|v| {
+            let offset = *v - anchor;
+            [offset.dot(tangent), offset.dot(bitangent)]
+        });
+        let mut indices: Vec<u32> = Vec::new();
+        earcut::Earcut::new().earcut(flat, &[], &mut indices);
+        // Turn each triangle the way of the outline
+        for triangle in indices.chunks_exact_mut(3) {
+            let [a, b, c] = [0, 1, 2].map(|i| self.vertices[triangle[i] as usize]);
+            if (b - a).cross(c - a).dot(normal) < 0.0 {
+                triangle.swap(1, 2);
+            }
+        }
+        indices
+    }
+}
+
+/// Lights as the GPU reads them, relative to an origin.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PackedLights {
+    /// One record a light, in the given order.
+    pub lights: Vec<GpuLight>,
+    /// Vertex positions relative to the origin, in xyz; w is zero.
+    pub vertices: Vec<[f32; 4]>,
+}
+
+impl PackedLights {
+    /// Packs `lights` relative to `origin`: the subtraction is made in float64, so that a scene far from the
+    /// world's origin shades as well as one at it. Use the same origin for the G-buffer's positions.
+    ///
+    /// # Errors
+    /// The first light that [`PolygonLight::validate`] refuses.
+    pub fn new(lights: &[PolygonLight], origin: DVec3) -> Result<Self, LightError> {
+        let count = lights.iter().map(|light| light.vertices.len()).sum::<usize>().max(lights.len());
+        if u32::try_from(count).is_err() {
+            return Err(LightError::TooMany { count });
+        }
+        let mut packed = Self::default();
+        for light in lights {
+            light.validate()?;
+            packed.push(light, origin)?;
+        }
+        Ok(packed)
+    }
+
+    fn push(&mut self, light: &PolygonLight, origin: DVec3) -> Result<(), LightError> {
+        let first_vertex = self.vertices.len() as u32;
+        // Subtract the origin in float64, then round once
+        for (index, &vertex) in light.vertices.iter().enumerate() {
+            let relative = (vertex - origin).as_vec3();
+            if !relative.is_finite() {
+                return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value: vertex });
+            }
+            self.vertices.push(relative.extend(0.0).to_array());
+        }
+        // Bound the polygon by a sphere about the middle of its box
+        let (low, high) = light
+            .vertices
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let center = (low + high) * 0.5;
+        let radius = light.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
+        self.lights.push(GpuLight {
+            radiance: light.radiance.to_array(),
+            first_vertex,
+            center: (center - origin).as_vec3().to_array(),
+            radius: radius as f32,
+            vertex_count: light.vertices.len() as u32,
+            flags: if light.two_sided { GpuLight::TWO_SIDED } else { 0 },
+            reserved: [0; 2],
+        });
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arrow() -> PolygonLight {
+        // A concave quad in the plane z = 2, counter-clockwise from above, so it emits upwards
+        PolygonLight {
+            name: "arrow".into(),
+            vertices: vec![
+                DVec3::new(0.0, 0.0, 2.0),
+                DVec3::new(2.0, 1.0, 2.0),
+                DVec3::new(0.0, 2.0, 2.0),
+                DVec3::new(1.0, 1.0, 2.0),
+            ],
+            radiance: Vec3::new(1.0, 2.0, 3.0),
+            two_sided: false,
+        }
+    }
+
+    #[test]
+    fn the_front_is_the_right_hand_side() {
+        assert_eq!(arrow().area_vector(), DVec3::new(0.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn triangles_cover_a_concave_polygon_once() {
+        let light = arrow();
+        let area: DVec3 = light
+            .triangles()
+            .chunks_exact(3)
+            .map(|t| {
+                let [a, b, c] = [0, 1, 2].map(|i| light.vertices[t[i] as usize]);
+                let area = (b - a).cross(c - a) * 0.5;
+                assert!(area.z > 0.0, "every triangle faces the light's front");
+                area
+            })
+            .sum();
+        assert!((area - light.area_vector()).length() < 1e-12);
+    }
+
+    #[test]
+    fn degenerate_polygons_have_no_triangles() {
+        let mut light = arrow();
+        light.vertices = vec![DVec3::ONE; 4];
+        assert!(light.triangles().is_empty());
+    }
+
+    #[test]
+    fn packing_keeps_precision_far_from_the_world_origin() {
+        let offset = DVec3::splat(1e7);
+        let mut far = arrow();
+        for v in &mut far.vertices {
+            *v = *v + offset + DVec3::new(1e-3, 0.0, 0.0);
+        }
+        let packed = PackedLights::new(&[far], offset).unwrap();
+        assert!((packed.vertices[1][0] - 2.001).abs() < 1e-6);
+    }
+
+    #[test]
+    fn bad_lights_are_named_and_refused() {
+        let mut light = arrow();
+        light.vertices.truncate(2);
+        let error = PackedLights::new(&[arrow(), light], DVec3::ZERO).unwrap_err();
+        assert_eq!(error.to_string(), "light 'arrow': vertices: 2 given, a polygon has at least 3");
+        let mut light = arrow();
+        light.vertices[2].y = f64::NAN;
+        assert!(matches!(light.validate(), Err(LightError::VertexNotFinite { index: 2, .. })));
+        light = arrow();
+        light.vertices[1].x = 1e39;
+        assert!(matches!(light.validate(), Err(LightError::VertexNotFinite { index: 1, .. })));
+        light = arrow();
+        light.radiance.y = -1.0;
+        assert!(matches!(light.validate(), Err(LightError::BadRadiance { .. })));
+    }
+}

@@ -1,0 +1,107 @@
+//! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
+//! recorder of this project or for one of your own.
+
+use crate::kernels::{self, Kernel};
+use crate::{Effects, Quality};
+
+/// Where the shade kernel takes positions from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum PositionSource {
+    /// Binding `position` holds positions relative to the origin; w = 0 marks a pixel without a surface.
+    #[default]
+    Position = 0,
+    /// Binding `position` holds depth as stored; the clear value `0` or `1` (see `far_depth`) marks a pixel
+    /// without a surface.
+    Depth = 1,
+}
+
+/// What the shade kernel does to the radiance image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Output {
+    /// Radiance replaces what is there; pixels without a surface become zero.
+    #[default]
+    Overwrite = 0,
+    /// Radiance is added to what is there; pixels without a surface stay as they are.
+    Add = 1,
+}
+
+/// Everything that a shade pipeline is specialised for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ShadeOptions {
+    /// What the scene calls for.
+    pub effects: Effects,
+    /// What accuracy the host pays for.
+    pub quality: Quality,
+    /// Where positions come from.
+    pub position: PositionSource,
+    /// Overwrite or add.
+    pub output: Output,
+}
+
+impl ShadeOptions {
+    /// The catch-all: every effect, the exact rung, positions from an image, overwriting.
+    pub fn all() -> Self {
+        Self {
+            effects: Effects::all(),
+            quality: Quality::default(),
+            position: PositionSource::default(),
+            output: Output::default(),
+        }
+    }
+}
+
+/// One dispatch: a kernel, the values of its specialisation constants, and its number of groups.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dispatch {
+    /// The kernel.
+    pub kernel: &'static Kernel,
+    /// Pairs of constant id and value.
+    pub specialization: Vec<(u32, u32)>,
+    /// Groups in x, y and z.
+    pub groups: [u32; 3],
+}
+
+/// The shade pass over a G-buffer of `width` × `height` pixels.
+pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
+    Dispatch {
+        kernel: &kernels::SHADE,
+        specialization: shade_specialization(options),
+        groups: kernels::SHADE.groups_for([width, height, 1]),
+    }
+}
+
+/// The values of the shade kernel's specialisation constants.
+pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::EFFECTS, options.effects.bits()),
+        (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
+        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::OUTPUT, options.output as u32),
+    ]
+}
+
+/// The eval pass: the shade kernel's functions over a list of `case_count` shading points.
+pub fn eval(quality: Quality, case_count: u32) -> Dispatch {
+    Dispatch {
+        kernel: &kernels::EVAL,
+        specialization: vec![
+            (kernels::constant::EFFECTS, Effects::all().bits()),
+            (kernels::constant::FORM_FACTOR, quality.form_factor as u32),
+        ],
+        groups: kernels::EVAL.groups_for([case_count, 1, 1]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_cover_every_pixel() {
+        let dispatch = shade(ShadeOptions::all(), 17, 8);
+        assert_eq!(dispatch.groups, [3, 1, 1]);
+        assert_eq!(eval(Quality::default(), 65).groups, [2, 1, 1]);
+    }
+}

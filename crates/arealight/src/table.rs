@@ -1,0 +1,330 @@
+//! The fitted table: for each roughness and view angle a linear transform of the clamped cosine, and the
+//! lobe's albedo.
+//!
+//! # What a texel holds
+//! A table is square, `size` nodes a side. Node `(x, y)` belongs to `roughness = x / (size - 1)` and to
+//! `sqrt(1 - cos theta_view) = y / (size - 1)`; texels are stored row after row, `index = y * size + x`, and
+//! interpolated bilinearly between nodes.
+//!
+//! The inverse transform takes a direction of the shading frame into cosine space. It is stored in the
+//! *mirror frame*, whose axes are, for a view `(sin t, 0, cos t)` in the surface frame:
+//! `x' = (cos t, 0, sin t)`, `y' = (0, 1, 0)`, `z' = (-sin t, 0, cos t)`, the mirror direction of the view.
+//! There, divided by its middle entry, with the last row divided by alpha, it is smooth down to a mirror:
+//! ```text
+//!         |      q00   0        q02 |   | x'^T |
+//! M^-1 =  |        0   1          0 | * | y'^T |        matrix texel = (q00, q02, q20, q22)
+//!         | alpha q20  0  alpha q22 |   | z'^T |
+//! ```
+//! (In the surface frame the same entries interpolate badly at low roughness: the largest change of a form
+//! factor between nodes is 0.82 there, 0.011 here, at 31² nodes.)
+//!
+//! The magnitude texel is `(albedo, schlick)`: the integrals over the hemisphere of `f cos` and of
+//! `f cos (1 - cos theta_vh)^5`, for a BRDF `f` without Fresnel term, so that the specular albedo is
+//! `f0 * albedo + (f90 - f0) * schlick`.
+
+use glam::{DMat3, DVec3};
+
+/// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
+pub const MAX_SIZE: u32 = 1024;
+
+/// What a table says of itself beside its texels.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableDescription {
+    /// The BRDF that was fitted, for example `ggx-correlated-smith`.
+    pub brdf: String,
+    /// What made it, for people: program, version, settings.
+    pub made_by: String,
+}
+
+/// A fitted table, valid by construction: sizes agree, and every number is finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightTable {
+    description: TableDescription,
+    size: u32,
+    matrix: Vec<[f32; 4]>,
+    magnitude: Vec<[f32; 2]>,
+}
+
+/// Why texels do not make a table.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// The size is out of range.
+    #[error("size: {size} nodes a side; a table has 2 to {MAX_SIZE}")]
+    Size {
+        /// The size given.
+        size: u32,
+    },
+    /// A layer has another number of texels than the size calls for.
+    #[error("{layer}: {count} texels, but {size} nodes a side need {}", u64::from(*size) * u64::from(*size))]
+    TexelCount {
+        /// The layer.
+        layer: &'static str,
+        /// Its number of texels.
+        count: usize,
+        /// The table's size.
+        size: u32,
+    },
+    /// A texel is NaN or infinite.
+    #[error("{layer}: texel ({x}, {y}) channel {channel} is {value}, not a finite number")]
+    NotFinite {
+        /// The layer.
+        layer: &'static str,
+        /// The texel's column (roughness).
+        x: u32,
+        /// The texel's row (view angle).
+        y: u32,
+        /// The channel within the texel.
+        channel: usize,
+        /// What it holds.
+        value: f32,
+    },
+    /// A transform cannot be inverted, so it is no lobe.
+    #[error("matrix: texel ({x}, {y}) is singular or mirrored: determinant {determinant}, must be above 0")]
+    Singular {
+        /// The texel's column (roughness).
+        x: u32,
+        /// The texel's row (view angle).
+        y: u32,
+        /// The determinant of its two by two block.
+        determinant: f32,
+    },
+    /// A magnitude is outside [0, 1], where every albedo lies.
+    #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); both must be in [0, 1]")]
+    Magnitude {
+        /// The texel's column (roughness).
+        x: u32,
+        /// The texel's row (view angle).
+        y: u32,
+        /// The albedo found.
+        albedo: f32,
+        /// The Schlick part found.
+        schlick: f32,
+    },
+}
+
+/// One lookup: the lobe of a roughness and a view angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableSample {
+    /// M⁻¹: directions of the surface frame (view in the xz plane, x not negative) into cosine space.
+    pub inverse: DMat3,
+    /// Integral of `f cos` over the hemisphere, in [0, 1].
+    pub albedo: f64,
+    /// Integral of `f cos (1 - cos theta_vh)^5` over the hemisphere, in [0, 1].
+    pub schlick: f64,
+}
+
+impl LightTable {
+    /// Makes a table from its texels.
+    ///
+    /// # Errors
+    /// [`TableError`] says which layer, texel and channel is wrong.
+    pub fn new(
+        description: TableDescription,
+        size: u32,
+        matrix: Vec<[f32; 4]>,
+        magnitude: Vec<[f32; 2]>,
+    ) -> Result<Self, TableError> {
+        if !(2..=MAX_SIZE).contains(&size) {
+            return Err(TableError::Size { size });
+        }
+        let count = size as usize * size as usize;
+        for (layer, found) in [("matrix", matrix.len()), ("magnitude", magnitude.len())] {
+            if found != count {
+                return Err(TableError::TexelCount { layer, count: found, size });
+            }
+        }
+        for (index, (m, a)) in matrix.iter().zip(&magnitude).enumerate() {
+            let (x, y) = (index as u32 % size, index as u32 / size);
+            finite("matrix", x, y, m)?;
+            finite("magnitude", x, y, a)?;
+            let determinant = m[0] * m[3] - m[1] * m[2];
+            if determinant.is_nan() || determinant <= 0.0 {
+                return Err(TableError::Singular { x, y, determinant });
+            }
+            if a.iter().any(|v| !(0.0..=1.0).contains(v)) {
+                return Err(TableError::Magnitude { x, y, albedo: a[0], schlick: a[1] });
+            }
+        }
+        Ok(Self { description, size, matrix, magnitude })
+    }
+
+    /// What the table says of itself.
+    pub fn description(&self) -> &TableDescription {
+        &self.description
+    }
+
+    /// Nodes a side.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// The matrix layer, `(q00, q02, q20, q22)` a texel.
+    pub fn matrix(&self) -> &[[f32; 4]] {
+        &self.matrix
+    }
+
+    /// The magnitude layer, `(albedo, schlick)` a texel.
+    pub fn magnitude(&self) -> &[[f32; 2]] {
+        &self.magnitude
+    }
+
+    /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` stands for.
+    pub fn node(size: u32, x: u32, y: u32) -> (f64, f64) {
+        let step = f64::from(size - 1);
+        let v = f64::from(y) / step;
+        (f64::from(x) / step, 1.0 - v * v)
+    }
+
+    /// Both layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
+    /// channels; four `f32` a texel.
+    pub fn texels(&self) -> Vec<[f32; 4]> {
+        let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], 0.0, 0.0]);
+        self.matrix.iter().copied().chain(magnitude).collect()
+    }
+
+    /// Looks up a lobe, in float64: the twin of `arealight_table_lookup`.
+    ///
+    /// `roughness` is perceptual and clamped to [0, 1] (its alpha to [`crate::MIN_ALPHA`]); `cos_view` is
+    /// clamped to [0, 1]. NaN counts as 0.
+    pub fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {
+        let roughness = roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt());
+        let cos_view = cos_view.clamp(0.0, 1.0).max(0.0);
+        // Find the four nodes around the sample
+        let last = f64::from(self.size - 1);
+        let (u, v) = (roughness * last, (1.0 - cos_view).sqrt() * last);
+        let (x, y) = (u.floor().min(last - 1.0), v.floor().min(last - 1.0));
+        let (s, t) = (u - x, v - y);
+        let at = |dx: usize, dy: usize| (y as usize + dy) * self.size as usize + x as usize + dx;
+        let weights = [
+            (at(0, 0), (1.0 - s) * (1.0 - t)),
+            (at(1, 0), s * (1.0 - t)),
+            (at(0, 1), (1.0 - s) * t),
+            (at(1, 1), s * t),
+        ];
+        // Interpolate
+        let matrix = |c: usize| weights.iter().map(|&(i, w)| w * f64::from(self.matrix[i][c])).sum::<f64>();
+        let magnitude =
+            |c: usize| weights.iter().map(|&(i, w)| w * f64::from(self.magnitude[i][c])).sum::<f64>();
+        let texel = [matrix(0), matrix(1), matrix(2), matrix(3)];
+        TableSample {
+            inverse: inverse_from_texel(texel, roughness * roughness, cos_view),
+            albedo: magnitude(0),
+            schlick: magnitude(1),
+        }
+    }
+}
+
+/// M⁻¹ in the surface frame from a matrix texel, see the module's text.
+pub fn inverse_from_texel(texel: [f64; 4], alpha: f64, cos_view: f64) -> DMat3 {
+    let mirrored = DMat3::from_cols(
+        DVec3::new(texel[0], 0.0, alpha * texel[2]),
+        DVec3::Y,
+        DVec3::new(texel[1], 0.0, alpha * texel[3]),
+    );
+    mirrored * mirror_frame(cos_view).transpose()
+}
+
+/// The mirror frame's axes as columns, in the surface frame, for a view `(sin t, 0, cos t)`.
+pub fn mirror_frame(cos_view: f64) -> DMat3 {
+    let sin_view = ((1.0 - cos_view) * (1.0 + cos_view)).max(0.0).sqrt();
+    DMat3::from_cols(DVec3::new(cos_view, 0.0, sin_view), DVec3::Y, DVec3::new(-sin_view, 0.0, cos_view))
+}
+
+fn finite(layer: &'static str, x: u32, y: u32, texel: &[f32]) -> Result<(), TableError> {
+    match texel.iter().position(|v| !v.is_finite()) {
+        Some(channel) => Err(TableError::NotFinite { layer, x, y, channel, value: texel[channel] }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(edit: impl Fn(usize, &mut [f32; 4], &mut [f32; 2])) -> Result<LightTable, TableError> {
+        let mut matrix = vec![[1.0, 0.0, 0.0, 1.0]; 9];
+        let mut magnitude = vec![[1.0, 0.25]; 9];
+        for i in 0..9 {
+            edit(i, &mut matrix[i], &mut magnitude[i]);
+        }
+        let description = TableDescription { brdf: "test".into(), made_by: "a test".into() };
+        LightTable::new(description, 3, matrix, magnitude)
+    }
+
+    #[test]
+    fn lookup_returns_nodes_exactly_and_interpolates_between_them() {
+        let table = table(|i, m, a| {
+            m[0] = 1.0 + i as f32;
+            a[0] = i as f32 / 10.0;
+        })
+        .unwrap();
+        for y in 0..3 {
+            for x in 1..3 {
+                let (roughness, cos_view) = LightTable::node(3, x, y);
+                let sample = table.lookup(roughness, cos_view);
+                assert!((sample.albedo - f64::from(y * 3 + x) / 10.0).abs() < 1e-7);
+            }
+        }
+        let middle = table.lookup(0.75, 1.0 - 0.0625);
+        assert!((middle.albedo - 0.3).abs() < 1e-7, "{middle:?}");
+    }
+
+    #[test]
+    fn lookup_clamps_what_is_outside() {
+        let table = table(|_, _, _| {}).unwrap();
+        assert_eq!(table.lookup(7.0, 2.0), table.lookup(1.0, 1.0));
+        assert_eq!(table.lookup(0.5, -1.0), table.lookup(0.5, 0.0));
+        assert!(table.lookup(f64::NAN, f64::NAN).inverse.is_finite());
+    }
+
+    #[test]
+    fn the_mirror_frame_is_a_rotation_that_holds_the_mirror_direction() {
+        for i in 0..=10 {
+            let cos_view = f64::from(i) / 10.0;
+            let frame = mirror_frame(cos_view);
+            assert!((frame.determinant() - 1.0).abs() < 1e-12);
+            assert!((frame.z_axis.z - cos_view).abs() < 1e-12 && frame.z_axis.x <= 0.0);
+        }
+    }
+
+    #[test]
+    fn an_identity_texel_is_a_cosine_about_the_mirror_direction() {
+        let inverse = inverse_from_texel([1.0, 0.0, 0.0, 1.0], 1.0, 0.6);
+        assert!((inverse * DVec3::new(-0.8, 0.0, 0.6) - DVec3::Z).length() < 1e-12);
+    }
+
+    #[test]
+    fn bad_texels_are_refused_with_their_place() {
+        let error = table(|i, m, _| {
+            if i == 5 {
+                m[2] = f32::NAN
+            }
+        })
+        .unwrap_err();
+        assert_eq!(error.to_string(), "matrix: texel (2, 1) channel 2 is NaN, not a finite number");
+        let error = table(|i, m, _| {
+            if i == 3 {
+                m[3] = 0.0
+            }
+        })
+        .unwrap_err();
+        assert!(matches!(error, TableError::Singular { x: 0, y: 1, .. }), "{error}");
+        let error = table(|i, _, a| {
+            if i == 8 {
+                a[1] = 1.5
+            }
+        })
+        .unwrap_err();
+        assert!(matches!(error, TableError::Magnitude { x: 2, y: 2, .. }), "{error}");
+        let description = TableDescription { brdf: String::new(), made_by: String::new() };
+        assert!(matches!(
+            LightTable::new(description.clone(), 1, vec![], vec![]),
+            Err(TableError::Size { size: 1 })
+        ));
+        assert!(matches!(
+            LightTable::new(description, 2, vec![[1.0; 4]; 3], vec![[0.0; 2]; 4]),
+            Err(TableError::TexelCount { layer: "matrix", count: 3, .. })
+        ));
+    }
+}

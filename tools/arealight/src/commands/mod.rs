@@ -1,0 +1,7 @@
+//! One module a command: its arguments, and what it does.
+
+pub mod devices;
+pub mod eval;
+pub mod fit;
+pub mod inspect;
+pub mod render;

@@ -1,0 +1,48 @@
+//! The command line of Arealight.
+
+mod commands;
+mod failure;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Analytic area lights for Vulkan engines: a polygon, a material and a view go in; radiance comes out.
+#[derive(Parser)]
+#[command(name = "arealight", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+const AFTER_HELP: &str = "\
+Without a command, the demo scene is rendered.
+
+Exit codes: 0 success, 1 a comparison failed, 2 wrong arguments, 3 a bad input file, 4 no usable Vulkan \
+device, 5 an output file cannot be written.";
+
+#[derive(Subcommand)]
+enum Command {
+    Render(commands::render::Arguments),
+    Eval(commands::eval::Arguments),
+    Fit(commands::fit::Arguments),
+    Inspect(commands::inspect::Arguments),
+    Devices(commands::devices::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match CommandLine::parse().command {
+        None => commands::render::run(&commands::render::Arguments::default_scene()),
+        Some(Command::Render(arguments)) => commands::render::run(&arguments),
+        Some(Command::Eval(arguments)) => commands::eval::run(&arguments),
+        Some(Command::Fit(arguments)) => commands::fit::run(&arguments),
+        Some(Command::Inspect(arguments)) => commands::inspect::run(&arguments),
+        Some(Command::Devices(arguments)) => commands::devices::run(&arguments),
+    };
+    match result {
+        Ok(code) => code,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            failure.exit_code()
+        }
+    }
+}

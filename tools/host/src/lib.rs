@@ -1,0 +1,1 @@
+//! The Vulkan host of the tools, tests and benchmarks.
