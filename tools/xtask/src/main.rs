@@ -1,2 +1,72 @@
-//! Project tasks.
-fn main() {}
+//! Project tasks that need a shader compiler. Run them from anywhere in the checkout:
+//!
+//! ```text
+//! export SHADERC_LIB_DIR="$(tools/shaderc.sh)"   # where xtask is not built yet
+//! cargo run -p xtask -- shaders                  # shaders/kernels/*.comp -> crates/arealight/spirv/*.spv
+//! cargo run -p xtask -- shaders --check          # are they fresh?
+//! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
+//! ```
+
+mod compile;
+mod includes;
+mod lint;
+mod manifest;
+mod shaders;
+
+use clap::{Parser, Subcommand};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Project tasks of Arealight.
+#[derive(Parser)]
+#[command(name = "xtask", about, max_term_width = 100)]
+struct CommandLine {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Compile the kernels to the SPIR-V that the crate `arealight` embeds.
+    Shaders(shaders::Arguments),
+    /// Compile each file of the GLSL library on its own, and check the library's rules.
+    Includes,
+}
+
+/// A task that cannot be carried out. Its text says what is wrong, where, and what to do.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum TaskError {
+    #[error("{}: {source}", path.display())]
+    File { path: PathBuf, source: std::io::Error },
+    #[error("{}: {source}; delete the file and run: cargo run -p xtask -- shaders", path.display())]
+    Manifest { path: PathBuf, source: serde_json::Error },
+    #[error("the shader compiler cannot start: {0}")]
+    Compiler(shaderc::Error),
+    #[error("there is no kernel {name} (there are: {available})")]
+    NoSuchKernel { name: String, available: String },
+    #[error("cannot run {program}: {source}. On Debian: apt-get install {package}")]
+    Program { program: &'static str, package: &'static str, source: std::io::Error },
+}
+
+impl TaskError {
+    fn file(path: &Path) -> impl FnOnce(std::io::Error) -> Self + '_ {
+        move |source| Self::File { path: path.to_owned(), source }
+    }
+}
+
+fn main() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let root = root.canonicalize().unwrap_or(root);
+    let outcome = match CommandLine::parse().task {
+        Task::Shaders(arguments) => shaders::run(&root, &arguments),
+        Task::Includes => includes::run(&root),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
