@@ -1,2 +1,42 @@
-//! Records Arealight passes into a Vulkan command buffer of the host.
+//! Records Arealight's passes into a command buffer of the host.
+//!
+//! The recorder owns nothing of the host's: it never submits, never waits, never allocates a descriptor pool,
+//! and makes no barrier for a resource that the host owns. The host says where its G-buffer is, allocates the
+//! descriptor sets and the memory, and finds Vulkan: [`ash`] is re-exported without its loader.
+//!
+//! ```no_run
+//! use arealight_vk::{ash::vk, Context, HostDevice, ShadeFrame, ShadePass, ShadeResources};
+//! use arealight::plan::ShadeOptions;
+//!
+//! # unsafe fn frame(host: &HostDevice<'_>, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet,
+//! #     resources: &ShadeResources, lights: &[arealight::PolygonLight], camera: glam::DVec3)
+//! #     -> Result<(), arealight_vk::Error> {
+//! // Once
+//! let context = unsafe { Context::new(host) }?;
+//! let shade = unsafe { ShadePass::new(&context, ShadeOptions::all()) }?;
+//! // When lights change: pack them relative to an origin near the camera, and upload
+//! let packed = shade.pack_lights(lights, camera)?;
+//! // Each frame
+//! unsafe { shade.write_set(set, resources) }?;
+//! let frame = ShadeFrame {
+//!     size: [1920, 1080],
+//!     camera: glam::Vec3::ZERO,
+//!     position_from_clip: None,
+//!     light_count: packed.lights.len() as u32,
+//! };
+//! unsafe { shade.record(command_buffer, set, &frame) }?;
+//! # Ok(()) }
+//! ```
+
+mod context;
+mod error;
+mod pass;
+mod shade;
+mod table_image;
+
 pub use ash;
+pub use context::{Context, HostDevice};
+pub use error::Error;
+pub use pass::{ComputePass, Resource};
+pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
+pub use table_image::{TableFormat, TableImage};

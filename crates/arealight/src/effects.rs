@@ -36,7 +36,7 @@ impl Effects {
     }
 
     /// What `lights` call for beyond this set, with the name of the first light that does.
-    pub fn missing_for<'a>(self, lights: &'a [crate::PolygonLight]) -> Option<(Self, &'a str)> {
+    pub fn missing_for(self, lights: &[crate::PolygonLight]) -> Option<(Self, &str)> {
         if self.contains(Self::TWO_SIDED) {
             return None;
         }

@@ -133,7 +133,7 @@ pub static SHADE: Kernel = Kernel {
             "radiance_image",
             BindingKind::StorageImage,
             Access::ReadWrite,
-            "outgoing radiance in rgb, 1 in a where there is a surface (rgba16f or rgba32f)",
+            "outgoing radiance in rgb, 1 in a where there is a surface (rgba32f)",
         ),
     ],
     constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::POSITION_SOURCE, constant::OUTPUT],

@@ -11,8 +11,8 @@ pub enum PositionSource {
     /// Binding `position` holds positions relative to the origin; w = 0 marks a pixel without a surface.
     #[default]
     Position = 0,
-    /// Binding `position` holds depth as stored; the clear value `0` or `1` (see `far_depth`) marks a pixel
-    /// without a surface.
+    /// Binding `position` holds depth as stored, in either direction; exactly 0 or 1, one of which every depth
+    /// buffer is cleared to, marks a pixel without a surface.
     Depth = 1,
 }
 

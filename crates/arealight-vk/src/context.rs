@@ -1,0 +1,63 @@
+//! What the recorder knows of the host: its device, and the pipeline cache it lends.
+
+use crate::error::Error;
+use ash::vk;
+
+/// The host's handles. All stay the host's: nothing here is destroyed, waited for or submitted to.
+///
+/// A host that uses another version of ash, or none, makes the function tables from its raw handles with
+/// `ash::Instance::load_with` and `ash::Device::load_with`, re-exported here as [`crate::ash`].
+#[derive(Clone)]
+pub struct HostDevice<'a> {
+    /// The instance that `physical_device` comes from.
+    pub instance: &'a ash::Instance,
+    /// The physical device that `device` was made from.
+    pub physical_device: vk::PhysicalDevice,
+    /// The device, with a compute-capable queue. No optional feature is needed.
+    pub device: &'a ash::Device,
+    /// A cache that pipelines are made with, or null.
+    pub pipeline_cache: vk::PipelineCache,
+}
+
+/// The recorder's view of the host's device, from which passes are made. Cheap to clone.
+#[derive(Clone)]
+pub struct Context {
+    pub(crate) device: ash::Device,
+    pub(crate) pipeline_cache: vk::PipelineCache,
+    pub(crate) max_group_count: [u32; 3],
+}
+
+impl std::fmt::Debug for Context {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Context").field("device", &self.device.handle()).finish_non_exhaustive()
+    }
+}
+
+impl Context {
+    /// Checks the device and takes its function table.
+    ///
+    /// # Safety
+    /// - The handles are valid and belong together; the physical device and the device speak Vulkan 1.1 or later.
+    /// - The device and the pipeline cache outlive the context and everything made from it.
+    /// - The pipeline cache is not used elsewhere while a pass is being made (it is externally synchronised).
+    ///
+    /// # Errors
+    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1 or a limit is too small.
+    pub unsafe fn new(host: &HostDevice<'_>) -> Result<Self, Error> {
+        // SAFETY: the caller vouches for the instance and the physical device.
+        let properties = unsafe { host.instance.get_physical_device_properties(host.physical_device) };
+        if properties.api_version < vk::API_VERSION_1_1 {
+            return Err(Error::MissingFeature { feature: "Vulkan 1.1", needed_by: "every kernel" });
+        }
+        Ok(Self {
+            device: host.device.clone(),
+            pipeline_cache: host.pipeline_cache,
+            max_group_count: properties.limits.max_compute_work_group_count,
+        })
+    }
+
+    /// The device's function table.
+    pub fn device(&self) -> &ash::Device {
+        &self.device
+    }
+}

@@ -1,0 +1,58 @@
+//! What can go wrong, as one type.
+
+use ash::vk;
+
+/// An error of the recorder. Nothing was recorded and nothing leaks where one is returned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A Vulkan call failed.
+    #[error("{call} failed: {result}")]
+    Vulkan {
+        /// The call.
+        call: &'static str,
+        /// What it returned.
+        result: vk::Result,
+    },
+    /// The device lacks something that is needed, or the host did not enable it.
+    #[error("the device lacks {feature}, which {needed_by} needs")]
+    MissingFeature {
+        /// The feature, limit or version.
+        feature: &'static str,
+        /// What needs it.
+        needed_by: &'static str,
+    },
+    /// An argument is wrong.
+    #[error("{field}: {message}")]
+    InvalidArgument {
+        /// The argument's field.
+        field: &'static str,
+        /// What is wrong with it, and what would be right.
+        message: String,
+    },
+    /// A light cannot be used.
+    #[error(transparent)]
+    Light(#[from] arealight::LightError),
+    /// The pass was specialised for fewer effects than a light calls for.
+    #[error(
+        "light '{light}' calls for the effects: {missing}, which this pass was made without; make the pass \
+             with them, or with Effects::all()"
+    )]
+    EffectsTooSmall {
+        /// The light.
+        light: String,
+        /// What is missing.
+        missing: arealight::Effects,
+    },
+}
+
+/// Names the call that a Vulkan result came from.
+pub(crate) trait VulkanCall<T> {
+    fn call(self, call: &'static str) -> Result<T, Error>;
+}
+
+impl<T> VulkanCall<T> for Result<T, vk::Result> {
+    fn call(self, call: &'static str) -> Result<T, Error> {
+        self.map_err(|result| Error::Vulkan { call, result })
+    }
+}

@@ -1,0 +1,348 @@
+//! One kernel as a compute pipeline: its descriptor set layout, its pipeline, and how it is recorded.
+
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use arealight::kernels::{BindingKind, Kernel};
+use ash::vk;
+
+/// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resource {
+    /// An image that is read by texel.
+    SampledImage {
+        /// A view of it with the aspect and layers to read.
+        view: vk::ImageView,
+        /// The layout it has when the pass runs.
+        layout: vk::ImageLayout,
+    },
+    /// An image that is stored to, in layout `GENERAL`.
+    StorageImage {
+        /// A view of one layer.
+        view: vk::ImageView,
+    },
+    /// A range of a buffer.
+    StorageBuffer {
+        /// The buffer, with usage `STORAGE_BUFFER`.
+        buffer: vk::Buffer,
+        /// The range's first byte, a multiple of `minStorageBufferOffsetAlignment`.
+        offset: vk::DeviceSize,
+        /// Its length in bytes, or `WHOLE_SIZE`.
+        range: vk::DeviceSize,
+    },
+}
+
+impl Resource {
+    /// A whole buffer.
+    pub fn buffer(buffer: vk::Buffer) -> Self {
+        Self::StorageBuffer { buffer, offset: 0, range: vk::WHOLE_SIZE }
+    }
+
+    fn kind(self) -> BindingKind {
+        match self {
+            Self::SampledImage { .. } => BindingKind::SampledImage,
+            Self::StorageImage { .. } => BindingKind::StorageImage,
+            Self::StorageBuffer { .. } => BindingKind::StorageBuffer,
+        }
+    }
+
+    fn is_null(self) -> bool {
+        match self {
+            Self::SampledImage { view, .. } | Self::StorageImage { view } => view == vk::ImageView::null(),
+            Self::StorageBuffer { buffer, .. } => buffer == vk::Buffer::null(),
+        }
+    }
+}
+
+/// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline and layouts.
+#[derive(Debug)]
+pub struct ComputePass {
+    context: Context,
+    kernel: &'static Kernel,
+    set_layout: vk::DescriptorSetLayout,
+    pipeline_layout: vk::PipelineLayout,
+    pipeline: vk::Pipeline,
+}
+
+impl ComputePass {
+    /// Makes the pipeline of `kernel` with pairs of specialisation constant id and value; constants that are
+    /// not given keep the shader's default, which is the catch-all.
+    ///
+    /// # Safety
+    /// The returned pass is dropped only when no recorded use of it is pending, and before the device is
+    /// destroyed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::Vulkan`] where a call
+    /// fails.
+    pub unsafe fn new(
+        context: &Context,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+    ) -> Result<Self, Error> {
+        if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
+            return Err(Error::InvalidArgument {
+                field: "specialization",
+                message: format!(
+                    "kernel '{}' has no constant {id}; it has {:?}",
+                    kernel.name, kernel.constants
+                ),
+            });
+        }
+        // Handles that were made before a later call fails are destroyed with this half-made pass
+        let mut pass = Self {
+            context: context.clone(),
+            kernel,
+            set_layout: vk::DescriptorSetLayout::null(),
+            pipeline_layout: vk::PipelineLayout::null(),
+            pipeline: vk::Pipeline::null(),
+        };
+        pass.make_layouts()?;
+        pass.make_pipeline(specialization)?;
+        Ok(pass)
+    }
+
+    fn make_layouts(&mut self) -> Result<(), Error> {
+        let device = &self.context.device;
+        let bindings: Vec<_> = (0u32..)
+            .zip(self.kernel.bindings)
+            .map(|(number, binding)| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(number)
+                    .descriptor_type(descriptor_type(binding.kind))
+                    .descriptor_count(1)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is valid by the contract of Context::new; the info outlives the call.
+        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
+            .call("vkCreateDescriptorSetLayout")?;
+
+        let set_layouts = [self.set_layout];
+        let ranges = [vk::PushConstantRange::default()
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            .size(self.kernel.push_constant_size)];
+        let info =
+            vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&ranges);
+        // SAFETY: as above.
+        self.pipeline_layout =
+            unsafe { device.create_pipeline_layout(&info, None) }.call("vkCreatePipelineLayout")?;
+        Ok(())
+    }
+
+    fn make_pipeline(&mut self, specialization: &[(u32, u32)]) -> Result<(), Error> {
+        let device = &self.context.device;
+        let words = self.kernel.words();
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the device is valid; the code is SPIR-V that a test validates.
+        let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
+
+        let data: Vec<u32> = specialization.iter().map(|&(_, value)| value).collect();
+        let entries: Vec<_> = (0u32..)
+            .zip(specialization)
+            .map(|(place, &(id, _))| {
+                vk::SpecializationMapEntry::default().constant_id(id).offset(place * 4).size(4)
+            })
+            .collect();
+        let specialization =
+            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(c"main")
+            .specialization_info(&specialization);
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.pipeline_layout);
+        // SAFETY: module and layout are live; the cache is the host's, unused elsewhere by contract.
+        let made = unsafe { device.create_compute_pipelines(self.context.pipeline_cache, &[info], None) };
+        // SAFETY: a module may go as soon as pipelines were made from it.
+        unsafe { device.destroy_shader_module(module, None) };
+        let pipelines = made.map_err(|(_, result)| result).call("vkCreateComputePipelines")?;
+        self.pipeline = pipelines[0];
+        Ok(())
+    }
+
+    /// The kernel.
+    pub fn kernel(&self) -> &'static Kernel {
+        self.kernel
+    }
+
+    /// The layout that the host allocates a descriptor set with.
+    pub fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.set_layout
+    }
+
+    /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
+    pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
+        [BindingKind::SampledImage, BindingKind::StorageImage, BindingKind::StorageBuffer]
+            .into_iter()
+            .filter_map(|kind| {
+                let count = self.kernel.bindings.iter().filter(|b| b.kind == kind).count() as u32;
+                (count > 0).then(|| vk::DescriptorPoolSize {
+                    ty: descriptor_type(kind),
+                    descriptor_count: count * sets,
+                })
+            })
+            .collect()
+    }
+
+    /// Points a descriptor set at the resources of a run, in the order of [`Kernel::bindings`].
+    ///
+    /// # Safety
+    /// - `set` was allocated with [`ComputePass::set_layout`] and no pending command buffer uses it.
+    /// - The resources are valid, and stay so while recorded work that uses the set is pending.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] names the binding that is missing, null or of the wrong kind; then nothing
+    /// is written.
+    pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &[Resource]) -> Result<(), Error> {
+        let bindings = self.kernel.bindings;
+        if resources.len() != bindings.len() {
+            return Err(Error::InvalidArgument {
+                field: "resources",
+                message: format!(
+                    "{} given, but kernel '{}' has {} bindings",
+                    resources.len(),
+                    self.kernel.name,
+                    bindings.len()
+                ),
+            });
+        }
+        for (binding, resource) in bindings.iter().zip(resources) {
+            if resource.kind() != binding.kind {
+                let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
+                return Err(Error::InvalidArgument { field: binding.name, message });
+            }
+            if resource.is_null() {
+                return Err(Error::InvalidArgument {
+                    field: binding.name,
+                    message: format!("is a null handle; it must hold {}", binding.content),
+                });
+            }
+        }
+
+        // The infos are collected first, since the writes point into them
+        let images: Vec<[vk::DescriptorImageInfo; 1]> = resources.iter().map(|r| [image_info(*r)]).collect();
+        let buffers: Vec<[vk::DescriptorBufferInfo; 1]> =
+            resources.iter().map(|r| [buffer_info(*r)]).collect();
+        let writes: Vec<_> = (0u32..)
+            .zip(bindings)
+            .zip(images.iter().zip(&buffers))
+            .map(|((number, binding), (image, buffer))| {
+                let write = vk::WriteDescriptorSet::default()
+                    .dst_set(set)
+                    .dst_binding(number)
+                    .descriptor_type(descriptor_type(binding.kind));
+                match binding.kind {
+                    BindingKind::StorageBuffer => write.buffer_info(buffer),
+                    BindingKind::SampledImage | BindingKind::StorageImage => write.image_info(image),
+                }
+            })
+            .collect();
+        // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
+        unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
+        Ok(())
+    }
+
+    /// Records binding, push constants and one dispatch. Barriers before and after are the host's, by
+    /// [`Kernel::bindings`]' accesses: every resource is used in the compute stage.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
+    /// - `set` was written by [`ComputePass::write_set`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where `constants` is not of the kernel's size or `groups` is beyond the
+    /// device's limit; then nothing is recorded.
+    pub unsafe fn record(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
+        if constants.len() != self.kernel.push_constant_size as usize {
+            return Err(Error::InvalidArgument {
+                field: "constants",
+                message: format!(
+                    "{} bytes, but kernel '{}' takes {}",
+                    constants.len(),
+                    self.kernel.name,
+                    self.kernel.push_constant_size
+                ),
+            });
+        }
+        if (0..3).any(|axis| groups[axis] > self.context.max_group_count[axis]) {
+            return Err(Error::InvalidArgument {
+                field: "groups",
+                message: format!(
+                    "{groups:?}, but the device dispatches at most {:?}",
+                    self.context.max_group_count
+                ),
+            });
+        }
+        let device = &self.context.device;
+        // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
+        unsafe {
+            device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
+            device.cmd_bind_descriptor_sets(
+                command_buffer,
+                vk::PipelineBindPoint::COMPUTE,
+                self.pipeline_layout,
+                0,
+                &[set],
+                &[],
+            );
+            device.cmd_push_constants(
+                command_buffer,
+                self.pipeline_layout,
+                vk::ShaderStageFlags::COMPUTE,
+                0,
+                constants,
+            );
+            device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
+        }
+        Ok(())
+    }
+}
+
+impl Drop for ComputePass {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of ComputePass::new no recorded use is pending and the device is alive;
+        // null handles are ignored.
+        unsafe {
+            let device = &self.context.device;
+            device.destroy_pipeline(self.pipeline, None);
+            device.destroy_pipeline_layout(self.pipeline_layout, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+}
+
+fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+    }
+}
+
+fn image_info(resource: Resource) -> vk::DescriptorImageInfo {
+    match resource {
+        Resource::SampledImage { view, layout } => {
+            vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
+        }
+        Resource::StorageImage { view } => {
+            vk::DescriptorImageInfo::default().image_view(view).image_layout(vk::ImageLayout::GENERAL)
+        }
+        Resource::StorageBuffer { .. } => vk::DescriptorImageInfo::default(),
+    }
+}
+
+fn buffer_info(resource: Resource) -> vk::DescriptorBufferInfo {
+    match resource {
+        Resource::StorageBuffer { buffer, offset, range } => {
+            vk::DescriptorBufferInfo::default().buffer(buffer).offset(offset).range(range)
+        }
+        Resource::SampledImage { .. } | Resource::StorageImage { .. } => vk::DescriptorBufferInfo::default(),
+    }
+}

@@ -1,0 +1,194 @@
+//! The shade pass: a G-buffer, lights and the table go in, radiance comes out.
+
+use crate::context::Context;
+use crate::error::Error;
+use crate::pass::{ComputePass, Resource};
+use arealight::gpu::ShadeConstants;
+use arealight::kernels::{Access, BindingKind, SHADE};
+use arealight::plan::{self, PositionSource, ShadeOptions};
+use arealight::{PackedLights, PolygonLight};
+use ash::vk;
+use glam::{DVec3, Mat4, Vec3};
+
+/// The host's resources of one run. Images are read and written by texel, no sampler is needed.
+///
+/// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
+#[derive(Debug, Clone, Copy)]
+pub struct ShadeResources {
+    /// The light table, see [`crate::TableImage`].
+    pub table: Resource,
+    /// [`PackedLights::lights`]. With no lights, bind any buffer of 48 bytes or more.
+    pub lights: Resource,
+    /// [`PackedLights::vertices`].
+    pub light_vertices: Resource,
+    /// Positions or depth, by [`ShadeOptions::position`].
+    pub position: Resource,
+    /// Normal and roughness.
+    pub normal: Resource,
+    /// Base colour and metalness.
+    pub base_color: Resource,
+    /// Dielectric reflectance; read only with [`arealight::Effects::SPECULAR_INPUT`], else any sampled image.
+    pub specular: Resource,
+    /// Where radiance goes (rgba32f).
+    pub radiance: Resource,
+}
+
+/// What differs from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShadeFrame {
+    /// Size of the radiance image in pixels. The G-buffer's images are of the same size.
+    pub size: [u32; 2],
+    /// The camera's position relative to the origin that lights and positions are packed with.
+    pub camera: Vec3,
+    /// The inverse of (projection × view), from clip space to positions relative to the origin. Needed with
+    /// [`PositionSource::Depth`], else ignored.
+    pub position_from_clip: Option<Mat4>,
+    /// How many lights of the buffer are shaded.
+    pub light_count: u32,
+}
+
+/// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
+/// were found; the pass makes no barrier for host resources.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResourceAccess {
+    /// The binding's name in the manifest.
+    pub name: &'static str,
+    /// The stage that uses it.
+    pub stage: vk::PipelineStageFlags,
+    /// What it does there.
+    pub access: vk::AccessFlags,
+    /// The layout that an image must have; `UNDEFINED` for a buffer, and for a sampled image, whose layout
+    /// the host states in [`Resource::SampledImage`].
+    pub layout: vk::ImageLayout,
+}
+
+/// The shade kernel, specialised for a set of effects and a quality.
+#[derive(Debug)]
+pub struct ShadePass {
+    pass: ComputePass,
+    options: ShadeOptions,
+}
+
+impl ShadePass {
+    /// Makes the pipeline.
+    ///
+    /// # Safety
+    /// As [`ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
+        // SAFETY: the same contract.
+        let pass = unsafe { ComputePass::new(context, &SHADE, &plan::shade_specialization(options)) }?;
+        Ok(Self { pass, options })
+    }
+
+    /// What the pass was specialised for.
+    pub fn options(&self) -> ShadeOptions {
+        self.options
+    }
+
+    /// The layout that the host allocates a descriptor set with.
+    pub fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.pass.set_layout()
+    }
+
+    /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
+    pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
+        self.pass.pool_sizes(sets)
+    }
+
+    /// How the pass uses each resource.
+    pub fn accesses(&self) -> Vec<ResourceAccess> {
+        let accesses = SHADE.bindings.iter().map(|binding| ResourceAccess {
+            name: binding.name,
+            stage: vk::PipelineStageFlags::COMPUTE_SHADER,
+            access: match binding.access {
+                Access::Read => vk::AccessFlags::SHADER_READ,
+                Access::Write => vk::AccessFlags::SHADER_WRITE,
+                Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
+            },
+            layout: match binding.kind {
+                BindingKind::StorageImage => vk::ImageLayout::GENERAL,
+                BindingKind::SampledImage | BindingKind::StorageBuffer => vk::ImageLayout::UNDEFINED,
+            },
+        });
+        accesses.collect()
+    }
+
+    /// Packs lights for this pass, relative to `origin`; upload both arrays to the buffers of
+    /// [`ShadeResources`].
+    ///
+    /// # Errors
+    /// [`Error::Light`] for a light that cannot be shaded, [`Error::EffectsTooSmall`] for one that calls for
+    /// an effect this pass was made without: a wrong picture is never the answer.
+    pub fn pack_lights(&self, lights: &[PolygonLight], origin: DVec3) -> Result<PackedLights, Error> {
+        if let Some((missing, light)) = self.options.effects.missing_for(lights) {
+            return Err(Error::EffectsTooSmall { light: light.to_owned(), missing });
+        }
+        Ok(PackedLights::new(lights, origin)?)
+    }
+
+    /// Points a descriptor set at the resources of a run.
+    ///
+    /// # Safety
+    /// As [`ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] names the resource that is null or of the wrong kind.
+    pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
+        let resources = [
+            resources.table,
+            resources.lights,
+            resources.light_vertices,
+            resources.position,
+            resources.normal,
+            resources.base_color,
+            resources.specular,
+            resources.radiance,
+        ];
+        // SAFETY: the same contract.
+        unsafe { self.pass.write_set(set, &resources) }
+    }
+
+    /// Records the pass. The host's barriers make the resources visible before, by [`ShadePass::accesses`].
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
+    /// - `set` was written by [`ShadePass::write_set`], with images of `frame.size` and buffers that hold
+    ///   `frame.light_count` lights.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong; then nothing is recorded.
+    pub unsafe fn record(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        frame: &ShadeFrame,
+    ) -> Result<(), Error> {
+        let position_from_clip = match (self.options.position, frame.position_from_clip) {
+            (PositionSource::Depth, None) => {
+                return Err(Error::InvalidArgument {
+                    field: "position_from_clip",
+                    message: "is missing, but the pass takes positions from depth".into(),
+                });
+            }
+            (_, matrix) => matrix.unwrap_or(Mat4::IDENTITY),
+        };
+        if !position_from_clip.is_finite() || !frame.camera.is_finite() {
+            let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
+            return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
+        }
+        if frame.size.contains(&0) {
+            return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
+        }
+        let constants = ShadeConstants {
+            position_from_clip: position_from_clip.to_cols_array_2d(),
+            camera: frame.camera.to_array(),
+            light_count: frame.light_count,
+        };
+        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
+        // SAFETY: the same contract.
+        unsafe { self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), groups) }
+    }
+}

@@ -1,0 +1,247 @@
+//! The light table on the GPU: an array image of two layers.
+
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use crate::pass::Resource;
+use arealight::LightTable;
+use ash::vk;
+
+/// The texel format of the table on the GPU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum TableFormat {
+    /// Eight bytes a texel. A form factor changes by less than 3e-4 down to alpha 2.5e-4.
+    Rgba16Float,
+    /// Sixteen bytes a texel, the fit as it is.
+    #[default]
+    Rgba32Float,
+}
+
+impl TableFormat {
+    /// The Vulkan format.
+    pub fn vulkan(self) -> vk::Format {
+        match self {
+            Self::Rgba16Float => vk::Format::R16G16B16A16_SFLOAT,
+            Self::Rgba32Float => vk::Format::R32G32B32A32_SFLOAT,
+        }
+    }
+
+    /// The table's texels in this format: what the staging buffer of [`TableImage::record_upload`] holds.
+    pub fn bytes(self, table: &LightTable) -> Vec<u8> {
+        let texels = table.texels();
+        match self {
+            Self::Rgba32Float => bytemuck::cast_slice(&texels).to_vec(),
+            Self::Rgba16Float => {
+                texels.iter().flatten().flat_map(|&value| half::f16::from_f32(value).to_le_bytes()).collect()
+            }
+        }
+    }
+}
+
+/// The table's image and view. The host gives it memory:
+///
+/// 1. [`TableImage::new`], 2. allocate for [`TableImage::memory_requirements`], 3. [`TableImage::bind_memory`],
+/// 4. fill a staging buffer with [`TableFormat::bytes`], 5. [`TableImage::record_upload`].
+///
+/// Dropping it destroys image and view; the memory stays the host's.
+#[derive(Debug)]
+pub struct TableImage {
+    context: Context,
+    image: vk::Image,
+    view: vk::ImageView,
+    format: TableFormat,
+    size: u32,
+}
+
+impl TableImage {
+    /// Makes the image, without memory.
+    ///
+    /// # Safety
+    /// The table image is dropped only when no recorded use of it is pending, and before the device is
+    /// destroyed.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(context: &Context, table: &LightTable, format: TableFormat) -> Result<Self, Error> {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format.vulkan())
+            .extent(vk::Extent3D { width: table.size(), height: table.size(), depth: 1 })
+            .mip_levels(1)
+            .array_layers(2)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST)
+            .initial_layout(vk::ImageLayout::UNDEFINED);
+        // SAFETY: the device is valid by the contract of Context::new.
+        let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
+        Ok(Self { context: context.clone(), image, view: vk::ImageView::null(), format, size: table.size() })
+    }
+
+    /// What memory the image needs.
+    pub fn memory_requirements(&self) -> vk::MemoryRequirements {
+        // SAFETY: the image is ours and live.
+        unsafe { self.context.device.get_image_memory_requirements(self.image) }
+    }
+
+    /// Binds memory of the host, and makes the view.
+    ///
+    /// # Safety
+    /// - Called once. `memory` and `offset` satisfy [`TableImage::memory_requirements`].
+    /// - The memory is freed only after the table image is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] where a call fails.
+    pub unsafe fn bind_memory(
+        &mut self,
+        memory: vk::DeviceMemory,
+        offset: vk::DeviceSize,
+    ) -> Result<(), Error> {
+        let device = &self.context.device;
+        // SAFETY: the caller vouches for memory and offset.
+        unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.image)
+            .view_type(vk::ImageViewType::TYPE_2D_ARRAY)
+            .format(self.format.vulkan())
+            .subresource_range(both_layers());
+        // SAFETY: the image has memory now.
+        self.view = unsafe { device.create_image_view(&info, None) }.call("vkCreateImageView")?;
+        Ok(())
+    }
+
+    /// Allocates memory through gpu-allocator and binds it: steps 2 and 3 in one.
+    ///
+    /// The allocation is the host's: give it back to the allocator after the table image is dropped.
+    ///
+    /// # Safety
+    /// Called once, with an allocator of the same device.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call fails
+    /// (then the memory was given back).
+    #[cfg(feature = "gpu-allocator")]
+    pub unsafe fn allocate(
+        &mut self,
+        allocator: &mut gpu_allocator::vulkan::Allocator,
+    ) -> Result<gpu_allocator::vulkan::Allocation, Error> {
+        use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
+        let allocation = allocator
+            .allocate(&AllocationCreateDesc {
+                name: "arealight table",
+                requirements: self.memory_requirements(),
+                location: gpu_allocator::MemoryLocation::GpuOnly,
+                linear: false,
+                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+            })
+            .map_err(|_| Error::Vulkan {
+                call: "gpu_allocator::Allocator::allocate",
+                result: vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
+            })?;
+        // SAFETY: the allocation was made for this image's requirements.
+        match unsafe { self.bind_memory(allocation.memory(), allocation.offset()) } {
+            Ok(()) => Ok(allocation),
+            Err(error) => {
+                // Giving back what was just taken can fail only for a foreign allocation
+                let _ = allocator.free(allocation);
+                Err(error)
+            }
+        }
+    }
+
+    /// Records the copy from a staging buffer, with the barriers around it: afterwards the image is in layout
+    /// `SHADER_READ_ONLY_OPTIMAL`, visible to compute and fragment shaders.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.
+    /// - `staging` holds [`TableFormat::bytes`] of the same table from `offset` on (a multiple of 16), is
+    ///   visible to transfers, and outlives the recorded work.
+    /// - [`TableImage::bind_memory`] was called; no pending work reads the image.
+    pub unsafe fn record_upload(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        staging: vk::Buffer,
+        offset: vk::DeviceSize,
+    ) {
+        let device = &self.context.device;
+        let barrier = vk::ImageMemoryBarrier::default()
+            .image(self.image)
+            .subresource_range(both_layers())
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
+        let before = barrier
+            .old_layout(vk::ImageLayout::UNDEFINED)
+            .new_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
+        let after = barrier
+            .old_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
+            .new_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ);
+        let copy = vk::BufferImageCopy::default()
+            .buffer_offset(offset)
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: vk::ImageAspectFlags::COLOR,
+                mip_level: 0,
+                base_array_layer: 0,
+                layer_count: 2,
+            })
+            .image_extent(vk::Extent3D { width: self.size, height: self.size, depth: 1 });
+        // The queue may have no graphics, so the readers' stages cannot be named one by one
+        let readers = vk::PipelineStageFlags::ALL_COMMANDS;
+        // SAFETY: the caller vouches for the command buffer and the staging buffer; the image is ours.
+        unsafe {
+            device.cmd_pipeline_barrier(
+                command_buffer,
+                vk::PipelineStageFlags::TOP_OF_PIPE,
+                vk::PipelineStageFlags::TRANSFER,
+                vk::DependencyFlags::empty(),
+                &[],
+                &[],
+                &[before],
+            );
+            device.cmd_copy_buffer_to_image(
+                command_buffer,
+                staging,
+                self.image,
+                vk::ImageLayout::TRANSFER_DST_OPTIMAL,
+                &[copy],
+            );
+            device.cmd_pipeline_barrier(
+                command_buffer,
+                vk::PipelineStageFlags::TRANSFER,
+                readers,
+                vk::DependencyFlags::empty(),
+                &[],
+                &[],
+                &[after],
+            );
+        }
+    }
+
+    /// The table as a pass takes it, after the upload. A null view before [`TableImage::bind_memory`], which
+    /// `write_set` refuses.
+    pub fn resource(&self) -> Resource {
+        Resource::SampledImage { view: self.view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
+    }
+}
+
+impl Drop for TableImage {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of TableImage::new no recorded use is pending and the device is alive; a
+        // null view is ignored.
+        unsafe {
+            self.context.device.destroy_image_view(self.view, None);
+            self.context.device.destroy_image(self.image, None);
+        }
+    }
+}
+
+fn both_layers() -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: vk::ImageAspectFlags::COLOR,
+        base_mip_level: 0,
+        level_count: 1,
+        base_array_layer: 0,
+        layer_count: 2,
+    }
+}

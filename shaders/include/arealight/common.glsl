@@ -1,0 +1,53 @@
+#ifndef AREALIGHT_COMMON_GLSL
+#define AREALIGHT_COMMON_GLSL
+
+// Arealight: analytic area lights by linearly transformed cosines.
+//
+// Conventions of every file here:
+// - SI radiometry, linear Rec. 709 colour; radiance in W/(m^2 sr).
+// - Right-handed; matrices are column-major and act on column vectors; angles in radians.
+// - roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing.
+// - A light's front is the right-hand side of its vertex order: seen from the front, the vertices run
+//   counter-clockwise.
+// - Positions are relative to an origin near the camera that the host chooses: float32 world coordinates far
+//   from zero lose the result before it gets here.
+// - Pure functions: no bindings, no mutable globals. What the host must provide are bridge functions
+//   (arealight_bridge_*), declared where they are used; a missing one is a link error that names it.
+
+const float AREALIGHT_PI = 3.14159265358979;
+const float AREALIGHT_INVERSE_PI = 0.318309886183791;
+const float AREALIGHT_INVERSE_TWO_PI = 0.159154943091895;
+
+// The smallest GGX alpha that is shaded; smaller ones are raised to it. The same as arealight::MIN_ALPHA.
+const float AREALIGHT_MIN_ALPHA = 1e-4;
+
+// Squared lengths below this count as zero: 2^-100, far above float32's smallest normal number.
+const float AREALIGHT_TINY = 7.8886090522101181e-31;
+
+// The largest absolute component of v.
+float arealight_max_component(vec3 v) {
+    vec3 a = abs(v);
+    return max(a.x, max(a.y, a.z));
+}
+
+// v divided by its length, for vectors of any length from 1e-37 to 3e38; `fallback` for the zero vector and
+// where a component is NaN or infinite. The result's length is 1 to 2e-7.
+vec3 arealight_normalize_or(vec3 v, vec3 fallback) {
+    float largest = arealight_max_component(v);
+    if (!(largest >= 1e-37 && largest <= 3e38)) {
+        return fallback;
+    }
+    vec3 scaled = v / largest;
+    float square = dot(scaled, scaled);
+    // NaN in a smaller component reaches the square
+    return square >= 1.0 ? scaled * inversesqrt(square) : fallback;
+}
+
+// 2^-e for a positive finite x = m 2^e with 1 <= m < 2: an exact power of two, so that scaling by it rounds
+// nothing. x outside [1e-37, 1e37] is clamped.
+float arealight_power_of_two_scale(float x) {
+    uint exponent = clamp(floatBitsToUint(x) >> 23, 4u, 250u);
+    return uintBitsToFloat((254u - exponent) << 23);
+}
+
+#endif

@@ -1,0 +1,68 @@
+#ifndef AREALIGHT_SURFACE_GLSL
+#define AREALIGHT_SURFACE_GLSL
+
+#include "arealight/common.glsl"
+
+// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added.
+struct ArealightSurface {
+    vec3 position;       // relative to the host's origin, in the lights' unit of length
+    vec3 normal;         // shading normal, of any length
+    vec3 view;           // direction to the viewer, of any length
+    vec3 diffuse_albedo; // in [0, 1]
+    vec3 f0;             // reflectance at normal incidence, in [0, 1]
+    float f90;           // reflectance at grazing incidence, in [0, 1]
+    float roughness;     // perceptual, in [0, 1]
+};
+
+// The shading frame: the normal, the view's projection onto the surface, and their cross product.
+struct ArealightFrame {
+    vec3 tangent;   // unit, towards the view's side
+    vec3 bitangent; // normal x tangent
+    vec3 normal;    // unit
+    float cos_view; // cosine between normal and view, 0 for a view below the surface
+    float sin_view; // its sine, >= 0
+};
+
+// The reflectances of a metallic-roughness surface: Material::surface in Rust.
+// base_color, metalness, dielectric_f0 and dielectric_f90 in [0, 1].
+void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_color, float metalness,
+                                      vec3 dielectric_f0, float dielectric_f90) {
+    surface.diffuse_albedo = base_color * (1.0 - metalness);
+    surface.f0 = mix(dielectric_f0, base_color, metalness);
+    surface.f90 = mix(dielectric_f90, 1.0, metalness);
+}
+
+// The frame of a normal and a view, of any length. Orthonormal to 3e-7 for every input, also a view parallel
+// to the normal (any tangent will do there), zero vectors and NaN (which count as the z axis).
+// Gram-Schmidt twice: one pass leaves an error of 1 where the view is within 1e-7 of the normal.
+ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
+    ArealightFrame frame;
+    frame.normal = arealight_normalize_or(normal, vec3(0.0, 0.0, 1.0));
+    vec3 to_viewer = arealight_normalize_or(view, frame.normal);
+
+    // Project the view onto the surface; where nothing is left, take the axis farthest from the normal
+    vec3 tangent = to_viewer - frame.normal * dot(frame.normal, to_viewer);
+    if (dot(tangent, tangent) < 1e-13) {
+        vec3 axis = abs(frame.normal.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+        tangent = axis - frame.normal * dot(frame.normal, axis);
+    }
+    tangent = tangent * inversesqrt(dot(tangent, tangent));
+
+    // Once more, to remove what rounding left along the normal
+    tangent = tangent - frame.normal * dot(frame.normal, tangent);
+    frame.tangent = tangent * inversesqrt(dot(tangent, tangent));
+    frame.bitangent = cross(frame.normal, frame.tangent);
+
+    // Take the sine from the tangent: from the cosine it would be wrong by 3e-4 near the normal
+    float cosine = dot(frame.normal, to_viewer);
+    frame.cos_view = clamp(cosine, 0.0, 1.0);
+    frame.sin_view = cosine > 0.0 ? clamp(dot(frame.tangent, to_viewer), 0.0, 1.0) : 1.0;
+    return frame;
+}
+
+// The matrix that takes offsets from the shading point into the frame: rows tangent, bitangent, normal.
+mat3 arealight_frame_matrix(ArealightFrame frame) {
+    return transpose(mat3(frame.tangent, frame.bitangent, frame.normal));
+}
+
+#endif

@@ -1,0 +1,62 @@
+#ifndef AREALIGHT_TABLE_GLSL
+#define AREALIGHT_TABLE_GLSL
+
+#include "arealight/surface.glsl"
+
+// The host's bridge to the fitted table: texel `texel` (x roughness, y view angle) of layer 0 (matrix) or
+// layer 1 (magnitude), unfiltered, in float32 or float16. Texels outside are never asked for.
+vec4 arealight_bridge_table(int layer, ivec2 texel);
+// Nodes a side of the table, from 2 on.
+int arealight_bridge_table_size();
+
+// A lobe as a linearly transformed cosine.
+struct ArealightLobe {
+    mat3 to_cosine; // offsets from the shading point into cosine space
+    float albedo;   // integral of f cos over the hemisphere, without Fresnel term, in [0, 1]
+    float schlick;  // integral of f cos (1 - cos theta_vh)^5, in [0, 1]
+};
+
+// The bilinear mean of four texels around `coordinate`, which is in nodes: 0 to size - 1.
+vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
+    vec2 node = clamp(floor(coordinate), vec2(0.0), vec2(float(size - 2)));
+    vec2 weight = coordinate - node;
+    ivec2 texel = ivec2(node);
+    vec4 low = mix(arealight_bridge_table(layer, texel), arealight_bridge_table(layer, texel + ivec2(1, 0)),
+                   weight.x);
+    vec4 high = mix(arealight_bridge_table(layer, texel + ivec2(0, 1)),
+                    arealight_bridge_table(layer, texel + ivec2(1, 1)), weight.x);
+    return mix(low, high, weight.y);
+}
+
+// The GGX lobe of a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01).
+//
+// A texel (q00, q02, q20, q22) holds the inverse transform in the mirror frame, divided by its middle entry,
+// with the last row divided by alpha: there it is smooth down to a mirror, and bilinear interpolation changes
+// a form factor by at most what docs/article.md states. Source: Heitz et al. 2016, eq. 12 and 13 there; the
+// mirror frame is ours. The float64 twin is LightTable::lookup.
+ArealightLobe arealight_table_lookup(ArealightFrame frame, float roughness) {
+    // Clamp so that NaN becomes the smallest roughness
+    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
+    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
+    float alpha = roughness * roughness;
+
+    // Axes: roughness and sqrt(1 - cos), the latter without cancellation near the normal
+    int size = arealight_bridge_table_size();
+    vec2 axes = vec2(roughness, frame.sin_view * inversesqrt(1.0 + frame.cos_view));
+    vec2 coordinate = axes * float(size - 1);
+    vec4 texel = arealight_table_bilinear(0, coordinate, size);
+    vec4 magnitude = arealight_table_bilinear(1, coordinate, size);
+
+    // The mirror frame: the view's mirror direction, and across it in the plane of incidence
+    vec3 mirror = frame.normal * frame.cos_view - frame.tangent * frame.sin_view;
+    vec3 across = frame.tangent * frame.cos_view + frame.normal * frame.sin_view;
+
+    ArealightLobe lobe;
+    lobe.to_cosine = transpose(mat3(across * texel.x + mirror * texel.y, frame.bitangent,
+                                    (across * texel.z + mirror * texel.w) * alpha));
+    lobe.albedo = magnitude.x;
+    lobe.schlick = magnitude.y;
+    return lobe;
+}
+
+#endif

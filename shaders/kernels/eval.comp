@@ -1,0 +1,50 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The shade kernel's functions over a list of shading points: what a port can be checked against. The lights'
+// vertices are relative to the shading point that they belong to.
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
+layout(constant_id = 1) const int FORM_FACTOR = 0;
+
+#define LIGHTS_BINDING 1
+#include "table_image.glsl"
+#include "lights.glsl"
+
+struct ArealightGpuCase {
+    vec3 normal;
+    float roughness;
+    vec3 view;
+    float f90;
+    vec3 diffuse_albedo;
+    uint light;
+    vec3 f0;
+    uint reserved0;
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer Cases {
+    ArealightGpuCase cases[];
+};
+layout(set = 0, binding = 4, std430) writeonly buffer Results {
+    vec4 results[];
+};
+
+layout(push_constant, std430) uniform EvalConstants {
+    uint case_count;
+} constants;
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= constants.case_count) {
+        return;
+    }
+    ArealightGpuCase given = cases[index];
+    ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo,
+                                                given.f0, given.f90, given.roughness);
+    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS);
+    vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, FORM_FACTOR);
+    results[index] = vec4(radiance, 0.0);
+}

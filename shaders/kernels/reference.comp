@@ -1,0 +1,205 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// The yardstick: integrates the true BRDF (Lambert + GGX) over the same polygon lights by Monte Carlo, at the
+// same G-buffer, without visibility, as the shade kernel. For each light one direction drawn from its area and
+// the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995).
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#define LIGHTS_BINDING 0
+#define G_BUFFER_BINDING 4
+#include "arealight/ggx.glsl"
+#include "lights.glsl"
+#include "g_buffer.glsl"
+#include "random.glsl"
+
+struct ArealightGpuLightSampling {
+    vec3 normal;
+    float area;
+    uint first_triangle;
+    uint triangle_count;
+    uint reserved0;
+    uint reserved1;
+};
+
+struct ArealightGpuLightTriangle {
+    uint vertex0;
+    uint vertex1;
+    uint vertex2;
+    float cumulative;
+};
+
+layout(set = 0, binding = 2, std430) readonly buffer LightSampling {
+    ArealightGpuLightSampling light_sampling[];
+};
+layout(set = 0, binding = 3, std430) readonly buffer LightTriangles {
+    ArealightGpuLightTriangle light_triangles[];
+};
+layout(set = 0, binding = 8, rgba32f) uniform image2D radiance_image;
+
+layout(push_constant, std430) uniform ReferenceConstants {
+    vec3 camera;
+    uint light_count;
+    uint first_sample;
+    uint sample_count;
+    float weight;
+    uint seed;
+} constants;
+
+// A surface with its frame: directions below are in the frame, z being the normal.
+struct Lobes {
+    vec3 position;
+    mat3 to_surface;
+    vec3 view;
+    vec3 diffuse_albedo;
+    vec3 f0;
+    float f90;
+    float alpha;
+    float glossy_probability; // of drawing from the GGX lobe
+};
+
+Lobes load_lobes(ArealightSurface surface) {
+    ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
+    float alpha = max(surface.roughness * surface.roughness, AREALIGHT_MIN_ALPHA);
+    float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
+    float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
+    float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
+    return Lobes(surface.position, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
+                 surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability);
+}
+
+// f cos, both lobes.
+vec3 evaluate(Lobes lobes, vec3 light) {
+    vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
+    return diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
+}
+
+float density(Lobes lobes, vec3 light) {
+    float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
+    return mix(diffuse, arealight_ggx_density(lobes.view, light, lobes.alpha), lobes.glossy_probability);
+}
+
+vec3 sample_direction(Lobes lobes, inout RandomState random) {
+    float choice = random_float(random);
+    vec2 u = vec2(random_float(random), random_float(random));
+    if (choice < lobes.glossy_probability) {
+        return arealight_ggx_sample(lobes.view, lobes.alpha, u);
+    }
+    float radius = sqrt(u.x);
+    float phi = 2.0 * AREALIGHT_PI * u.y;
+    return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+}
+
+// A point of a light, uniform by area.
+vec3 sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
+    float choice = random_float(random);
+    uint index = sampling.first_triangle;
+    uint last = index + sampling.triangle_count - 1u;
+    while (index < last && choice >= light_triangles[index].cumulative) {
+        index++;
+    }
+    ArealightGpuLightTriangle triangle = light_triangles[index];
+    float root = sqrt(random_float(random));
+    float v = random_float(random) * root;
+    return arealight_bridge_vertex(triangle.vertex0) * (1.0 - root)
+         + arealight_bridge_vertex(triangle.vertex1) * (root - v) + arealight_bridge_vertex(triangle.vertex2) * v;
+}
+
+// Whether a point of a light's plane lies within its outline: the even-odd rule, along the two axes in which
+// the polygon is widest.
+bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
+    vec3 size = abs(normal);
+    uint axis_u = size.x >= size.y && size.x >= size.z ? 1u : 0u;
+    uint axis_v = size.z > size.x && size.z > size.y ? 1u : 2u;
+    bool inside = false;
+    uint end = light.first_vertex + light.vertex_count;
+    vec3 a = arealight_bridge_vertex(end - 1u);
+    for (uint index = light.first_vertex; index < end; index++) {
+        vec3 b = arealight_bridge_vertex(index);
+        if ((a[axis_v] > point[axis_v]) != (b[axis_v] > point[axis_v])) {
+            float t = (point[axis_v] - a[axis_v]) / (b[axis_v] - a[axis_v]);
+            inside = inside != (point[axis_u] < a[axis_u] + t * (b[axis_u] - a[axis_u]));
+        }
+        a = b;
+    }
+    return inside;
+}
+
+// The light's density in solid angle at a point of it: distance^2 / (area |cosine|); 0 where it does not emit
+// towards the surface.
+float light_density(ArealightPolygonLight light, ArealightGpuLightSampling sampling, vec3 offset) {
+    float square = dot(offset, offset);
+    float cosine = -dot(sampling.normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
+    bool emits = light.two_sided ? cosine != 0.0 : cosine > 0.0;
+    return emits ? square / (sampling.area * abs(cosine)) : 0.0;
+}
+
+// One sample of one light: a point of it, weighed against the BRDF's density.
+vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLightSampling sampling,
+                       inout RandomState random) {
+    vec3 offset = sample_point(sampling, random) - lobes.position;
+    float by_light = light_density(light, sampling, offset);
+    vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
+    if (by_light <= 0.0 || direction.z <= 0.0) {
+        return vec3(0.0);
+    }
+    return light.radiance * evaluate(lobes, direction) / (by_light + density(lobes, direction));
+}
+
+// The sample's BRDF direction, where it meets the light, weighed against the light's density.
+vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolygonLight light,
+                      ArealightGpuLightSampling sampling) {
+    // Meet the light's plane, in front of the surface
+    vec3 ray = direction * lobes.to_surface;
+    float speed = dot(sampling.normal, ray);
+    float distance = dot(sampling.normal, arealight_bridge_vertex(light.first_vertex) - lobes.position) / speed;
+    if (!(distance > 0.0 && distance < 1e30)) {
+        return vec3(0.0);
+    }
+    vec3 offset = ray * distance;
+    float by_light = light_density(light, sampling, offset);
+    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, lobes.position + offset)) {
+        return vec3(0.0);
+    }
+    return light.radiance * evaluate(lobes, direction) / (by_light + by_brdf);
+}
+
+vec3 estimate(Lobes lobes, inout RandomState random) {
+    vec3 direction = sample_direction(lobes, random);
+    float by_brdf = direction.z > 0.0 ? density(lobes, direction) : 0.0;
+    vec3 radiance = vec3(0.0);
+    for (uint index = 0u; index < constants.light_count; index++) {
+        ArealightPolygonLight light = load_light(index);
+        ArealightGpuLightSampling sampling = light_sampling[index];
+        if (sampling.triangle_count == 0u) {
+            continue;
+        }
+        radiance += estimate_by_light(lobes, light, sampling, random);
+        if (by_brdf > 0.0) {
+            radiance += estimate_by_brdf(lobes, direction, by_brdf, light, sampling);
+        }
+    }
+    return radiance;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, imageSize(radiance_image)))) {
+        return;
+    }
+    vec4 position = texelFetch(g_position, pixel, 0);
+    if (position.w == 0.0) {
+        return;
+    }
+    Lobes lobes = load_lobes(load_surface(pixel, position.xyz, constants.camera, AREALIGHT_EFFECT_SPECULAR_INPUT));
+    vec3 sum = vec3(0.0);
+    for (uint index = 0u; index < constants.sample_count; index++) {
+        RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);
+        sum += estimate(lobes, random);
+    }
+    vec4 before = imageLoad(radiance_image, pixel);
+    vec3 mean = sum / float(max(constants.sample_count, 1u));
+    imageStore(radiance_image, pixel, vec4(before.rgb + mean * constants.weight, 1.0));
+}

@@ -1,0 +1,197 @@
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+// Triangles, materials and textures of a scene: crates/arealight/src/gpu.rs has the same structures, and a
+// test compares the offsets.
+
+struct ArealightGpuBvhNode {
+    vec3 min_corner;
+    uint first;
+    vec3 max_corner;
+    uint count;
+};
+
+struct ArealightGpuTriangle {
+    vec3 p0;
+    uint material;
+    vec3 p1;
+    float v0;
+    vec3 p2;
+    float v1;
+    vec3 n0;
+    float u0;
+    vec3 n1;
+    float u1;
+    vec3 n2;
+    float u2;
+    float v2;
+    uint reserved0;
+    uint reserved1;
+    uint reserved2;
+};
+
+struct ArealightGpuMaterial {
+    vec3 base_color;
+    float metalness;
+    vec3 emission;
+    float roughness;
+    vec3 dielectric_f0;
+    float dielectric_f90;
+    uint base_color_texture;
+    uint metallic_roughness_texture;
+    uint normal_texture;
+    float normal_scale;
+    uint flags;
+    float alpha_cutoff;
+    float base_alpha;
+    uint emission_texture;
+};
+
+struct ArealightGpuTexture {
+    uint first_texel;
+    uint width;
+    uint height;
+    uint flags;
+};
+
+const uint NO_TRIANGLE = 0xffffffffu;
+const uint NO_TEXTURE = 0xffffffffu;
+const uint MATERIAL_DOUBLE_SIDED = 1u;
+const uint MATERIAL_ALPHA_MASK = 2u;
+const uint TEXTURE_SRGB = 1u;
+const uint TEXTURE_CLAMP_U = 2u;
+const uint TEXTURE_CLAMP_V = 4u;
+const uint TEXTURE_MIRROR_U = 8u;
+const uint TEXTURE_MIRROR_V = 16u;
+
+layout(set = 0, binding = 0, std430) readonly buffer Nodes {
+    ArealightGpuBvhNode nodes[];
+};
+layout(set = 0, binding = 1, std430) readonly buffer Triangles {
+    ArealightGpuTriangle triangles[];
+};
+layout(set = 0, binding = 2, std430) readonly buffer Materials {
+    ArealightGpuMaterial materials[];
+};
+layout(set = 0, binding = 3, std430) readonly buffer Textures {
+    ArealightGpuTexture textures[];
+};
+layout(set = 0, binding = 4, std430) readonly buffer Texels {
+    uint texels[];
+};
+
+struct Hit {
+    float distance;
+    uint triangle;
+    vec2 barycentric; // weights of the second and the third vertex
+    bool back;        // the back face was met
+};
+
+struct ScenePoint {
+    vec3 position;
+    vec3 normal;
+    vec3 base_color;
+    float metalness;
+    float roughness;
+    vec3 dielectric_f0;
+    float dielectric_f90;
+    vec3 emission;
+};
+
+vec3 linear_from_srgb(vec3 encoded) {
+    vec3 high = pow((encoded + 0.055) / 1.055, vec3(2.4));
+    return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
+}
+
+int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
+    if (clamped) {
+        return clamp(texel, 0, size - 1);
+    }
+    int period = mirrored ? 2 * size : size;
+    int wrapped = texel - period * int(floor(float(texel) / float(period)));
+    return wrapped < size ? wrapped : period - 1 - wrapped;
+}
+
+vec4 fetch_texel(ArealightGpuTexture image, ivec2 texel) {
+    int x = wrap_texel(texel.x, int(image.width), (image.flags & TEXTURE_CLAMP_U) != 0u,
+                       (image.flags & TEXTURE_MIRROR_U) != 0u);
+    int y = wrap_texel(texel.y, int(image.height), (image.flags & TEXTURE_CLAMP_V) != 0u,
+                       (image.flags & TEXTURE_MIRROR_V) != 0u);
+    vec4 color = unpackUnorm4x8(texels[image.first_texel + uint(y) * image.width + uint(x)]);
+    return (image.flags & TEXTURE_SRGB) != 0u ? vec4(linear_from_srgb(color.rgb), color.a) : color;
+}
+
+// Bilinear, decoded to linear before filtering; white where there is no texture.
+vec4 sample_texture(uint index, vec2 uv) {
+    if (index == NO_TEXTURE) {
+        return vec4(1.0);
+    }
+    ArealightGpuTexture image = textures[index];
+    // Large coordinates would leave the range of int: a million repeats are enough
+    vec2 position = clamp(uv, -1e6, 1e6) * vec2(image.width, image.height) - 0.5;
+    vec2 node = floor(position);
+    vec2 weight = position - node;
+    ivec2 texel = ivec2(clamp(node, -2e9, 2e9));
+    vec4 top = mix(fetch_texel(image, texel), fetch_texel(image, texel + ivec2(1, 0)), weight.x);
+    vec4 bottom = mix(fetch_texel(image, texel + ivec2(0, 1)), fetch_texel(image, texel + ivec2(1, 1)), weight.x);
+    return mix(top, bottom, weight.y);
+}
+
+vec2 hit_uv(ArealightGpuTriangle triangle, vec2 barycentric) {
+    return vec2(triangle.u0, triangle.v0) * (1.0 - barycentric.x - barycentric.y)
+         + vec2(triangle.u1, triangle.v1) * barycentric.x + vec2(triangle.u2, triangle.v2) * barycentric.y;
+}
+
+bool masked_out(Hit hit) {
+    ArealightGpuTriangle triangle = triangles[hit.triangle];
+    ArealightGpuMaterial material = materials[triangle.material];
+    if ((material.flags & MATERIAL_ALPHA_MASK) == 0u) {
+        return false;
+    }
+    float alpha = sample_texture(material.base_color_texture, hit_uv(triangle, hit.barycentric)).a;
+    return alpha * material.base_alpha < material.alpha_cutoff;
+}
+
+// The shading normal bent by a tangent-space normal texture; the tangents follow the texture coordinates.
+vec3 bend_normal(ArealightGpuTriangle triangle, ArealightGpuMaterial material, vec3 normal, vec2 uv) {
+    vec2 d1 = vec2(triangle.u1 - triangle.u0, triangle.v1 - triangle.v0);
+    vec2 d2 = vec2(triangle.u2 - triangle.u0, triangle.v2 - triangle.v0);
+    float area = d1.x * d2.y - d2.x * d1.y;
+    vec3 along_u = ((triangle.p1 - triangle.p0) * d2.y - (triangle.p2 - triangle.p0) * d1.y) * sign(area);
+    vec3 tangent = arealight_normalize_or(along_u - normal * dot(normal, along_u), vec3(0.0));
+    // Rows of a texture run downwards, so green points against v
+    vec3 bitangent = cross(normal, tangent) * (area < 0.0 ? 1.0 : -1.0);
+    vec3 bend = sample_texture(material.normal_texture, uv).xyz * 2.0 - 1.0;
+    bend.xy *= material.normal_scale;
+    return arealight_normalize_or(tangent * bend.x + bitangent * bend.y + normal * bend.z, normal);
+}
+
+ScenePoint scene_point(Hit hit) {
+    ArealightGpuTriangle triangle = triangles[hit.triangle];
+    ArealightGpuMaterial material = materials[triangle.material];
+    float u = hit.barycentric.x;
+    float v = hit.barycentric.y;
+    vec2 uv = hit_uv(triangle, hit.barycentric);
+
+    ScenePoint point;
+    // From the vertices, not from the ray: its error does not grow with the distance
+    point.position = triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v;
+    vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
+    vec3 smooth_normal = triangle.n0 * (1.0 - u - v) + triangle.n1 * u + triangle.n2 * v;
+    point.normal = arealight_normalize_or(smooth_normal, arealight_normalize_or(face, vec3(0.0, 0.0, 1.0)));
+    if (material.normal_texture != NO_TEXTURE) {
+        point.normal = bend_normal(triangle, material, point.normal, uv);
+    }
+    point.normal = hit.back ? -point.normal : point.normal;
+
+    vec4 metallic_roughness = sample_texture(material.metallic_roughness_texture, uv);
+    point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb;
+    point.metalness = material.metalness * metallic_roughness.b;
+    point.roughness = material.roughness * metallic_roughness.g;
+    point.dielectric_f0 = material.dielectric_f0;
+    point.dielectric_f90 = material.dielectric_f90;
+    point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
+    return point;
+}
+
+#endif

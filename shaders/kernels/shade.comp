@@ -1,0 +1,71 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Shades a G-buffer with every light of a buffer.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
+layout(constant_id = 1) const int FORM_FACTOR = 0;
+layout(constant_id = 2) const int POSITION_SOURCE = 0;
+layout(constant_id = 3) const int OUTPUT = 0;
+
+const int POSITION_FROM_DEPTH = 1;
+const int OUTPUT_ADD = 1;
+
+#define LIGHTS_BINDING 1
+#define G_BUFFER_BINDING 3
+#include "table_image.glsl"
+#include "lights.glsl"
+#include "g_buffer.glsl"
+
+layout(set = 0, binding = 7, rgba32f) uniform image2D radiance_image;
+
+layout(push_constant, std430) uniform ShadeConstants {
+    mat4 position_from_clip;
+    vec3 camera;
+    uint light_count;
+} constants;
+
+// The pixel's position relative to the origin; false where there is no surface.
+bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
+    vec4 texel = texelFetch(g_position, pixel, 0);
+    if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
+        position = texel.xyz;
+        return texel.w != 0.0;
+    }
+    // Unproject the pixel's centre; Vulkan's clip space has y down, as pixels have
+    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec4 homogeneous = constants.position_from_clip * vec4(clip, texel.x, 1.0);
+    position = homogeneous.xyz / homogeneous.w;
+    return texel.x > 0.0 && texel.x < 1.0;
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = imageSize(radiance_image);
+    if (any(greaterThanEqual(pixel, size))) {
+        return;
+    }
+
+    vec3 position;
+    bool hit = load_position(pixel, size, position);
+    vec3 radiance = vec3(0.0);
+    if (hit) {
+        ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
+        ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS);
+        for (uint index = 0u; index < constants.light_count; index++) {
+            radiance += arealight_polygon_radiance(point, load_light(index), EFFECTS, FORM_FACTOR);
+        }
+    }
+
+    if (OUTPUT == OUTPUT_ADD) {
+        if (hit) {
+            vec4 before = imageLoad(radiance_image, pixel);
+            imageStore(radiance_image, pixel, vec4(before.rgb + radiance, 1.0));
+        }
+    } else {
+        imageStore(radiance_image, pixel, vec4(radiance, hit ? 1.0 : 0.0));
+    }
+}
