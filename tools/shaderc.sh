@@ -60,4 +60,12 @@ if [[ ! -f "$combined" || "$source/libshaderc_combined.a" -nt "$combined" ]]; th
     ar -M <"$scratch/script" >&2
     mv "$scratch/combined.a" "$combined"
 fi
+
+# Forget a build of the shaderc crate that found another library: it does not look again by itself.
+for output in "$target"/*/build/shaderc-sys-*/output; do
+    if [[ -f "$output" ]] && ! grep -qF "$folder" "$output"; then
+        build="$(dirname "$output")"
+        rm -rf "$build" "$(dirname "$(dirname "$build")")/.fingerprint/$(basename "$build")"
+    fi
+done
 echo "$folder"
