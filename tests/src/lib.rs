@@ -1,1 +1,1 @@
-//! The GPU against the oracle.
+//! What the GPU tests share.

@@ -1,0 +1,356 @@
+//! The manifest in Rust and the embedded SPIR-V say the same: bindings, group sizes, constants, push constants,
+//! and every offset of every structure that the CPU writes.
+
+use arealight::gpu;
+use arealight::kernels::{self, Access, BindingKind, Kernel};
+use rspirv::dr::{Instruction, Module, Operand};
+use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
+use std::collections::BTreeMap;
+use std::mem::offset_of;
+
+fn module(kernel: &Kernel) -> Module {
+    let mut loader = rspirv::dr::Loader::new();
+    rspirv::binary::parse_words(kernel.words(), &mut loader).expect("the embedded module parses");
+    loader.module()
+}
+
+fn literal(operand: &Operand) -> u32 {
+    match operand {
+        Operand::LiteralBit32(value) | Operand::IdRef(value) => *value,
+        other => panic!("{other:?} is no 32-bit literal"),
+    }
+}
+
+/// The operands of a decoration of `id`, if it has it.
+fn decoration(module: &Module, id: u32, wanted: Decoration) -> Option<Vec<Operand>> {
+    module.annotations.iter().find_map(|i| {
+        let matches = i.class.opcode == Op::Decorate
+            && i.operands[0] == Operand::IdRef(id)
+            && i.operands[1] == Operand::Decoration(wanted);
+        matches.then(|| i.operands[2..].to_vec())
+    })
+}
+
+fn member_decorations(module: &Module, id: u32, wanted: Decoration) -> BTreeMap<u32, Vec<Operand>> {
+    let of_type = module.annotations.iter().filter(|i| {
+        i.class.opcode == Op::MemberDecorate
+            && i.operands[0] == Operand::IdRef(id)
+            && i.operands[2] == Operand::Decoration(wanted)
+    });
+    of_type.map(|i| (literal(&i.operands[1]), i.operands[3..].to_vec())).collect()
+}
+
+fn name(module: &Module, id: u32) -> String {
+    let names = module.debug_names.iter();
+    let mut named = names.filter(|i| i.class.opcode == Op::Name && i.operands[0] == Operand::IdRef(id));
+    match named.next().map(|i| &i.operands[1]) {
+        Some(Operand::LiteralString(text)) => text.clone(),
+        _ => String::new(),
+    }
+}
+
+fn member_name(module: &Module, id: u32, member: u32) -> String {
+    let mut names = module.debug_names.iter().filter(|i| {
+        i.class.opcode == Op::MemberName
+            && i.operands[0] == Operand::IdRef(id)
+            && literal(&i.operands[1]) == member
+    });
+    match names.next().map(|i| &i.operands[2]) {
+        Some(Operand::LiteralString(text)) => text.clone(),
+        _ => panic!("member {member} of %{id} has no name"),
+    }
+}
+
+fn definition(module: &Module, id: u32) -> &Instruction {
+    module.types_global_values.iter().find(|i| i.result_id == Some(id)).expect("ids are defined")
+}
+
+fn pointee<'a>(module: &'a Module, variable: &Instruction) -> &'a Instruction {
+    let pointer = definition(module, variable.result_type.expect("variables are typed"));
+    definition(module, literal(&pointer.operands[1]))
+}
+
+/// The variables with a binding, by binding number.
+fn bound_variables(module: &Module) -> BTreeMap<u32, &Instruction> {
+    let variables = module.types_global_values.iter().filter(|i| i.class.opcode == Op::Variable);
+    variables
+        .filter_map(|variable| {
+            let id = variable.result_id?;
+            let binding = literal(&decoration(module, id, Decoration::Binding)?[0]);
+            let set = literal(&decoration(module, id, Decoration::DescriptorSet)?[0]);
+            assert_eq!(set, 0, "all bindings are in set 0");
+            Some((binding, variable))
+        })
+        .collect()
+}
+
+/// The kind and access that a variable's type and decorations say.
+fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
+    let kind = pointee(module, variable);
+    let id = variable.result_id.expect("a variable has an id");
+    if kind.class.opcode == Op::TypeImage {
+        // Operand 5: 1 is sampled, 2 is storage
+        if literal(&kind.operands[5]) == 1 {
+            return (BindingKind::SampledImage, Access::Read);
+        }
+        let write_only = decoration(module, id, Decoration::NonReadable).is_some();
+        return (BindingKind::StorageImage, if write_only { Access::Write } else { Access::ReadWrite });
+    }
+    let block = kind.result_id.expect("a type has an id");
+    let all = |wanted| {
+        decoration(module, id, wanted).is_some()
+            || member_decorations(module, block, wanted).len() == kind.operands.len()
+    };
+    let access = match (all(Decoration::NonWritable), all(Decoration::NonReadable)) {
+        (true, false) => Access::Read,
+        (false, true) => Access::Write,
+        _ => Access::ReadWrite,
+    };
+    (BindingKind::StorageBuffer, access)
+}
+
+/// Compares the manifest of a kernel with its module; the first difference in words.
+fn compare(kernel: &Kernel, module: &Module) -> Result<(), String> {
+    let bound = bound_variables(module);
+    let numbers: Vec<u32> = bound.keys().copied().collect();
+    if numbers != (0..kernel.bindings.len() as u32).collect::<Vec<_>>() {
+        return Err(format!("{}: the module binds {numbers:?}", kernel.name));
+    }
+    for (number, binding) in kernel.bindings.iter().enumerate() {
+        let found = reflected(module, bound[&(number as u32)]);
+        if found != (binding.kind, binding.access) {
+            return Err(format!("{}: binding '{}' is {found:?}", kernel.name, binding.name));
+        }
+    }
+
+    let local_size = module.entry_points.len() == 1
+        && module.execution_modes.iter().any(|mode| {
+            mode.operands[1] == Operand::ExecutionMode(ExecutionMode::LocalSize)
+                && [2, 3, 4].map(|i| literal(&mode.operands[i])) == kernel.local_size
+        });
+    if !local_size {
+        return Err(format!("{}: another local size", kernel.name));
+    }
+
+    let mut constants: Vec<u32> = module
+        .annotations
+        .iter()
+        .filter(|i| {
+            i.class.opcode == Op::Decorate && i.operands[1] == Operand::Decoration(Decoration::SpecId)
+        })
+        .map(|i| literal(&i.operands[2]))
+        .collect();
+    constants.sort_unstable();
+    if constants != kernel.constants {
+        return Err(format!("{}: the module's constants are {constants:?}", kernel.name));
+    }
+    Ok(())
+}
+
+/// Member names and offsets of the structure named `wanted`, with and without a layout being two types.
+fn offsets(module: &Module, wanted: &str) -> Option<Vec<(String, u32)>> {
+    let structs = module.types_global_values.iter().filter(|i| i.class.opcode == Op::TypeStruct);
+    structs.filter_map(|i| i.result_id).filter(|&id| name(module, id) == wanted).find_map(|id| {
+        let offsets = member_decorations(module, id, Decoration::Offset);
+        (!offsets.is_empty())
+            .then(|| offsets.iter().map(|(&m, o)| (member_name(module, id, m), literal(&o[0]))).collect())
+    })
+}
+
+macro_rules! layout {
+    ($type:ty, $($rust:ident $(as $glsl:literal)?),+ $(,)?) => {
+        vec![$((layout!(@name $rust $($glsl)?), offset_of!($type, $rust) as u32)),+]
+    };
+    (@name $rust:ident) => { stringify!($rust).to_owned() };
+    (@name $rust:ident $glsl:literal) => { $glsl.to_owned() };
+}
+
+#[test]
+fn the_manifest_agrees_with_every_module() {
+    for kernel in kernels::ALL {
+        compare(kernel, &module(kernel)).unwrap();
+    }
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    // One kernel's manifest against another's module
+    assert!(compare(&kernels::SHADE, &module(&kernels::EVAL)).is_err());
+    // The right module, one binding's kind changed
+    let swapped =
+        Kernel { bindings: Box::leak(Box::new([kernels::EVAL.bindings[1]; 5])), ..copy(&kernels::EVAL) };
+    assert!(compare(&swapped, &module(&kernels::EVAL)).unwrap_err().contains("SampledImage"));
+    // Another group size, another constant
+    let resized = Kernel { local_size: [32, 1, 1], ..copy(&kernels::EVAL) };
+    assert!(compare(&resized, &module(&kernels::EVAL)).unwrap_err().contains("local size"));
+    let constants = Kernel { constants: &[0], ..copy(&kernels::EVAL) };
+    assert!(compare(&constants, &module(&kernels::EVAL)).unwrap_err().contains("constants"));
+}
+
+fn copy(kernel: &Kernel) -> Kernel {
+    Kernel {
+        name: kernel.name,
+        spirv: kernel.spirv,
+        local_size: kernel.local_size,
+        push_constant_size: kernel.push_constant_size,
+        bindings: kernel.bindings,
+        constants: kernel.constants,
+    }
+}
+
+#[test]
+fn every_structure_has_the_same_offsets() {
+    let shade = module(&kernels::SHADE);
+    let eval = module(&kernels::EVAL);
+    let reference = module(&kernels::REFERENCE);
+    let visibility = module(&kernels::VISIBILITY);
+    let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, vertex_count, flags,
+                        reserved as "reserved0");
+    for (kernel, structure, expected) in [
+        (&shade, "ArealightGpuLight", light.clone()),
+        (&reference, "ArealightGpuLight", light.clone()),
+        (&eval, "ArealightGpuLight", light),
+        (&shade, "ShadeConstants", layout!(gpu::ShadeConstants, position_from_clip, camera, light_count)),
+        (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
+        (
+            &eval,
+            "ArealightGpuCase",
+            layout!(gpu::GpuCase, normal, roughness, view, f90, diffuse_albedo, light, f0,
+                                            reserved as "reserved0"),
+        ),
+        (
+            &reference,
+            "ReferenceConstants",
+            layout!(gpu::ReferenceConstants, camera, light_count, first_sample, sample_count, weight, seed),
+        ),
+        (
+            &reference,
+            "ArealightGpuLightSampling",
+            layout!(gpu::GpuLightSampling, normal, area, first_triangle,
+                                                          triangle_count, reserved as "reserved0"),
+        ),
+        (
+            &reference,
+            "ArealightGpuLightTriangle",
+            layout!(gpu::GpuLightTriangle, vertices as "vertex0",
+                                                          cumulative),
+        ),
+        (
+            &visibility,
+            "ArealightGpuBvhNode",
+            layout!(gpu::GpuBvhNode, min as "min_corner", first,
+                                                     max as "max_corner", count),
+        ),
+        (
+            &visibility,
+            "ArealightGpuTriangle",
+            layout!(gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
+                                                      u1, n2, u2, v2, reserved as "reserved0"),
+        ),
+        (
+            &visibility,
+            "ArealightGpuMaterial",
+            layout!(
+                gpu::GpuMaterial,
+                base_color,
+                metalness,
+                emission,
+                roughness,
+                dielectric_f0,
+                dielectric_f90,
+                base_color_texture,
+                metallic_roughness_texture,
+                normal_texture,
+                normal_scale,
+                flags,
+                alpha_cutoff,
+                base_alpha,
+                emission_texture
+            ),
+        ),
+        (&visibility, "ArealightGpuTexture", layout!(gpu::GpuTexture, first_texel, width, height, flags)),
+        (
+            &visibility,
+            "VisibilityConstants",
+            layout!(
+                gpu::VisibilityConstants,
+                camera,
+                node_count,
+                right,
+                reserved0,
+                up,
+                reserved1,
+                forward,
+                reserved2,
+                background,
+                reserved3
+            ),
+        ),
+    ] {
+        let found = offsets(kernel, structure).unwrap_or_else(|| panic!("{structure} is in the module"));
+        // An array in Rust may be several members in GLSL: compare the first of each
+        let found: Vec<_> =
+            found.into_iter().filter(|(name, _)| expected.iter().any(|(e, _)| e == name)).collect();
+        assert_eq!(found, expected, "{structure}");
+    }
+}
+
+#[test]
+fn array_strides_are_the_sizes_in_rust() {
+    for (kernel, buffer, size) in [
+        (&kernels::SHADE, "lights", size_of::<gpu::GpuLight>()),
+        (&kernels::EVAL, "cases", size_of::<gpu::GpuCase>()),
+        (&kernels::REFERENCE, "light_sampling", size_of::<gpu::GpuLightSampling>()),
+        (&kernels::REFERENCE, "light_triangles", size_of::<gpu::GpuLightTriangle>()),
+        (&kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
+        (&kernels::VISIBILITY, "triangles", size_of::<gpu::GpuTriangle>()),
+        (&kernels::VISIBILITY, "materials", size_of::<gpu::GpuMaterial>()),
+        (&kernels::VISIBILITY, "textures", size_of::<gpu::GpuTexture>()),
+    ] {
+        let module = module(kernel);
+        let number =
+            kernel.bindings.iter().position(|b| b.name == buffer).expect("the manifest has it") as u32;
+        let block = pointee(&module, bound_variables(&module)[&number]);
+        assert_eq!(member_name(&module, block.result_id.unwrap(), 0), buffer);
+        let array = literal(&block.operands[0]);
+        let stride = literal(&decoration(&module, array, Decoration::ArrayStride).expect("an array")[0]);
+        assert_eq!(stride as usize, size, "{buffer}");
+    }
+}
+
+#[test]
+fn push_constants_have_the_size_in_the_manifest() {
+    for kernel in kernels::ALL {
+        let module = module(kernel);
+        let block = module
+            .types_global_values
+            .iter()
+            .find(|i| {
+                i.class.opcode == Op::Variable
+                    && i.operands[0] == Operand::StorageClass(StorageClass::PushConstant)
+            })
+            .map(|variable| pointee(&module, variable))
+            .expect("every kernel has push constants");
+        let id = block.result_id.unwrap();
+        let last = member_decorations(&module, id, Decoration::Offset);
+        let (member, offset) = last.iter().next_back().unwrap();
+        // Every last member is a 32-bit scalar
+        let kind = definition(&module, literal(&block.operands[*member as usize]));
+        assert!(matches!(kind.class.opcode, Op::TypeInt | Op::TypeFloat), "{}", kernel.name);
+        assert_eq!(literal(&offset[0]) + 4, kernel.push_constant_size, "{}", kernel.name);
+    }
+}
+
+#[test]
+fn effects_have_the_same_bits_in_glsl() {
+    let source = include_str!("../../shaders/include/arealight/effects.glsl");
+    let mut found = BTreeMap::new();
+    for line in source.lines() {
+        let Some(rest) = line.strip_prefix("const uint AREALIGHT_EFFECT_") else { continue };
+        let (name, value) = rest.trim_end_matches("u;").split_once(" = ").expect("NAME = VALUE");
+        found.insert(name.to_lowercase(), value.parse::<u32>().expect("a literal"));
+    }
+    let expected: BTreeMap<_, _> =
+        arealight::Effects::all().iter().map(|e| (e.names()[0].to_owned(), e.bits())).collect();
+    assert_eq!(found, expected);
+}
