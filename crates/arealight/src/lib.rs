@@ -18,6 +18,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
+//! | [`light_sampling`] | what the Monte Carlo reference needs of them |
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what a scene calls for, and nothing else |
 //! | [`quality`] | the rungs of the quality ladder |
@@ -30,6 +31,7 @@ pub mod effects;
 pub mod gpu;
 pub mod kernels;
 pub mod light;
+pub mod light_sampling;
 pub mod material;
 pub mod plan;
 pub mod quality;
@@ -37,6 +39,7 @@ pub mod table;
 
 pub use effects::Effects;
 pub use light::{LightError, PackedLights, PolygonLight};
+pub use light_sampling::LightSampling;
 pub use material::{Material, Surface};
 pub use quality::{FormFactor, Quality};
 pub use table::{LightTable, TableDescription, TableError, TableSample};

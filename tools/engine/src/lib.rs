@@ -1,0 +1,1 @@
+//! The small engine that the tools, tests and benchmarks embed Arealight in.
