@@ -1,2 +1,27 @@
-//! Float64 truth for area lights, for tests, fitting and benchmarks.
+//! Float64 truth for area lights: BRDFs, closed-form integrals and cubature. For tests, fitting and
+//! benchmarks; nothing here is fast enough for a frame.
+//!
+//! Everything happens in the *surface frame* unless a name says otherwise: the shading point is the origin,
+//! z is the normal, and the view direction lies in the xz plane with x not negative.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`frame`] | the surface frame of a normal and a view |
+//! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
+//! | [`ltsd`] | linearly transformed spherical distributions in general |
+//! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
+//! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
+//! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
+//! | [`cases`] | files of shading points |
+//! | [`answers`] | files of answers and of known radiance |
+//! | [`measure`] | how far answers lie from the truth |
+
+pub mod answers;
+pub mod cases;
+pub mod cubature;
+pub mod frame;
 pub mod ggx;
+pub mod ltsd;
+pub mod measure;
+pub mod polygon;
+pub mod shading;

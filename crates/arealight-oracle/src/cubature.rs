@@ -1,0 +1,312 @@
+//! Adaptive cubature of any integrand over a polygon, in solid angle: the method that does not know of the
+//! closed forms, to check them with, and to integrate what has none.
+//!
+//! The polygon becomes a signed fan of triangles, so that concave outlines need no care. Triangles are
+//! bisected until they are small for their distance, and until the caller calls its integrand *resolved*
+//! on each: a narrow lobe cannot fall between the points of the rule. From there the triangle of the largest
+//! error is bisected until the sum of the errors is small. The error of a triangle is the difference between
+//! a rule of degree 8 and one of degree 5, an estimate of the latter's error: the value is far better.
+
+use glam::DVec3;
+use std::collections::BinaryHeap;
+
+mod rules;
+
+pub(crate) use rules::{DEGREE_8, TrianglePoint};
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// The sum of the triangles' error estimates over the integral, for each component.
+    pub relative_tolerance: f64,
+    /// Evaluations of the integrand after which the result is returned as it is.
+    pub max_evaluations: usize,
+}
+
+impl Default for Settings {
+    /// Estimates of 1e-6, so errors of about 1e-8; at most four million evaluations.
+    fn default() -> Self {
+        Self { relative_tolerance: 1e-6, max_evaluations: 4_000_000 }
+    }
+}
+
+/// An integral with its error estimate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate<const N: usize> {
+    /// The integral, a component.
+    pub value: [f64; N],
+    /// The sum of the triangles' error estimates: much larger than the true error, unless
+    /// [`Settings::max_evaluations`] was reached.
+    pub error: [f64; N],
+    /// How often the integrand was evaluated.
+    pub evaluations: usize,
+}
+
+/// Signed triangles in space, as the origin sees them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Region {
+    triangles: Vec<[DVec3; 3]>,
+}
+
+impl Region {
+    /// The region of a planar polygon. It counts positively if its front, the right-hand side of its vertex
+    /// order, faces the origin, else negatively.
+    pub fn polygon(vertices: &[DVec3]) -> Self {
+        let pairs = vertices.get(1..).unwrap_or_default().windows(2);
+        Self { triangles: pairs.map(|pair| [vertices[0], pair[0], pair[1]]).collect() }
+    }
+
+    /// Every direction once: the faces of a box around the origin.
+    pub fn sphere() -> Self {
+        let mut triangles = Vec::new();
+        for (axis, u, v) in
+            [(DVec3::X, DVec3::Y, DVec3::Z), (DVec3::Y, DVec3::Z, DVec3::X), (DVec3::Z, DVec3::X, DVec3::Y)]
+        {
+            for sign in [-1.0, 1.0] {
+                let corner = |a: f64, b: f64| axis * sign + u * a + v * (b * sign);
+                let face = [corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+                triangles.extend(Self::polygon(&face).triangles);
+            }
+        }
+        Self { triangles }
+    }
+
+    /// The directions with `normal · direction >= 0` of this region.
+    #[must_use]
+    pub fn clipped(&self, normal: DVec3) -> Self {
+        let mut triangles = Vec::new();
+        for triangle in &self.triangles {
+            triangles.extend(Self::polygon(&clip_triangle(triangle, normal)).triangles);
+        }
+        Self { triangles }
+    }
+
+    /// Integrates `integrand`, a function of unit directions, over this region's solid angle.
+    ///
+    /// `resolved` says of a triangle, given its corners, whether the integrand is so smooth on it that the
+    /// rule's 22 points will see what there is: a triangle on which a lobe is narrower than the spacing of
+    /// the points must be refused. `|_| true` is right for integrands that vary slowly over the sphere.
+    pub fn integrate<const N: usize>(
+        &self,
+        settings: &Settings,
+        resolved: impl Fn(&[DVec3; 3]) -> bool,
+        integrand: impl Fn(DVec3) -> [f64; N],
+    ) -> Estimate<N> {
+        let mut pieces: Vec<Piece<N>> = Vec::new();
+        for triangle in &self.triangles {
+            split_until_resolved(*triangle, settings.max_evaluations / (4 * POINTS), &resolved, &mut |t| {
+                pieces.push(Piece::new(t, &integrand));
+            });
+        }
+        refine(pieces, settings, &integrand)
+    }
+}
+
+/// Evaluations a triangle: 16 and 7 points, the centroid is one of both.
+const POINTS: usize = 22;
+
+/// Bisections after which a triangle is taken as it is: 2^-60 of the polygon's size.
+const MAX_DEPTH: usize = 120;
+
+/// Bisects a triangle until it is not larger than its distance from the origin, and resolved.
+fn split_until_resolved(
+    triangle: [DVec3; 3],
+    max_triangles: usize,
+    resolved: &impl Fn(&[DVec3; 3]) -> bool,
+    take: &mut impl FnMut([DVec3; 3]),
+) {
+    // A triangle whose plane holds the origin has no solid angle
+    if volume(&triangle) == 0.0 {
+        return;
+    }
+    let mut stack = vec![(triangle, 0)];
+    let mut count = 0;
+    while let Some((triangle, depth)) = stack.pop() {
+        let small = longest_edge(&triangle) <= distance_to_origin(&triangle);
+        count += 1;
+        if depth >= MAX_DEPTH || count > max_triangles || (small && resolved(&triangle)) {
+            take(triangle);
+        } else {
+            // As long as it is large, halve its length; then the angle that it spans
+            let halves =
+                if small { bisect(&triangle, angle_squared) } else { bisect(&triangle, length_squared) };
+            stack.extend(halves.map(|half| (half, depth + 1)));
+        }
+    }
+}
+
+/// Bisects the piece of the largest error until the sum of errors meets the tolerance.
+fn refine<const N: usize>(
+    pieces: Vec<Piece<N>>,
+    settings: &Settings,
+    integrand: &impl Fn(DVec3) -> [f64; N],
+) -> Estimate<N> {
+    let mut evaluations = pieces.len() * POINTS;
+    let (mut value, mut error) = totals(&pieces);
+    // Errors of different components are compared as shares of the first estimate of each
+    let share = value.map(|v| if v == 0.0 { 1.0 } else { 1.0 / v.abs() });
+    let ranked = |piece: Piece<N>| {
+        let priority = (0..N).map(|i| piece.error[i] * share[i]).fold(0.0, f64::max);
+        Ranked { priority, piece }
+    };
+    let mut heap: BinaryHeap<Ranked<N>> = pieces.into_iter().map(ranked).collect();
+    while evaluations < settings.max_evaluations
+        && (0..N).any(|i| error[i] > settings.relative_tolerance * value[i].abs())
+    {
+        let Some(worst) = heap.pop() else { break };
+        if worst.priority == 0.0 {
+            heap.push(worst);
+            break;
+        }
+        let halves = bisect(&worst.piece.triangle, angle_squared).map(|half| Piece::new(half, integrand));
+        for i in 0..N {
+            value[i] += halves[0].value[i] + halves[1].value[i] - worst.piece.value[i];
+            error[i] += halves[0].error[i] + halves[1].error[i] - worst.piece.error[i];
+        }
+        heap.extend(halves.map(ranked));
+        evaluations += 2 * POINTS;
+    }
+    // Sum again: the running sums have gathered rounding errors
+    let pieces: Vec<Piece<N>> = heap.into_iter().map(|ranked| ranked.piece).collect();
+    let (value, error) = totals(&pieces);
+    Estimate { value, error, evaluations }
+}
+
+fn totals<const N: usize>(pieces: &[Piece<N>]) -> ([f64; N], [f64; N]) {
+    let mut value = [0.0; N];
+    let mut error = [0.0; N];
+    for piece in pieces {
+        for i in 0..N {
+            value[i] += piece.value[i];
+            error[i] += piece.error[i];
+        }
+    }
+    (value, error)
+}
+
+/// A triangle with the integral over it.
+struct Piece<const N: usize> {
+    triangle: [DVec3; 3],
+    value: [f64; N],
+    error: [f64; N],
+}
+
+impl<const N: usize> Piece<N> {
+    fn new(triangle: [DVec3; 3], integrand: &impl Fn(DVec3) -> [f64; N]) -> Self {
+        // Solid angle of an element of area: -n·p / |p|³ dA, where -n·p dA is one number for the triangle
+        let half_volume = 0.5 * volume(&triangle);
+        let sample = |point: &TrianglePoint| {
+            let p = point.interpolate(&triangle);
+            let length = p.length();
+            let density = half_volume / (length * length * length);
+            integrand(p / length).map(|v| v * density)
+        };
+        let mut high = [0.0; N];
+        let mut low = [0.0; N];
+        let center = sample(&DEGREE_8[0]);
+        for i in 0..N {
+            high[i] += center[i] * DEGREE_8[0].weight;
+            low[i] += center[i] * rules::DEGREE_5_CENTER;
+        }
+        for point in &DEGREE_8[1..] {
+            let sampled = sample(point);
+            (0..N).for_each(|i| high[i] += sampled[i] * point.weight);
+        }
+        for point in &rules::DEGREE_5 {
+            let sampled = sample(point);
+            (0..N).for_each(|i| low[i] += sampled[i] * point.weight);
+        }
+        let error = std::array::from_fn(|i| (high[i] - low[i]).abs());
+        Self { triangle, value: high, error }
+    }
+}
+
+/// A piece in the queue: the largest priority comes out first.
+struct Ranked<const N: usize> {
+    priority: f64,
+    piece: Piece<N>,
+}
+
+impl<const N: usize> PartialEq for Ranked<N> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl<const N: usize> Eq for Ranked<N> {}
+
+impl<const N: usize> PartialOrd for Ranked<N> {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<const N: usize> Ord for Ranked<N> {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.priority.total_cmp(&other.priority)
+    }
+}
+
+/// Twice the area times the distance of the plane from the origin, positive if the front faces it.
+fn volume([a, b, c]: &[DVec3; 3]) -> f64 {
+    // The nearest corner is the pivot: it has the smallest rounding error
+    let nearest =
+        [a, b, c].into_iter().fold(a, |n, p| if p.length_squared() < n.length_squared() { p } else { n });
+    -(*b - *a).cross(*c - *a).dot(*nearest)
+}
+
+fn length_squared(a: DVec3, b: DVec3) -> f64 {
+    a.distance_squared(b)
+}
+
+/// The squared chord between two directions.
+fn angle_squared(a: DVec3, b: DVec3) -> f64 {
+    (a / a.length()).distance_squared(b / b.length())
+}
+
+fn longest_edge([a, b, c]: &[DVec3; 3]) -> f64 {
+    length_squared(*a, *b).max(length_squared(*b, *c)).max(length_squared(*c, *a)).sqrt()
+}
+
+/// Halves a triangle at the middle of the edge that `measure` calls the longest. Orientation is kept.
+fn bisect(triangle: &[DVec3; 3], measure: impl Fn(DVec3, DVec3) -> f64) -> [[DVec3; 3]; 2] {
+    let edge = |i: usize| measure(triangle[i], triangle[(i + 1) % 3]);
+    let longest = (1..3).fold(0, |best, i| if edge(i) > edge(best) { i } else { best });
+    let [a, b, c] = [0, 1, 2].map(|i| triangle[(longest + i) % 3]);
+    let middle = (a + b) * 0.5;
+    [[a, middle, c], [middle, b, c]]
+}
+
+/// The part of a triangle with `normal · p >= 0`: none, three or four corners.
+fn clip_triangle(triangle: &[DVec3; 3], normal: DVec3) -> Vec<DVec3> {
+    let mut clipped = Vec::with_capacity(4);
+    for i in 0..3 {
+        let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
+        let (height_a, height_b) = (normal.dot(a), normal.dot(b));
+        if height_a >= 0.0 {
+            clipped.push(a);
+        }
+        if height_a * height_b < 0.0 {
+            let crossing = a.lerp(b, height_a / (height_a - height_b));
+            // Land on the plane, also after rounding
+            clipped.push(crossing - normal * (normal.dot(crossing) / normal.length_squared()));
+        }
+    }
+    clipped
+}
+
+/// The distance from the origin to the nearest point of a triangle.
+pub(crate) fn distance_to_origin(triangle: &[DVec3; 3]) -> f64 {
+    let [a, b, c] = *triangle;
+    let normal = (b - a).cross(c - a);
+    let inside = |p: DVec3, q: DVec3| normal.dot((q - p).cross(-p)) >= 0.0;
+    if normal != DVec3::ZERO && inside(a, b) && inside(b, c) && inside(c, a) {
+        return a.dot(normal).abs() / normal.length();
+    }
+    let to_edge = |p: DVec3, q: DVec3| {
+        let along = q - p;
+        let t = (-p.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        (p + along * t).length()
+    };
+    to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
+}
