@@ -298,21 +298,21 @@ mod tests {
     fn bad_texels_are_refused_with_their_place() {
         let error = table(|i, m, _| {
             if i == 5 {
-                m[2] = f32::NAN
+                m[2] = f32::NAN;
             }
         })
         .unwrap_err();
         assert_eq!(error.to_string(), "matrix: texel (2, 1) channel 2 is NaN, not a finite number");
         let error = table(|i, m, _| {
             if i == 3 {
-                m[3] = 0.0
+                m[3] = 0.0;
             }
         })
         .unwrap_err();
         assert!(matches!(error, TableError::Singular { x: 0, y: 1, .. }), "{error}");
         let error = table(|i, _, a| {
             if i == 8 {
-                a[1] = 1.5
+                a[1] = 1.5;
             }
         })
         .unwrap_err();

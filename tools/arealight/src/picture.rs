@@ -1,0 +1,134 @@
+//! From radiance to a file: supersampled radiance is resolved, and written as it is (EXR) or for a screen (PNG).
+
+use crate::failure::Failure;
+use glam::Vec3;
+use std::path::Path;
+
+/// Linear radiance, row after row from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Linear Rec. 709 radiance, W/(m² sr).
+    pub pixels: Vec<Vec3>,
+}
+
+/// How radiance becomes what a screen shows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exposure {
+    /// Stops: radiance is multiplied by 2^ev.
+    pub ev: f32,
+}
+
+impl Picture {
+    /// Means over `factor` × `factor` samples of `map` applied to each sample.
+    fn resolve(&self, factor: u32, map: impl Fn(Vec3) -> Vec3) -> Self {
+        let (width, height) = (self.width / factor, self.height / factor);
+        let mean = |x: u32, y: u32| {
+            let samples = (0..factor * factor).map(|i| {
+                let (column, row) = (x * factor + i % factor, y * factor + i / factor);
+                map(self.pixels[(row * self.width + column) as usize])
+            });
+            samples.sum::<Vec3>() / (factor * factor) as f32
+        };
+        let pixels = (0..width * height).map(|i| mean(i % width, i / width)).collect();
+        Self { width, height, pixels }
+    }
+
+    /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending names:
+    /// `.exr` holds the mean radiance in float32, untouched by `exposure`; `.png` is exposed, tone-mapped sample
+    /// by sample (so that the edge of a bright light stays smooth), and encoded as sRGB.
+    pub fn save(&self, path: &Path, factor: u32, exposure: Exposure) -> Result<(), Failure> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+            Some("exr") => self.resolve(factor, |radiance| radiance).save_exr(path),
+            Some("png") => self.resolve(factor, |radiance| tone_map(radiance * exposure.ev.exp2())).save_png(path),
+            _ => Err(Failure::Argument {
+                argument: "--output",
+                message: format!("{}: the file's name must end in .png or .exr", path.display()),
+            }),
+        }
+    }
+
+    fn save_exr(&self, path: &Path) -> Result<(), Failure> {
+        let pixel = |x: usize, y: usize| {
+            let p = self.pixels[y * self.width as usize + x];
+            (p.x, p.y, p.z)
+        };
+        exr::prelude::write_rgb_file(path, self.width as usize, self.height as usize, pixel)
+            .map_err(|error| Failure::output(path, error))
+    }
+
+    fn save_png(&self, path: &Path) -> Result<(), Failure> {
+        let bytes = self.pixels.iter().flat_map(|p| p.to_array().map(srgb_from_linear)).collect();
+        image::RgbImage::from_raw(self.width, self.height, bytes)
+            .expect("three bytes a pixel")
+            .save(path)
+            .map_err(|error| Failure::output(path, error))
+    }
+}
+
+/// Khronos PBR Neutral: colours below 0.8 stay as they are but for a small toe, highlights roll off towards
+/// white. From radiance times exposure to [0, 1].
+fn tone_map(color: Vec3) -> Vec3 {
+    const START: f32 = 0.8 - 0.04;
+    const DESATURATION: f32 = 0.15;
+    let color = color.max(Vec3::ZERO);
+    let low = color.min_element();
+    let toe = if low < 0.08 { low - 6.25 * low * low } else { 0.04 };
+    let color = color - toe;
+    let peak = color.max_element();
+    if peak < START {
+        return color;
+    }
+    let range = 1.0 - START;
+    let rolled = 1.0 - range * range / (peak + range - START);
+    let white = 1.0 - 1.0 / (DESATURATION * (peak - rolled) + 1.0);
+    (color * (rolled / peak)).lerp(Vec3::splat(rolled), white)
+}
+
+fn srgb_from_linear(linear: f32) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let encoded =
+        if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    (encoded * 255.0 + 0.5) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tone_mapping_is_monotonic_and_stays_in_range() {
+        let mut before = -1.0;
+        for i in 0..2000 {
+            let mapped = tone_map(Vec3::splat(i as f32 * 0.01)).x;
+            assert!(mapped > before && mapped <= 1.0, "{i}: {before} then {mapped}");
+            before = mapped;
+        }
+        assert_eq!(tone_map(Vec3::splat(65504.0)).max_element().round(), 1.0);
+        assert_eq!(tone_map(Vec3::splat(-1.0)), Vec3::ZERO);
+    }
+
+    #[test]
+    fn samples_are_averaged_and_exr_keeps_radiance() {
+        let pixels = (0..8).map(|i| Vec3::splat(i as f32)).collect();
+        let picture = Picture { width: 4, height: 2, pixels };
+        let resolved = picture.resolve(2, |p| p);
+        assert_eq!((resolved.width, resolved.height), (2, 1));
+        assert_eq!(resolved.pixels, [Vec3::splat(2.5), Vec3::splat(4.5)]);
+    }
+
+    #[test]
+    fn srgb_ends_are_exact() {
+        assert_eq!([0.0, 1.0, 2.0, f32::NAN].map(srgb_from_linear), [0, 255, 255, 0]);
+    }
+
+    #[test]
+    fn another_ending_is_refused() {
+        let picture = Picture { width: 1, height: 1, pixels: vec![Vec3::ONE] };
+        let error = picture.save(Path::new("out.bmp"), 1, Exposure { ev: 0.0 }).unwrap_err();
+        assert!(error.to_string().contains("must end in .png or .exr"));
+    }
+}
