@@ -1,1 +1,43 @@
-//! glTF scenes for Arealight.
+//! glTF scenes for Arealight: polygon lights, materials, triangles, cameras, and the scan that says which
+//! effects they call for.
+//!
+//! [`Scene::load`] reads a `.gltf` or `.glb` file. Files are not trusted: whatever is in them gives a scene,
+//! perhaps with [`Warning`]s about what was left out, or a [`SceneError`] that names the file and the field,
+//! and never a panic.
+//!
+//! # What becomes a light
+//! - Flat geometry with an emissive material: coplanar neighbours merge into one outline, so a quad is one
+//!   light of four vertices. Its radiance is emissiveFactor × `KHR_materials_emissive_strength`, as numbers
+//!   in W/(m² sr), times the mean of emissiveTexture. A double-sided material makes a two-sided light.
+//! - `EXT_lights_area` rectangles, which have no visible geometry: radiance = colour × intensity in nits /
+//!   [`LUMENS_PER_WATT`].
+//!
+//! # Spaces
+//! Positions are world positions in `f64`, in the file's unit of length (glTF: metres), right-handed, +Y up.
+//! [`SceneBuffers`] makes them `f32` relative to an origin.
+
+mod accessor;
+mod area_lights;
+pub mod bvh;
+mod camera;
+mod document;
+mod effects;
+mod emitters;
+mod error;
+mod gpu;
+mod images;
+mod load;
+mod materials;
+mod meshes;
+mod nodes;
+mod outlines;
+mod scene;
+
+pub use area_lights::LUMENS_PER_WATT;
+pub use camera::Camera;
+pub use effects::{Call, required_effects};
+pub use error::SceneError;
+pub use gpu::{BufferError, Hit, SceneBuffers};
+pub use scene::{
+    Bounds, Image, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneMaterial, Texture, Triangle, Warning, Wrap,
+};

@@ -1,0 +1,136 @@
+//! Typed arrays out of buffers. Every range is checked; a sparse accessor's values are put in place.
+
+use crate::SceneError;
+use crate::document::{Document, slice};
+use gltf::json::accessor::{ComponentType, Type};
+
+/// The most elements an accessor may have: the corners of as many triangles as a scene may have.
+const MAX_ELEMENTS: u64 = 3 * crate::scene::MAX_TRIANGLES as u64;
+
+/// An accessor's elements, tightly packed.
+struct Elements {
+    bytes: Vec<u8>,
+    component: ComponentType,
+    normalized: bool,
+}
+
+/// Vectors of `N` floats: float components as they are, normalised integers as fractions. None is NaN or
+/// infinite.
+pub(crate) fn floats<const N: usize>(
+    document: &Document,
+    accessor: usize,
+    field: &str,
+) -> Result<Vec<[f32; N]>, SceneError> {
+    let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
+    let elements = elements(document, accessor, field, shape)?;
+    let decode: fn(&[u8]) -> f32 = match (elements.component, elements.normalized) {
+        (ComponentType::F32, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        (ComponentType::U8, true) => |b| f32::from(b[0]) / 255.0,
+        (ComponentType::U16, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
+        (component, _) => {
+            let problem = format!("components of type {component:?} are not supported here");
+            return Err(document.invalid(field, problem));
+        }
+    };
+    let size = elements.component.size();
+    let vectors = elements.bytes.chunks_exact(size * N).map(|element| {
+        let mut vector = [0.0; N];
+        for (value, bytes) in vector.iter_mut().zip(element.chunks_exact(size)) {
+            *value = decode(bytes);
+        }
+        vector
+    });
+    let vectors: Vec<[f32; N]> = vectors.collect();
+    match vectors.iter().position(|v| v.iter().any(|x| !x.is_finite())) {
+        Some(bad) => Err(document.not_finite(format!("{field}[{bad}]"), vectors[bad])),
+        None => Ok(vectors),
+    }
+}
+
+/// Unsigned integers.
+pub(crate) fn indices(document: &Document, accessor: usize, field: &str) -> Result<Vec<u32>, SceneError> {
+    let elements = elements(document, accessor, field, Type::Scalar)?;
+    let decode: fn(&[u8]) -> u32 = match elements.component {
+        ComponentType::U8 => |b| u32::from(b[0]),
+        ComponentType::U16 => |b| u32::from(u16::from_le_bytes([b[0], b[1]])),
+        ComponentType::U32 => |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]),
+        component => return Err(document.invalid(field, format!("{component:?} cannot be an index"))),
+    };
+    Ok(elements.bytes.chunks_exact(elements.component.size()).map(decode).collect())
+}
+
+fn elements(document: &Document, index: usize, field: &str, expected: Type) -> Result<Elements, SceneError> {
+    use gltf::json::validation::Checked::Valid;
+    let accessor = document.root.accessors.get(index);
+    let accessor = accessor.ok_or_else(|| document.invalid(field, "its accessor does not exist"))?;
+    let (Valid(component), Valid(shape)) = (accessor.component_type, accessor.type_) else {
+        return Err(document.invalid(format!("accessors[{index}]"), "has an unknown type"));
+    };
+    if shape != expected {
+        let problem = format!("accessors[{index}] is {shape:?}, should be {expected:?}");
+        return Err(document.invalid(field, problem));
+    }
+    let count = accessor.count.0;
+    if count > MAX_ELEMENTS {
+        return Err(document.too_large(format!("accessors[{index}].count"), count, MAX_ELEMENTS));
+    }
+    let size = component.0.size() * shape.multiplicity();
+    // Copy what the buffer view holds, or start from zeros
+    let mut bytes = match accessor.buffer_view {
+        Some(view) => {
+            let offset = accessor.byte_offset.unwrap_or_default().0;
+            packed(document, view.value(), offset, count, size, &format!("accessors[{index}]"))?
+        }
+        None => vec![0; count as usize * size],
+    };
+    // Put the sparse values in their places
+    if let Some(sparse) = &accessor.sparse {
+        let field = format!("accessors[{index}].sparse");
+        let Valid(place) = sparse.indices.component_type else {
+            return Err(document.invalid(field, "its indices have an unknown type"));
+        };
+        if sparse.count.0 > count {
+            return Err(document.invalid(field, format!("has {} values for {count}", sparse.count.0)));
+        }
+        let view = |view: usize, offset: u64, size: usize, what: &str| {
+            packed(document, view, offset, sparse.count.0, size, &format!("{field}.{what}"))
+        };
+        let width = place.0.size();
+        let places =
+            view(sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0, width, "indices")?;
+        let values = view(sparse.values.buffer_view.value(), sparse.values.byte_offset.0, size, "values")?;
+        for (place, value) in places.chunks_exact(width).zip(values.chunks_exact(size)) {
+            let place = place.iter().rev().fold(0_usize, |sum, byte| sum << 8 | usize::from(*byte));
+            let target = bytes.get_mut(place * size..(place + 1) * size);
+            let target =
+                target.ok_or_else(|| document.invalid(&field, format!("index {place} of {count}")))?;
+            target.copy_from_slice(value);
+        }
+    }
+    Ok(Elements { bytes, component: component.0, normalized: accessor.normalized })
+}
+
+/// `count` elements of `size` bytes from `offset` of a buffer view on, its stride removed.
+fn packed(
+    document: &Document,
+    view: usize,
+    offset: u64,
+    count: u64,
+    size: usize,
+    field: &str,
+) -> Result<Vec<u8>, SceneError> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let (bytes, stride) = document.view(view)?;
+    let stride = stride.unwrap_or(size) as u64;
+    if stride < size as u64 {
+        return Err(document.invalid(field, format!("a stride of {stride} for elements of {size} bytes")));
+    }
+    let length = stride.checked_mul(count - 1).and_then(|length| length.checked_add(size as u64));
+    let range = length.and_then(|length| slice(bytes, offset, length)).ok_or_else(|| {
+        let problem = format!("{count} elements from byte {offset} on do not fit bufferViews[{view}]");
+        document.invalid(field, problem)
+    })?;
+    Ok(range.chunks(stride as usize).flat_map(|element| &element[..size]).copied().collect())
+}

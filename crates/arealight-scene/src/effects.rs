@@ -1,0 +1,68 @@
+//! The scan that says which effects a scene calls for.
+
+use crate::{Scene, SceneMaterial};
+use arealight::Effects;
+use glam::Vec3;
+
+/// An effect, and who in the scene calls for it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Call {
+    /// One effect.
+    pub effect: Effects,
+    /// The first light or material that calls for it, such as "light 'sign'".
+    pub reason: String,
+}
+
+impl std::fmt::Display for Call {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.effect, self.reason)
+    }
+}
+
+/// What a scene calls for and nothing else, each effect once, with its reason, in the order of their bits.
+/// [`Scene::effects`] is their union.
+pub fn required_effects(scene: &Scene) -> Vec<Call> {
+    // Only materials that something has been made of are in a scene
+    let material = |effect, calls: fn(&SceneMaterial) -> bool| {
+        let first = scene.materials.iter().find(|m| calls(m))?;
+        Some(Call { effect, reason: format!("material '{}'", first.name) })
+    };
+    let light = scene.lights.iter().find(|light| light.two_sided);
+    let light = light.map(|l| Call { effect: Effects::TWO_SIDED, reason: format!("light '{}'", l.name) });
+    let calls = [
+        material(Effects::DIFFUSE, has_diffuse_lobe),
+        material(Effects::GLOSSY, has_glossy_lobe),
+        light,
+        material(Effects::SPECULAR_INPUT, has_specular_input),
+    ];
+    calls.into_iter().flatten().collect()
+}
+
+impl Scene {
+    /// The union of [`required_effects`].
+    pub fn effects(&self) -> Effects {
+        required_effects(self).iter().map(|call| call.effect).collect()
+    }
+}
+
+/// Textures multiply: a metalness texture can make any metal a dielectric somewhere.
+fn is_dielectric_somewhere(material: &SceneMaterial) -> bool {
+    material.material.metalness < 1.0 || material.metallic_roughness_texture.is_some()
+}
+
+fn has_diffuse_lobe(material: &SceneMaterial) -> bool {
+    is_dielectric_somewhere(material) && material.material.base_color != Vec3::ZERO
+}
+
+fn has_glossy_lobe(material: &SceneMaterial) -> bool {
+    let reflects = material.material.dielectric_f0 != Vec3::ZERO || material.material.dielectric_f90 > 0.0;
+    // A metal's reflectance at grazing incidence is one, whatever its colour
+    material.material.metalness > 0.0 || reflects
+}
+
+fn has_specular_input(material: &SceneMaterial) -> bool {
+    // 1e-6: an index of 1.5, computed in f32, must count as 0.04
+    let usual = (material.material.dielectric_f0 - Vec3::splat(0.04)).abs().max_element() < 1e-6
+        && material.material.dielectric_f90 == 1.0;
+    is_dielectric_somewhere(material) && !usual
+}

@@ -1,0 +1,88 @@
+//! From a document to a scene, step by step.
+
+use crate::document::Document;
+use crate::{Bounds, Scene, SceneError, Warning, area_lights, emitters, materials, meshes, nodes};
+use std::path::Path;
+
+/// A scene in the making.
+pub(crate) struct Loader {
+    /// The file.
+    pub document: Document,
+    /// What has been read so far.
+    pub scene: Scene,
+    /// The scene's index of each of the file's materials that has been used; the last is the default one.
+    pub materials: Vec<Option<u32>>,
+    /// The scene's index of each of the file's images that has been used.
+    pub images: Vec<Option<u32>>,
+}
+
+impl Loader {
+    /// Notes what is not shown as the file says.
+    pub fn warn(&mut self, place: impl Into<String>, text: impl Into<String>) {
+        let warning = Warning { place: place.into(), text: text.into() };
+        if !self.scene.warnings.contains(&warning) {
+            self.scene.warnings.push(warning);
+        }
+    }
+}
+
+pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    read(Document::open(path)?, name)
+}
+
+pub(crate) fn from_bytes(bytes: &[u8], name: &str) -> Result<Scene, SceneError> {
+    read(Document::parse(bytes, name.to_owned(), None)?, name.to_owned())
+}
+
+fn read(document: Document, name: String) -> Result<Scene, SceneError> {
+    let materials = vec![None; document.root.materials.len() + 1];
+    let images = vec![None; document.root.images.len()];
+    let scene = Scene { name, ..Scene::default() };
+    let mut loader = Loader { document, scene, materials, images };
+    warn_of_what_is_ignored(&mut loader);
+    // Place the nodes in the world
+    let placed = nodes::place(&mut loader)?;
+    // Give every primitive to the triangles, and to the lights where it emits
+    let mut primitives = meshes::Meshes::new(&loader);
+    for node in &placed {
+        for primitive in &*primitives.of_node(&mut loader, node)? {
+            let material = materials::resolve(&mut loader, primitive)?;
+            let instance = meshes::place(&mut loader, node, primitive, material)?;
+            emitters::add(&mut loader, node, &instance);
+        }
+    }
+    // Lights and cameras that hang on nodes
+    area_lights::add(&mut loader, &placed)?;
+    let Loader { scene, .. } = &mut loader;
+    let corners = scene.triangles.iter().flat_map(|t| t.positions);
+    scene.bounds = corners.collect();
+    if scene.bounds.is_empty() {
+        scene.bounds = scene.lights.iter().flat_map(|l| l.vertices.iter().copied()).collect::<Bounds>();
+    }
+    nodes::add_cameras(&mut loader, &placed);
+    warn_of_what_is_missing(&mut loader);
+    Ok(loader.scene)
+}
+
+fn warn_of_what_is_ignored(loader: &mut Loader) {
+    let root = &loader.document.root;
+    let (animations, punctual) =
+        (root.animations.len(), root.extensions_used.iter().any(|e| e == "KHR_lights_punctual"));
+    if animations > 0 {
+        loader.warn("animations", format!("{animations} ignored; the scene is shown at rest"));
+    }
+    if punctual {
+        loader.warn("KHR_lights_punctual", "points have no area: these lights are left out");
+    }
+}
+
+fn warn_of_what_is_missing(loader: &mut Loader) {
+    let place = "scene";
+    if loader.scene.triangles.is_empty() {
+        loader.warn(place, "has no triangles: there is no surface to light");
+    }
+    if loader.scene.lights.is_empty() {
+        loader.warn(place, "has no area lights (emissive faces or EXT_lights_area): surfaces are black");
+    }
+}

@@ -1,0 +1,180 @@
+//! Metallic-roughness materials with the extensions that are supported.
+
+use crate::load::Loader;
+use crate::meshes::Primitive;
+use crate::{SceneError, SceneMaterial, images};
+use arealight::Material;
+use glam::Vec3;
+use gltf::json;
+use gltf::json::material::AlphaMode;
+use gltf::json::validation::Checked;
+
+/// The scene's index of a primitive's material.
+pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32, SceneError> {
+    let slot = primitive.material.unwrap_or(loader.materials.len() - 1);
+    let known = loader.materials.get(slot).copied().flatten();
+    let index = if let Some(index) = known {
+        index
+    } else {
+        let material = read(loader, slot)?;
+        loader.scene.materials.push(material);
+        let index = (loader.scene.materials.len() - 1) as u32;
+        loader.materials[slot] = Some(index);
+        index
+    };
+    let material = &loader.scene.materials[index as usize];
+    let textured = [
+        material.base_color_texture,
+        material.metallic_roughness_texture,
+        material.normal_texture,
+        material.emission_texture,
+    ];
+    if !primitive.has_uvs && textured.iter().any(Option::is_some) {
+        let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
+        loader.warn(primitive.field.clone(), text);
+    }
+    Ok(index)
+}
+
+/// Reads the file's material `slot`, or the default one where there is none.
+fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
+    let source = loader.document.root.materials.get(slot).cloned().unwrap_or_default();
+    let name = match &source.name {
+        Some(name) => name.clone(),
+        None if slot < loader.document.root.materials.len() => format!("#{slot}"),
+        None => "default".into(),
+    };
+    let mut reader = Reader { place: format!("material '{name}'"), loader };
+    reader.warn_of_unknown_extensions(&source);
+    // Factors
+    let pbr = &source.pbr_metallic_roughness;
+    let [r, g, b, alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
+    let [metalness] = reader.fractions("metallicFactor", [pbr.metallic_factor.0]);
+    let [roughness] = reader.fractions("roughnessFactor", [pbr.roughness_factor.0]);
+    let (dielectric_f0, dielectric_f90) = reader.dielectric(&source);
+    let material =
+        Material { base_color: Vec3::new(r, g, b), metalness, roughness, dielectric_f0, dielectric_f90 };
+    let emission = reader.emission(&source);
+    // Textures
+    let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), "baseColorTexture", true)?;
+    let metallic_roughness_texture =
+        reader.texture(pbr.metallic_roughness_texture.as_ref(), "metallicRoughnessTexture", false)?;
+    let emission_texture = reader.texture(source.emissive_texture.as_ref(), "emissiveTexture", true)?;
+    let (normal_texture, normal_scale) = reader.normal_texture(source.normal_texture.as_ref())?;
+    // Transparency
+    let alpha_cutoff = match source.alpha_mode {
+        Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
+        Checked::Valid(AlphaMode::Blend) => {
+            reader.warn("alphaMode BLEND is not supported: treated as opaque");
+            None
+        }
+        _ => None,
+    };
+    Ok(SceneMaterial {
+        name,
+        material,
+        base_alpha: alpha,
+        emission,
+        base_color_texture,
+        metallic_roughness_texture,
+        normal_texture,
+        normal_scale,
+        emission_texture,
+        alpha_cutoff,
+        double_sided: source.double_sided,
+    })
+}
+
+struct Reader<'a> {
+    place: String,
+    loader: &'a mut Loader,
+}
+
+impl Reader<'_> {
+    fn warn(&mut self, text: impl Into<String>) {
+        self.loader.warn(self.place.clone(), text);
+    }
+
+    /// Clamps factors to [0, 1].
+    fn fractions<const N: usize>(&mut self, field: &str, values: [f32; N]) -> [f32; N] {
+        let clamped = values.map(|value| value.clamp(0.0, 1.0));
+        if clamped != values {
+            self.warn(format!("{field} {values:?} is not in [0, 1]: clamped"));
+        }
+        clamped
+    }
+
+    /// Reflectance of the dielectric at normal and at grazing incidence, by `KHR_materials_ior` and
+    /// `KHR_materials_specular`.
+    fn dielectric(&mut self, source: &json::Material) -> (Vec3, f32) {
+        let extensions = source.extensions.as_ref();
+        // An index of zero means a reflectance of one
+        let mut index = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |ior| f64::from(ior.ior.0));
+        if !index.is_finite() || (index < 1.0 && index != 0.0) {
+            self.warn(format!("KHR_materials_ior: {index} is below 1: 1.5 is used"));
+            index = 1.5;
+        }
+        let by_index = (((index - 1.0) / (index + 1.0)) * ((index - 1.0) / (index + 1.0))) as f32;
+        let Some(specular) = extensions.and_then(|e| e.specular.as_ref()) else {
+            return (Vec3::splat(by_index), 1.0);
+        };
+        if specular.specular_texture.is_some() || specular.specular_color_texture.is_some() {
+            self.warn("KHR_materials_specular: its textures are not supported: ignored");
+        }
+        let [weight] = self.fractions("specularFactor", [specular.specular_factor.0]);
+        let color = Vec3::from_array(specular.specular_color_factor.0.map(|c| c.clamp(0.0, f32::MAX)));
+        ((color * by_index).min(Vec3::ONE) * weight, weight)
+    }
+
+    /// emissiveFactor times `KHR_materials_emissive_strength`.
+    fn emission(&mut self, source: &json::Material) -> Vec3 {
+        let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
+        let strength = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+        let strength = strength.map_or(1.0, |s| s.emissive_strength.0);
+        if strength.is_finite() && strength >= 0.0 {
+            return factor * strength;
+        }
+        self.warn(format!("emissiveStrength {strength} must be finite and not negative: 0 is used"));
+        Vec3::ZERO
+    }
+
+    fn texture(
+        &mut self,
+        info: Option<&json::texture::Info>,
+        field: &str,
+        srgb: bool,
+    ) -> Result<Option<u32>, SceneError> {
+        let Some(info) = info else { return Ok(None) };
+        let transformed = info.extensions.as_ref().is_some_and(|e| e.others.contains_key(TRANSFORM));
+        self.warn_of_coordinates(field, info.tex_coord, transformed);
+        images::resolve(self.loader, info.index.value(), srgb).map(Some)
+    }
+
+    fn normal_texture(
+        &mut self,
+        info: Option<&json::material::NormalTexture>,
+    ) -> Result<(Option<u32>, f32), SceneError> {
+        let Some(info) = info else { return Ok((None, 1.0)) };
+        let transformed = info.extensions.as_ref().is_some_and(|e| e.others.contains_key(TRANSFORM));
+        self.warn_of_coordinates("normalTexture", info.tex_coord, transformed);
+        let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
+        Ok((Some(images::resolve(self.loader, info.index.value(), false)?), scale))
+    }
+
+    fn warn_of_coordinates(&mut self, field: &str, tex_coord: u32, transformed: bool) {
+        if tex_coord != 0 {
+            self.warn(format!("{field}.texCoord {tex_coord} is not supported: TEXCOORD_0 is used"));
+        }
+        if transformed {
+            self.warn(format!("{field}: {TRANSFORM} is not supported: ignored"));
+        }
+    }
+
+    fn warn_of_unknown_extensions(&mut self, source: &json::Material) {
+        for extension in source.extensions.iter().flat_map(|e| e.others.keys()) {
+            self.warn(format!("{extension} is not supported: ignored"));
+        }
+    }
+}
+
+const TRANSFORM: &str = "KHR_texture_transform";

@@ -1,0 +1,216 @@
+//! Primitives, and their instances as triangles in the world.
+
+use crate::load::Loader;
+use crate::nodes::PlacedNode;
+use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor};
+use glam::{DMat3, DVec3, Vec2, Vec3};
+use gltf::json;
+use gltf::json::mesh::{Mode, Semantic};
+use gltf::json::validation::Checked;
+use std::rc::Rc;
+
+/// A primitive of the file, in its mesh's space.
+pub(crate) struct Primitive {
+    /// Where it is in the file.
+    pub field: String,
+    /// Its mesh's name.
+    mesh_name: Option<String>,
+    /// Index of its material in the file.
+    pub material: Option<usize>,
+    /// Whether it has texture coordinates of its own.
+    pub has_uvs: bool,
+    positions: Vec<[f32; 3]>,
+    /// As many as positions; zero where there is none.
+    normals: Vec<Vec3>,
+    /// As many as positions; zero where there is none.
+    uvs: Vec<Vec2>,
+    /// Indices of vertices that exist.
+    triangles: Vec<[u32; 3]>,
+}
+
+/// A primitive's shape in the world.
+pub(crate) struct Instance {
+    /// The node's name, else the mesh's.
+    pub name: String,
+    /// Index into the scene's materials.
+    pub material: u32,
+    /// World positions.
+    pub positions: Vec<DVec3>,
+    /// Counter-clockwise from the front, without those that have no area.
+    pub triangles: Vec<[u32; 3]>,
+    /// How far a position may be off because the file's numbers are `f32`, in the world's unit.
+    pub rounding: f64,
+}
+
+/// The file's meshes, read when a node first uses them.
+pub(crate) struct Meshes {
+    read: Vec<Option<Rc<[Primitive]>>>,
+}
+
+impl Meshes {
+    pub fn new(loader: &Loader) -> Self {
+        Self { read: vec![None; loader.document.root.meshes.len()] }
+    }
+
+    /// The primitives of a node's mesh.
+    pub fn of_node(&mut self, loader: &mut Loader, node: &PlacedNode) -> Result<Rc<[Primitive]>, SceneError> {
+        let Some(index) = node.mesh else { return Ok(Rc::new([])) };
+        if let Some(Some(known)) = self.read.get(index) {
+            return Ok(known.clone());
+        }
+        let mesh = loader.document.root.meshes.get(index).cloned();
+        let missing = || loader.document.invalid(format!("nodes[{}].mesh", node.index), "does not exist");
+        let mesh = mesh.ok_or_else(missing)?;
+        let place = match &mesh.name {
+            Some(name) => format!("meshes[{index}] '{name}'"),
+            None => format!("meshes[{index}]"),
+        };
+        if mesh.primitives.iter().any(|p| p.targets.as_ref().is_some_and(|targets| !targets.is_empty())) {
+            loader.warn(place.as_str(), "morph targets ignored; the mesh is shown at rest");
+        }
+        let mut primitives = Vec::new();
+        for (number, primitive) in mesh.primitives.iter().enumerate() {
+            let field = format!("{place}.primitives[{number}]");
+            primitives.extend(read(loader, primitive, field, mesh.name.clone())?);
+        }
+        let primitives: Rc<[Primitive]> = primitives.into();
+        self.read[index] = Some(primitives.clone());
+        Ok(primitives)
+    }
+}
+
+/// Reads a primitive; none if it is not made of triangles.
+fn read(
+    loader: &mut Loader,
+    source: &json::mesh::Primitive,
+    field: String,
+    mesh_name: Option<String>,
+) -> Result<Option<Primitive>, SceneError> {
+    let mode = match source.mode {
+        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => mode,
+        Checked::Valid(mode) => {
+            loader.warn(field, format!("{mode:?} are not triangles: left out"));
+            return Ok(None);
+        }
+        Checked::Invalid => return Err(loader.document.invalid(field, "mode is unknown")),
+    };
+    if source.attributes.contains_key(&Checked::Valid(Semantic::Colors(0))) {
+        loader.warn(field.as_str(), "COLOR_0 is not supported: ignored");
+    }
+    let document = &loader.document;
+    // Vertices
+    let attribute = |semantic| source.attributes.get(&Checked::Valid(semantic)).map(json::Index::value);
+    let place = |name: &str| format!("{field}.{name}");
+    let Some(accessor) = attribute(Semantic::Positions) else {
+        return Err(document.invalid(field, "has no POSITION"));
+    };
+    let positions = accessor::floats::<3>(document, accessor, &place("POSITION"))?;
+    let count = positions.len();
+    let normals = match attribute(Semantic::Normals) {
+        Some(accessor) => accessor::floats::<3>(document, accessor, &place("NORMAL"))?,
+        None => vec![[0.0; 3]; count],
+    };
+    let coordinates = attribute(Semantic::TexCoords(0));
+    let uvs = match coordinates {
+        Some(accessor) => accessor::floats::<2>(document, accessor, &place("TEXCOORD_0"))?,
+        None => vec![[0.0; 2]; count],
+    };
+    for (name, length) in [("NORMAL", normals.len()), ("TEXCOORD_0", uvs.len())] {
+        if length != count {
+            return Err(document.invalid(place(name), format!("{length} for {count} positions")));
+        }
+    }
+    // Corners, three a triangle
+    let corners = match source.indices {
+        Some(indices) => accessor::indices(document, indices.value(), &place("indices"))?,
+        None => (0..count as u32).collect(),
+    };
+    if let Some(at) = corners.iter().position(|&i| i as usize >= count) {
+        let (file, field) = (document.file.clone(), format!("{field}.indices[{at}]"));
+        return Err(SceneError::IndexOutOfRange { file, field, index: corners[at], count });
+    }
+    let (triangles, left_over) = assemble(mode, &corners);
+    if left_over > 0 {
+        loader.warn(field.as_str(), format!("{left_over} corners are no whole triangle: left out"));
+    }
+    Ok(Some(Primitive {
+        field,
+        mesh_name,
+        material: source.material.map(|m| m.value()),
+        has_uvs: coordinates.is_some(),
+        positions,
+        normals: normals.into_iter().map(Vec3::from_array).collect(),
+        uvs: uvs.into_iter().map(Vec2::from_array).collect(),
+        triangles,
+    }))
+}
+
+/// Triangles of a list, strip or fan of corners, and how many corners are left over.
+fn assemble(mode: Mode, corners: &[u32]) -> (Vec<[u32; 3]>, usize) {
+    let windows = corners.windows(3);
+    let triangles: Vec<[u32; 3]> = match mode {
+        // Every other triangle of a strip is turned around
+        Mode::TriangleStrip => windows
+            .enumerate()
+            .map(|(i, w)| if i % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
+            .collect(),
+        Mode::TriangleFan => windows.map(|w| [corners[0], w[1], w[2]]).collect(),
+        _ => corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+    };
+    let left_over = match mode {
+        Mode::TriangleStrip | Mode::TriangleFan => corners.len().min(if corners.len() < 3 { 2 } else { 0 }),
+        _ => corners.len() % 3,
+    };
+    (triangles, left_over)
+}
+
+/// Adds a primitive's triangles to the scene, as its node places them.
+pub(crate) fn place(
+    loader: &mut Loader,
+    node: &PlacedNode,
+    primitive: &Primitive,
+    material: u32,
+) -> Result<Instance, SceneError> {
+    let total = loader.scene.triangles.len() + primitive.triangles.len();
+    if total > MAX_TRIANGLES {
+        return Err(loader.document.too_large("triangles", total as u64, MAX_TRIANGLES as u64));
+    }
+    // Move the vertices into the world
+    let positions: Vec<DVec3> = primitive
+        .positions
+        .iter()
+        .map(|p| node.world.transform_point3(DVec3::from_array(p.map(f64::from))))
+        .collect();
+    if let Some(bad) = positions.iter().position(|p| p.is_nan() || p.abs().max_element() > MAX_COORDINATE) {
+        let field = format!("{}.POSITION[{bad}] in the world", primitive.field);
+        return Err(loader.document.not_finite(field, positions[bad].to_array()));
+    }
+    // Normals go by the cofactors; a mirror turns them, and the vertex order, around
+    let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
+    let mirrored = x.cross(y).dot(z) < 0.0;
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * if mirrored { -1.0 } else { 1.0 };
+    let normals: Vec<Vec3> =
+        primitive.normals.iter().map(|n| (cofactors * n.as_dvec3()).normalize_or_zero().as_vec3()).collect();
+    let mut kept = Vec::with_capacity(primitive.triangles.len());
+    for &[a, b, c] in &primitive.triangles {
+        let corners = if mirrored { [a, c, b] } else { [a, b, c] }.map(|i| i as usize);
+        let [p, q, r] = corners.map(|i| positions[i]);
+        // A triangle without area cannot be seen; one without normals is flat
+        let Some(flat) = (q - p).cross(r - p).try_normalize() else { continue };
+        let normals = corners.map(|i| if normals[i] == Vec3::ZERO { flat.as_vec3() } else { normals[i] });
+        let uvs = corners.map(|i| primitive.uvs[i]);
+        loader.scene.triangles.push(Triangle { positions: [p, q, r], normals, uvs, material });
+        kept.push(corners.map(|i| i as u32));
+    }
+    let largest =
+        primitive.positions.iter().flatten().fold(0.0_f64, |largest, x| largest.max(f64::from(x.abs())));
+    let stretch = x.length().max(y.length()).max(z.length());
+    let name = node.name.as_ref().or(primitive.mesh_name.as_ref()).filter(|name| !name.is_empty());
+    Ok(Instance {
+        name: name.map_or_else(|| format!("node {}", node.index), Clone::clone),
+        material,
+        positions,
+        triangles: kept,
+        rounding: largest * stretch * f64::from(f32::EPSILON),
+    })
+}

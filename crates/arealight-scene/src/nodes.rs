@@ -1,0 +1,133 @@
+//! The tree of nodes, flattened: who is where in the world.
+
+use crate::load::Loader;
+use crate::{Camera, MAX_COORDINATE, SceneError};
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+use gltf::json;
+use serde_json::Value;
+
+/// A node with its place in the world.
+pub(crate) struct PlacedNode {
+    /// Index in the file.
+    pub index: usize,
+    /// The file's name for it.
+    pub name: Option<String>,
+    /// From the node's space to the world's. Finite.
+    pub world: DAffine3,
+    /// Its mesh.
+    pub mesh: Option<usize>,
+    /// Its camera.
+    camera: Option<usize>,
+    /// Its `EXT_lights_area` extension.
+    pub area_light: Option<Value>,
+}
+
+/// Every node of the file's default scene, parents first.
+pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> {
+    let roots = root_nodes(loader);
+    let document = &loader.document;
+    let nodes = &document.root.nodes;
+    let mut seen = vec![false; nodes.len()];
+    let mut placed = Vec::new();
+    let mut skinned = Vec::new();
+    // Walk depth first with a stack of our own: a file may nest deeper than the thread's stack
+    let mut stack: Vec<(usize, DAffine3)> =
+        roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
+    while let Some((index, parent)) = stack.pop() {
+        let field = || format!("nodes[{index}]");
+        let node = nodes.get(index).ok_or_else(|| document.invalid(field(), "does not exist"))?;
+        if std::mem::replace(&mut seen[index], true) {
+            return Err(SceneError::NodeTwice { file: document.file.clone(), node: index });
+        }
+        // Combine its own transform with its parent's
+        let local = local_transform(node).map_err(|p| document.invalid(field(), p))?;
+        let world = parent * local;
+        let columns = world.to_cols_array();
+        if columns.iter().any(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
+            return Err(document.not_finite(format!("{}: its world transform", field()), columns));
+        }
+        if node.skin.is_some() {
+            skinned.push(index);
+        }
+        let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_lights_area"));
+        placed.push(PlacedNode {
+            index,
+            name: node.name.clone(),
+            world,
+            mesh: node.mesh.map(|m| m.value()),
+            camera: node.camera.map(|c| c.value()),
+            area_light: extension.cloned(),
+        });
+        let children = node.children.iter().flatten().rev();
+        stack.extend(children.map(|child| (child.value(), world)));
+    }
+    for index in skinned {
+        loader.warn(format!("nodes[{index}]"), "skin ignored; the mesh is shown at rest");
+    }
+    Ok(placed)
+}
+
+/// The default scene's nodes; without one the first scene's, without scenes every node that has no parent.
+fn root_nodes(loader: &mut Loader) -> Vec<usize> {
+    let root = &loader.document.root;
+    let chosen = root.scene.map_or(0, |scene| scene.value());
+    let Some(scene) = root.scenes.get(chosen) else {
+        let mut is_child = vec![false; root.nodes.len()];
+        for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
+            is_child[child.value()] = true;
+        }
+        let parentless = (0..is_child.len()).filter(|i| !is_child[*i]).collect();
+        loader.warn("scenes", "there is none: every node is shown");
+        return parentless;
+    };
+    let nodes = scene.nodes.iter().map(json::Index::value).collect();
+    if let Some(name) = scene.name.clone().filter(|name| !name.is_empty()) {
+        loader.scene.name = name;
+    }
+    if loader.document.root.scene.is_none() {
+        loader.warn("scene", "there is no default scene: the first is shown");
+    }
+    nodes
+}
+
+fn local_transform(node: &json::Node) -> Result<DAffine3, String> {
+    if let Some(matrix) = node.matrix {
+        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))));
+    }
+    let scale = node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from)));
+    let translation = node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from)));
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    let length = rotation.length();
+    if !(length > 1e-6 && length.is_finite()) {
+        return Err(format!("rotation: {:?} is not a quaternion of unit length", rotation.to_array()));
+    }
+    Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
+}
+
+/// Adds the nodes' cameras to the scene, whose bounds are known.
+pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
+    for node in nodes {
+        let Some(camera) = node.camera.and_then(|c| loader.document.root.cameras.get(c)) else { continue };
+        let name = node.name.clone().or_else(|| camera.name.clone());
+        let name = name.unwrap_or_else(|| format!("camera {}", loader.scene.cameras.len()));
+        let place = format!("camera '{name}'");
+        let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
+        // A camera looks along its node's -Z; where a mirror or shear is in the way, Z and then Y decide
+        let forward = (-z).normalize_or_zero();
+        if forward == DVec3::ZERO || x.cross(z).length() == 0.0 || forward.cross(y).length() == 0.0 {
+            loader.warn(place, "its node's scale is zero: left out");
+            continue;
+        }
+        let bounds = loader.scene.bounds;
+        let made = if let Some(perspective) = &camera.perspective {
+            Camera::perspective(name, node.world.translation, forward, y, perspective)
+        } else {
+            loader.warn(place.as_str(), "orthographic: a perspective camera that looks along it is used");
+            Some(Camera::framing(&name, bounds, forward, y, 16.0 / 9.0))
+        };
+        match made {
+            Some(camera) => loader.scene.cameras.push(camera),
+            None => loader.warn(place, "yfov must be between 0 and pi: left out"),
+        }
+    }
+}

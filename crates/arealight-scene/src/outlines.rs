@@ -1,0 +1,308 @@
+//! Triangles to polygons: connected coplanar triangles merge into one simple outline.
+//!
+//! A flat part grows triangle by triangle from its largest one, and its outline stays a simple loop all the
+//! way: a triangle that would close a ring around a hole, or make the loop touch itself, waits, and what
+//! still waits at the end starts a polygon of its own. A part without holes always becomes one polygon
+//! (planar discs can be shelled from any start); a ring becomes two.
+
+use crate::Bounds;
+use glam::{DVec2, DVec3};
+use std::collections::{HashMap, HashSet, VecDeque};
+
+/// How far vertices may be apart to be one, relative to the diagonal of all: below what is visible, above the
+/// rounding of transforms.
+const WELD: f64 = 1e-6;
+
+/// How far a vertex may be off the plane of its polygon, or off the straight line it is removed from,
+/// relative to the diagonal of all.
+const FLAT: f64 = 1e-5;
+
+/// How many triangles of an edge are looked at. Two are enough for back-to-back faces; a file with thousands
+/// on one edge must not cost their square.
+const SHARED: usize = 4;
+
+/// The polygons that a set of triangles is.
+#[derive(Debug, Default)]
+pub(crate) struct Outlines {
+    /// In the orientation of the triangles; without vertices in the middle of straight edges.
+    pub polygons: Vec<Vec<DVec3>>,
+    /// Whether some neighbours are not coplanar.
+    pub bent: bool,
+    /// How many polygons there are beyond one a flat part.
+    pub split: usize,
+}
+
+/// Merges triangles. `rounding` is how far positions may be off in any case.
+pub(crate) fn outlines(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Outlines {
+    let size = triangles.iter().flatten().map(|&i| positions[i as usize]).collect::<Bounds>().diagonal();
+    let mesh = Mesh::new(positions, triangles, size * WELD + rounding);
+    let flat = size * FLAT + rounding;
+    let mut outlines = Outlines::default();
+    let mut part = vec![usize::MAX; mesh.triangles.len()];
+    // Start from large triangles: they know their plane best
+    let mut seeds: Vec<usize> = (0..mesh.triangles.len()).collect();
+    seeds.sort_by(|a, b| mesh.areas[*b].length().total_cmp(&mesh.areas[*a].length()));
+    let mut parts = 0;
+    for seed in seeds {
+        if part[seed] != usize::MAX {
+            continue;
+        }
+        let members = mesh.flat_part(seed, flat, parts, &mut part, &mut outlines.bent);
+        parts += 1;
+        let before = outlines.polygons.len();
+        for outline in mesh.simple_loops(&members) {
+            let outline: Vec<DVec3> = outline.into_iter().map(|i| mesh.positions[i as usize]).collect();
+            outlines.polygons.extend(straightened(&outline, flat));
+        }
+        outlines.split += (outlines.polygons.len() - before).saturating_sub(1);
+    }
+    outlines
+}
+
+/// Triangles whose vertices are shared where they are at the same place.
+struct Mesh {
+    positions: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
+    /// Area times normal of each triangle.
+    areas: Vec<DVec3>,
+    /// The triangles on the left of a directed edge, at most [`SHARED`].
+    by_edge: HashMap<(u32, u32), Vec<usize>>,
+}
+
+/// The directed edges of a triangle, each with the corner opposite to it.
+fn edges([a, b, c]: [u32; 3]) -> [(u32, u32, u32); 3] {
+    [(a, b, c), (b, c, a), (c, a, b)]
+}
+
+impl Mesh {
+    fn new(positions: &[DVec3], triangles: &[[u32; 3]], tolerance: f64) -> Self {
+        let (positions, index) = weld(positions, triangles, tolerance);
+        let mut mesh = Self { positions, triangles: Vec::new(), areas: Vec::new(), by_edge: HashMap::new() };
+        let mut known = HashSet::new();
+        for triangle in triangles {
+            let [a, b, c] = triangle.map(|i| index[&i]);
+            let [p, q, r] = [a, b, c].map(|i| mesh.positions[i as usize]);
+            let area = (q - p).cross(r - p) * 0.5;
+            // Leave out slivers that are as thin as the tolerance, and copies
+            let longest = p.distance(q).max(q.distance(r)).max(r.distance(p));
+            let copy = !known.insert([[a, b, c], [b, c, a], [c, a, b]].into_iter().min());
+            if a == b || b == c || c == a || area.length() * 2.0 <= longest * tolerance || copy {
+                continue;
+            }
+            for (from, to, _) in edges([a, b, c]) {
+                let sharing = mesh.by_edge.entry((from, to)).or_default();
+                if sharing.len() < SHARED {
+                    sharing.push(mesh.triangles.len());
+                }
+            }
+            mesh.triangles.push([a, b, c]);
+            mesh.areas.push(area);
+        }
+        mesh
+    }
+
+    /// Triangles across the edges of one.
+    fn neighbors(&self, triangle: usize) -> impl Iterator<Item = usize> + '_ {
+        edges(self.triangles[triangle])
+            .into_iter()
+            .filter_map(|(from, to, _)| self.by_edge.get(&(to, from)))
+            .flatten()
+            .copied()
+    }
+
+    /// The triangles that are connected to `seed` and in its plane; they are marked with `number`.
+    fn flat_part(
+        &self,
+        seed: usize,
+        flat: f64,
+        number: usize,
+        part: &mut [usize],
+        bent: &mut bool,
+    ) -> Vec<usize> {
+        let normal = self.areas[seed].normalize_or_zero();
+        let anchor = self.positions[self.triangles[seed][0] as usize];
+        let mut members = vec![seed];
+        part[seed] = number;
+        let mut next = 0;
+        while next < members.len() {
+            for neighbor in self.neighbors(members[next]) {
+                let corners = self.triangles[neighbor].map(|i| self.positions[i as usize]);
+                if corners.iter().any(|p| (*p - anchor).dot(normal).abs() > flat) {
+                    *bent = true;
+                } else if part[neighbor] == usize::MAX && self.areas[neighbor].dot(normal) > 0.0 {
+                    part[neighbor] = number;
+                    members.push(neighbor);
+                }
+            }
+            next += 1;
+        }
+        members
+    }
+
+    /// Simple outlines that cover `members`, a connected flat part, once.
+    fn simple_loops(&self, members: &[usize]) -> Vec<Vec<u32>> {
+        let mut waiting: HashSet<usize> = members.iter().copied().collect();
+        let mut loops = Vec::new();
+        for &start in members {
+            if !waiting.remove(&start) {
+                continue;
+            }
+            let mut outline = Loop::around(self.triangles[start]);
+            let mut queue: VecDeque<usize> = self.neighbors(start).collect();
+            while let Some(triangle) = queue.pop_front() {
+                // A triangle that waits gets another chance when a neighbour has been added
+                if waiting.contains(&triangle) && outline.add(self.triangles[triangle]) {
+                    waiting.remove(&triangle);
+                    queue.extend(self.neighbors(triangle));
+                }
+            }
+            loops.push(outline.vertices());
+        }
+        loops
+    }
+}
+
+/// A simple closed loop of vertices, counter-clockwise around what it holds.
+struct Loop {
+    start: u32,
+    next: HashMap<u32, u32>,
+}
+
+impl Loop {
+    fn around(triangle: [u32; 3]) -> Self {
+        Self { start: triangle[0], next: edges(triangle).map(|(from, to, _)| (from, to)).into() }
+    }
+
+    /// Grows by a triangle outside; false if the loop would not stay simple.
+    fn add(&mut self, triangle: [u32; 3]) -> bool {
+        let is_shared = |(from, to, _): &(u32, u32, u32)| self.next.get(to) == Some(from);
+        let shared: Vec<(u32, u32, u32)> = edges(triangle).into_iter().filter(is_shared).collect();
+        match shared[..] {
+            // One edge: go around by the opposite corner, which must be new
+            [(from, to, opposite)] if !self.next.contains_key(&opposite) => {
+                self.next.insert(to, opposite);
+                self.next.insert(opposite, from);
+                true
+            }
+            // Two edges: take the short cut past the corner between them
+            [one, other] => {
+                let consecutive = one.1 == other.0;
+                let (first, second) = if consecutive { (one, other) } else { (other, one) };
+                let (from, middle, to) = (second.1, first.1, first.0);
+                self.next.remove(&middle);
+                self.next.insert(from, to);
+                self.start = from;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    fn vertices(&self) -> Vec<u32> {
+        let mut vertices = vec![self.start];
+        let mut at = self.next[&self.start];
+        while at != self.start {
+            vertices.push(at);
+            at = self.next[&at];
+        }
+        vertices
+    }
+}
+
+/// Gives vertices within `tolerance` of each other one index: new positions, and the new index of each used
+/// old one.
+fn weld(positions: &[DVec3], triangles: &[[u32; 3]], tolerance: f64) -> (Vec<DVec3>, HashMap<u32, u32>) {
+    let anchor = triangles.first().map_or(DVec3::ZERO, |t| positions[t[0] as usize]);
+    let cell = |p: DVec3| ((p - anchor) / tolerance.max(f64::MIN_POSITIVE)).floor().as_i64vec3();
+    let mut cells: HashMap<glam::I64Vec3, Vec<u32>> = HashMap::new();
+    let mut welded: Vec<DVec3> = Vec::new();
+    let mut index = HashMap::new();
+    for &old in triangles.iter().flatten() {
+        if index.contains_key(&old) {
+            continue;
+        }
+        let position = positions[old as usize];
+        let home = cell(position);
+        // Look in the cells around for a vertex that is near enough
+        let around =
+            (0..27).map(|i| home.wrapping_add(glam::I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+        let near = around
+            .filter_map(|cell| cells.get(&cell))
+            .flatten()
+            .find(|&&i| welded[i as usize].distance(position) <= tolerance)
+            .copied();
+        let new = near.unwrap_or_else(|| {
+            welded.push(position);
+            let new = (welded.len() - 1) as u32;
+            cells.entry(home).or_default().push(new);
+            new
+        });
+        index.insert(old, new);
+    }
+    (welded, index)
+}
+
+/// The outline without the vertices that lie on straight edges, to `tolerance`; none if nothing is left.
+///
+/// From each kept vertex the edge reaches as far as one direction passes within the tolerance of every vertex
+/// on the way.
+fn straightened(outline: &[DVec3], tolerance: f64) -> Option<Vec<DVec3>> {
+    let count = outline.len();
+    let center = outline.iter().sum::<DVec3>() / count as f64;
+    let pairs = outline.iter().zip(outline.iter().cycle().skip(1));
+    let area: DVec3 = pairs.map(|(a, b)| (*a - center).cross(*b - center)).sum::<DVec3>() * 0.5;
+    let (tangent, bitangent) = area.try_normalize()?.any_orthonormal_pair();
+    let flat: Vec<DVec2> = outline
+        .iter()
+        .map(|p| DVec2::new((*p - center).dot(tangent), (*p - center).dot(bitangent)))
+        .collect();
+    // The vertex farthest from the middle is a corner
+    let first = (0..count).max_by(|a, b| flat[*a].length().total_cmp(&flat[*b].length()))?;
+    let at = |i: usize| (first + i) % count;
+    let mut kept = vec![outline[first]];
+    let mut start = 0;
+    while start < count {
+        let end = start + straight_run(count - start, |i| flat[at(start + i)], tolerance);
+        if end < count {
+            kept.push(outline[at(end)]);
+        }
+        start = end;
+    }
+    (kept.len() >= 3).then_some(kept)
+}
+
+/// How far, up to `limit`, a straight edge from point 0 reaches: each point on the way is within `tolerance`
+/// of it, and each is farther from point 0 than the one before.
+fn straight_run(limit: usize, point: impl Fn(usize) -> DVec2, tolerance: f64) -> usize {
+    let origin = point(0);
+    let axis = point(1) - origin;
+    let mut reach = 1;
+    // The slopes, against the first step, of lines that pass every point so far
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+    let coordinates = |i: usize| {
+        let offset = point(i) - origin;
+        (offset.dot(axis), axis.perp_dot(offset))
+    };
+    let mut along_before = 0.0;
+    for i in 1..limit {
+        let (along, across) = coordinates(i);
+        if along <= along_before {
+            break;
+        }
+        let margin = tolerance * axis.length();
+        low = low.max((across - margin) / along);
+        high = high.min((across + margin) / along);
+        let (next_along, next_across) = coordinates(i + 1);
+        let slope = next_across / next_along;
+        if !(next_along > along && slope >= low && slope <= high) {
+            break;
+        }
+        along_before = along;
+        reach = i + 1;
+    }
+    reach
+}
+
+#[cfg(test)]
+#[path = "outlines_tests.rs"]
+mod tests;

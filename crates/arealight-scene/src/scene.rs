@@ -1,0 +1,208 @@
+//! What a scene holds.
+
+use crate::{Camera, SceneError};
+use arealight::{Material, PolygonLight};
+use glam::{DVec3, Vec2, Vec3};
+use std::path::Path;
+
+/// The most triangles a scene may have; a file beyond is refused.
+pub const MAX_TRIANGLES: usize = 1 << 24;
+
+/// World coordinates beyond are refused: areas of boxes, as `f32`, would be infinite.
+pub const MAX_COORDINATE: f64 = 1e15;
+
+/// A scene, as a renderer needs it.
+#[derive(Debug, Clone, Default)]
+pub struct Scene {
+    /// The glTF scene's name, else the file's.
+    pub name: String,
+    /// Every visible triangle; emissive ones too.
+    pub triangles: Vec<Triangle>,
+    /// Materials that the triangles use.
+    pub materials: Vec<SceneMaterial>,
+    /// Textures that the materials use.
+    pub textures: Vec<Texture>,
+    /// Images that the textures use.
+    pub images: Vec<Image>,
+    /// Every light; each passes [`PolygonLight::validate`].
+    pub lights: Vec<PolygonLight>,
+    /// The file's cameras, in the order of its nodes.
+    pub cameras: Vec<Camera>,
+    /// Holds every triangle, or every light if there is no triangle.
+    pub bounds: Bounds,
+    /// What the file has that is not shown as it says, and what was done instead.
+    pub warnings: Vec<Warning>,
+}
+
+/// A triangle. Seen from its front the vertices run counter-clockwise, also under mirroring transforms.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triangle {
+    /// World positions.
+    pub positions: [DVec3; 3],
+    /// Unit shading normals in world space; where the file has none, the triangle's own.
+    pub normals: [Vec3; 3],
+    /// Texture coordinates; zero where the file has none. (0, 0) is the image's upper left corner.
+    pub uvs: [Vec2; 3],
+    /// Index into [`Scene::materials`].
+    pub material: u32,
+}
+
+/// A material: factors, and the textures that multiply them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneMaterial {
+    /// The file's name for it, or its index.
+    pub name: String,
+    /// Factors, each in range.
+    pub material: Material,
+    /// Factor of the base colour's alpha, in [0, 1].
+    pub base_alpha: f32,
+    /// Emitted radiance, W/(m² sr), not negative.
+    pub emission: Vec3,
+    /// Index into [`Scene::textures`] of an sRGB texture times base colour and alpha.
+    pub base_color_texture: Option<u32>,
+    /// Of a linear texture: green times roughness, blue times metalness.
+    pub metallic_roughness_texture: Option<u32>,
+    /// Of a linear texture of tangent-space normals.
+    pub normal_texture: Option<u32>,
+    /// Scale of the normal texture's x and y.
+    pub normal_scale: f32,
+    /// Of an sRGB texture times emission.
+    pub emission_texture: Option<u32>,
+    /// Alpha below which a surface is not there; none for opaque materials.
+    pub alpha_cutoff: Option<f32>,
+    /// Seen from both sides. Other surfaces are seen from their front only.
+    pub double_sided: bool,
+}
+
+/// How an image is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Texture {
+    /// Index into [`Scene::images`].
+    pub image: u32,
+    /// Red, green and blue are sRGB-encoded.
+    pub srgb: bool,
+    /// Beyond 0 to 1 in u.
+    pub wrap_u: Wrap,
+    /// Beyond 0 to 1 in v.
+    pub wrap_v: Wrap,
+}
+
+/// What texture coordinates beyond 0 to 1 read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// The image again, every other one mirrored.
+    Mirror,
+    /// The image's edge.
+    Clamp,
+}
+
+/// A decoded image.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Image {
+    /// The file's name for it, or its index.
+    pub name: String,
+    /// Width in texels, not zero.
+    pub width: u32,
+    /// Height in texels, not zero.
+    pub height: u32,
+    /// Red in the low byte, then green, blue, alpha; rows from the top.
+    pub texels: Vec<u32>,
+}
+
+/// A box along the axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// The smallest corner; infinite for an empty box.
+    pub min: DVec3,
+    /// The largest corner; negative infinite for an empty box.
+    pub max: DVec3,
+}
+
+/// Something in the file that is not shown as it says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// The mesh, material, node or extension.
+    pub place: String,
+    /// What is wrong and what was done.
+    pub text: String,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.place, self.text)
+    }
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
+    }
+}
+
+impl Bounds {
+    /// Grows the box to hold `point`.
+    pub fn add(&mut self, point: DVec3) {
+        self.min = self.min.min(point);
+        self.max = self.max.max(point);
+    }
+
+    /// Whether it holds nothing.
+    pub fn is_empty(&self) -> bool {
+        self.min.x > self.max.x
+    }
+
+    /// The middle; zero for an empty box.
+    pub fn center(&self) -> DVec3 {
+        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
+    }
+
+    /// The length of the diagonal; zero for an empty box.
+    pub fn diagonal(&self) -> f64 {
+        if self.is_empty() { 0.0 } else { self.min.distance(self.max) }
+    }
+}
+
+impl FromIterator<DVec3> for Bounds {
+    fn from_iter<I: IntoIterator<Item = DVec3>>(points: I) -> Self {
+        let mut bounds = Self::default();
+        points.into_iter().for_each(|p| bounds.add(p));
+        bounds
+    }
+}
+
+impl Scene {
+    /// Reads a `.gltf` or `.glb` file, and the buffers and images it refers to by relative paths or data
+    /// URIs. What the scene cannot show as the file says is in [`Scene::warnings`].
+    ///
+    /// # Errors
+    /// [`SceneError`] names the file and the field.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        crate::load::load(path.as_ref())
+    }
+
+    /// Reads a scene from memory. It cannot refer to other files; `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the field.
+    pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, SceneError> {
+        crate::load::from_bytes(bytes, name)
+    }
+
+    /// The camera called `name`, or the file's first, or, where the file has none,
+    /// [`Scene::framing_camera`]. None if `name` is given and no camera has it.
+    pub fn camera(&self, name: Option<&str>, aspect: f64) -> Option<Camera> {
+        match name {
+            Some(name) => self.cameras.iter().find(|camera| camera.name == name).cloned(),
+            None => Some(self.cameras.first().cloned().unwrap_or_else(|| self.framing_camera(aspect))),
+        }
+    }
+
+    /// A camera that sees the whole scene, from the front, a little from the right and from above, in an
+    /// image of `aspect` (width over height).
+    pub fn framing_camera(&self, aspect: f64) -> Camera {
+        Camera::framing("framing", self.bounds, DVec3::new(-0.45, -0.35, -1.0), DVec3::Y, aspect)
+    }
+}
