@@ -1,0 +1,110 @@
+//! For the tests of the whole workspace: a device, or a skip that shows.
+//!
+//! A suite that returns early without a device proves nothing, so:
+//! - with `AREALIGHT_REQUIRE_GPU=1` a missing device or validation layer fails the test;
+//! - without, the test says `skipped: …`;
+//! - a test that does get a device appends its name to the file that `AREALIGHT_GPU_TEST_LOG` names, where it
+//!   is set, so that a script can insist on how many did;
+//! - what the validation layer says fails the test when the [`TestHost`] is dropped.
+//!
+//! `AREALIGHT_DEVICE` chooses the device, and `AREALIGHT_VALIDATION` (`off`, `core`, `synchronization` or
+//! `gpu-assisted`) what is validated; synchronisation by default.
+
+use crate::device::{Host, HostOptions};
+use crate::error::HostError;
+use crate::validation::{Message, MessageLog, Validation};
+use std::io::Write as _;
+use std::sync::Arc;
+
+/// A host that fails the test when the validation layer has said anything by the time it is dropped.
+pub struct TestHost {
+    /// `None` only while it is being dropped.
+    host: Option<Host>,
+    log: Arc<MessageLog>,
+}
+
+impl std::ops::Deref for TestHost {
+    type Target = Host;
+
+    fn deref(&self) -> &Host {
+        let Some(host) = self.host.as_ref() else { unreachable!("the host is taken only by drop") };
+        host
+    }
+}
+
+impl Drop for TestHost {
+    fn drop(&mut self) {
+        // Let the device go first, so that the layer reports what was never destroyed.
+        self.host = None;
+        let messages = self.log.take();
+        if !std::thread::panicking() {
+            assert_silent(&messages);
+        }
+    }
+}
+
+/// A device for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is none: return then.
+///
+/// # Panics
+/// Where `AREALIGHT_REQUIRE_GPU=1` and the device or the validation layer is missing; where Vulkan fails in
+/// another way; where a variable has no known value.
+pub fn device_or_skip() -> Option<TestHost> {
+    let validation = match std::env::var("AREALIGHT_VALIDATION").as_deref() {
+        Err(_) | Ok("synchronization") => Validation::Synchronization,
+        Ok("core") => Validation::Core,
+        Ok("gpu-assisted") => Validation::GpuAssisted,
+        Ok("off") => Validation::Off,
+        Ok(other) => {
+            panic!("AREALIGHT_VALIDATION={other}: must be off, core, synchronization or gpu-assisted")
+        }
+    };
+    device_with(validation)
+}
+
+/// As [`device_or_skip`], validated in a way that the test insists on.
+///
+/// # Panics
+/// As [`device_or_skip`].
+pub fn device_with(validation: Validation) -> Option<TestHost> {
+    let options =
+        HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() };
+    let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
+    match Host::new(options) {
+        Ok(host) => {
+            record_execution();
+            Some(TestHost { log: host.message_log(), host: Some(host) })
+        }
+        Err(error) if required => panic!("AREALIGHT_REQUIRE_GPU=1, and: {error}"),
+        Err(error @ (HostError::LoaderMissing(_) | HostError::NoDevice { .. })) => {
+            println!("skipped: no Vulkan device ({error})");
+            None
+        }
+        Err(error @ HostError::ValidationLayerMissing) => {
+            println!("skipped: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Fails with every message, unless there is none.
+///
+/// # Panics
+/// Where there is a message.
+pub fn assert_silent(messages: &[Message]) {
+    let lines: Vec<_> = messages.iter().map(ToString::to_string).collect();
+    assert!(lines.is_empty(), "the validation layer says:\n{}", lines.join("\n"));
+}
+
+/// Appends the test's name to the log of tests that had a device.
+fn record_execution() {
+    let Some(path) = std::env::var_os("AREALIGHT_GPU_TEST_LOG") else { return };
+    let binary = std::env::current_exe().ok();
+    let binary = binary.as_deref().and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy();
+    let name = std::env::var("NEXTEST_TEST_NAME")
+        .unwrap_or_else(|_| std::thread::current().name().unwrap_or("unnamed").to_owned());
+    let line = format!("{binary} {name}\n");
+    let file = std::fs::OpenOptions::new().create(true).append(true).open(&path);
+    let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
+    assert!(written.is_ok(), "AREALIGHT_GPU_TEST_LOG={}: {written:?}", path.display());
+}
