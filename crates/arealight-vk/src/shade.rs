@@ -123,10 +123,19 @@ impl ShadePass {
     /// [`Error::Light`] for a light that cannot be shaded, [`Error::EffectsTooSmall`] for one that calls for
     /// an effect this pass was made without: a wrong picture is never the answer.
     pub fn pack_lights(&self, lights: &[PolygonLight], origin: DVec3) -> Result<PackedLights, Error> {
-        if let Some((missing, light)) = self.options.effects.missing_for(lights) {
-            return Err(Error::EffectsTooSmall { light: light.to_owned(), missing });
-        }
+        self.check_lights(lights)?;
         Ok(PackedLights::new(lights, origin)?)
+    }
+
+    /// Checks that the pass was made with every effect that `lights` call for.
+    ///
+    /// # Errors
+    /// [`Error::EffectsTooSmall`] names the first light that calls for more.
+    pub fn check_lights(&self, lights: &[PolygonLight]) -> Result<(), Error> {
+        match self.options.effects.missing_for(lights) {
+            Some((missing, light)) => Err(Error::EffectsTooSmall { light: light.to_owned(), missing }),
+            None => Ok(()),
+        }
     }
 
     /// Points a descriptor set at the resources of a run.

@@ -142,6 +142,17 @@ impl PackedLights {
         Ok(packed)
     }
 
+    /// Adds the lights of `other`, which may be packed relative to another origin; their vertices come after
+    /// those that are here.
+    pub fn append(&mut self, other: Self) {
+        let shift = self.vertices.len() as u32;
+        self.lights.extend(other.lights.into_iter().map(|mut light| {
+            light.first_vertex += shift;
+            light
+        }));
+        self.vertices.extend(other.vertices);
+    }
+
     fn push(&mut self, light: &PolygonLight, origin: DVec3) -> Result<(), LightError> {
         let first_vertex = self.vertices.len() as u32;
         // Subtract the origin in float64, then round once

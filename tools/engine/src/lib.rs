@@ -1,1 +1,146 @@
-//! The small engine that the tools, tests and benchmarks embed Arealight in.
+//! The small engine that the tools, tests and benchmarks embed Arealight in: the first host of
+//! [`arealight_vk`], and an example of one.
+//!
+//! [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points;
+//! [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte Carlo.
+
+mod eval;
+mod g_buffer;
+mod render;
+mod table;
+
+pub use arealight_host::{Host, HostError, HostOptions, Validation};
+pub use eval::EvalPoint;
+pub use g_buffer::GBuffer;
+pub use render::SceneRenderer;
+
+use arealight::LightTable;
+use arealight::kernels::Kernel;
+use arealight_host::{Buffer, DescriptorPool};
+use arealight_vk::{ComputePass, Context, HostDevice, Resource, TableFormat};
+use ash::vk;
+use bytemuck::Pod;
+use table::UploadedTable;
+
+/// A failure of the engine.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum EngineError {
+    /// The device, its memory or a submission.
+    #[error(transparent)]
+    Host(#[from] HostError),
+    /// The recorder.
+    #[error(transparent)]
+    Recorder(#[from] arealight_vk::Error),
+    /// A buffer is larger than the device binds.
+    #[error("{name}: {bytes} bytes, but the device binds at most {limit} to a shader: use a smaller scene")]
+    BufferTooLarge {
+        /// What the buffer holds.
+        name: &'static str,
+        /// Its size.
+        bytes: u64,
+        /// The device's `maxStorageBufferRange`.
+        limit: u64,
+    },
+}
+
+impl From<arealight::LightError> for EngineError {
+    fn from(error: arealight::LightError) -> Self {
+        Self::Recorder(error.into())
+    }
+}
+
+/// A device with a light table.
+pub struct Engine {
+    // Dropped in this order: what is on the device goes before the device
+    table: UploadedTable,
+    context: Context,
+    host: Host,
+}
+
+impl Engine {
+    /// Uploads `table` to the device of `host`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device is too old, or memory or a submission fails.
+    pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
+        let handles = HostDevice {
+            instance: host.instance(),
+            physical_device: host.physical_device(),
+            device: host.device(),
+            pipeline_cache: vk::PipelineCache::null(),
+        };
+        // SAFETY: The handles belong together and are kept alive by `host`, which this engine drops last.
+        let context = unsafe { Context::new(&handles) }?;
+        let table = UploadedTable::new(&host, &context, table, format)?;
+        Ok(Self { table, context, host })
+    }
+
+    /// The device.
+    pub fn host(&self) -> &Host {
+        &self.host
+    }
+
+    /// The recorder's context, to make passes from.
+    pub fn context(&self) -> &Context {
+        &self.context
+    }
+
+    /// The light table, as a pass takes it.
+    pub fn table(&self) -> Resource {
+        self.table.resource()
+    }
+
+    /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
+    fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
+        let (bytes, limit) =
+            (size_of_val(items) as u64, self.host.properties().limits.max_storage_buffer_range);
+        if bytes > u64::from(limit) {
+            return Err(EngineError::BufferTooLarge { name, bytes, limit: limit.into() });
+        }
+        if items.is_empty() {
+            return Ok(self.host.storage_buffer(name, &[T::zeroed()])?);
+        }
+        Ok(self.host.storage_buffer(name, items)?)
+    }
+
+    /// A pass of `kernel` with a descriptor set that points at `resources`.
+    fn pass(
+        &self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+        resources: &[Resource],
+    ) -> Result<BoundPass, EngineError> {
+        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped, and the device
+        // outlives it: the pool holds the host.
+        let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
+        let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's, and alive.
+        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+        // SAFETY: The set is new. Callers keep the resources until their submission was waited for.
+        unsafe { pass.write_set(set, resources) }?;
+        Ok(BoundPass { pass, set, _pool: pool })
+    }
+}
+
+/// A pass with the descriptor set of its only run.
+struct BoundPass {
+    pass: ComputePass,
+    set: vk::DescriptorSet,
+    _pool: DescriptorPool,
+}
+
+impl BoundPass {
+    /// Records the pass over `items`.
+    fn record(
+        &self,
+        commands: vk::CommandBuffer,
+        constants: &impl Pod,
+        items: [u32; 3],
+    ) -> Result<(), EngineError> {
+        let groups = self.pass.kernel().groups_for(items);
+        // SAFETY: `commands` is being recorded by Host::submit, outside a render pass; the set was written.
+        unsafe { self.pass.record(commands, self.set, bytemuck::bytes_of(constants), groups) }?;
+        Ok(())
+    }
+}

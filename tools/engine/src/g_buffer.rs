@@ -1,0 +1,58 @@
+//! The engine's own G-buffer, in the layout that the shade kernel reads.
+
+use crate::{Engine, EngineError};
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_vk::Resource;
+use ash::vk;
+
+/// The images of a G-buffer and the radiance image, all of one size.
+pub struct GBuffer {
+    /// Position relative to the origin; w = 0 where there is no surface.
+    pub position: Image,
+    /// Normal and roughness.
+    pub normal: Image,
+    /// Base colour and metalness.
+    pub base_color: Image,
+    /// Dielectric reflectance.
+    pub specular: Image,
+    /// Radiance.
+    pub radiance: Image,
+}
+
+impl GBuffer {
+    /// Makes the images; their contents are undefined.
+    ///
+    /// # Errors
+    /// [`EngineError::Host`] where the device has no such images or no memory for them.
+    pub fn new(engine: &Engine, extent: [u32; 2]) -> Result<Self, EngineError> {
+        let image = |name, format| {
+            engine.host().image(&ImageDescription {
+                name,
+                extent,
+                layers: 1,
+                format,
+                usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED,
+            })
+        };
+        // Normals in float32: in float16 a mirror shows their steps
+        let (full, half) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT);
+        Ok(Self {
+            position: image("position", full)?,
+            normal: image("normal", full)?,
+            base_color: image("base colour", half)?,
+            specular: image("specular", half)?,
+            radiance: image("radiance", full)?,
+        })
+    }
+
+    /// The images that describe surfaces, in the order of the bindings.
+    pub fn surfaces(&self) -> [&Image; 4] {
+        [&self.position, &self.normal, &self.base_color, &self.specular]
+    }
+
+    /// The surface images as a shading pass reads them.
+    pub fn sampled(&self) -> [Resource; 4] {
+        let layout = Usage::COMPUTE_READ.layout;
+        self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
+    }
+}

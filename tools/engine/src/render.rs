@@ -1,0 +1,223 @@
+//! What a camera sees of a scene, lit by its polygon lights.
+
+use crate::{BoundPass, Engine, EngineError, GBuffer};
+use arealight::gpu::{ReferenceConstants, VisibilityConstants};
+use arealight::kernels::{REFERENCE, VISIBILITY};
+use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality};
+use arealight_host::{Buffer, DescriptorPool, Usage};
+use arealight_scene::SceneBuffers;
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use glam::{Vec3, Vec4};
+use std::time::Duration;
+
+/// A scene on the device, with the images of one view of it.
+///
+/// Call [`SceneRenderer::visibility`] first; then [`SceneRenderer::shade`] or [`SceneRenderer::reference`] adds
+/// reflected light to the emission that the camera sees directly.
+pub struct SceneRenderer<'a> {
+    engine: &'a Engine,
+    lights: &'a [PolygonLight],
+    size: [u32; 2],
+    camera: VisibilityConstants,
+    g_buffer: GBuffer,
+    geometry: [Buffer; 5],
+    light_buffer: Buffer,
+    vertex_buffer: Buffer,
+    sampling: LightSampling,
+    shown: bool,
+}
+
+impl<'a> SceneRenderer<'a> {
+    /// Uploads a scene and makes the images of a view of `size` pixels. `lights` are world positions; the
+    /// buffers' origin is subtracted from them.
+    ///
+    /// # Errors
+    /// [`EngineError`] names the buffer or image that is too large, or the light that cannot be shaded.
+    pub fn new(
+        engine: &'a Engine,
+        scene: &SceneBuffers,
+        lights: &'a [PolygonLight],
+        camera: VisibilityConstants,
+        size: [u32; 2],
+    ) -> Result<Self, EngineError> {
+        let packed = PackedLights::new(lights, scene.origin)?;
+        let geometry = [
+            engine.storage("hierarchy nodes", &scene.nodes)?,
+            engine.storage("triangles", &scene.triangles)?,
+            engine.storage("materials", &scene.materials)?,
+            engine.storage("textures", &scene.textures)?,
+            engine.storage("texels", &scene.texels)?,
+        ];
+        Ok(Self {
+            engine,
+            lights,
+            size,
+            camera,
+            g_buffer: GBuffer::new(engine, size)?,
+            geometry,
+            light_buffer: engine.storage("lights", &packed.lights)?,
+            vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
+            sampling: LightSampling::new(lights, &packed),
+            shown: false,
+        })
+    }
+
+    /// Finds the surface at each pixel, and writes the emission that the camera sees. GPU time, where the
+    /// queue has timestamps.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
+        let images = self.g_buffer.surfaces().into_iter().chain([&self.g_buffer.radiance]);
+        let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
+        let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
+        let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
+        let took = self.engine.host().try_submit_timed(|commands| {
+            for image in images.clone() {
+                image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+            }
+            pass.record(commands, &self.camera, self.items())?;
+            for image in self.g_buffer.surfaces() {
+                image.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_READ);
+            }
+            Ok::<_, EngineError>(())
+        })?;
+        self.shown = true;
+        Ok(took)
+    }
+
+    /// Adds the light that surfaces reflect, by the fitted lobes. GPU time, where the queue has timestamps.
+    ///
+    /// # Errors
+    /// [`EngineError`] names a light that calls for more than `effects`, or says why the device fails.
+    pub fn shade(&mut self, effects: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let options =
+            ShadeOptions { effects, quality, position: PositionSource::Position, output: Output::Add };
+        // SAFETY: Submissions are waited for before the pass is dropped, and the engine outlives it.
+        let pass = unsafe { ShadePass::new(self.engine.context(), options) }?;
+        pass.check_lights(self.lights)?;
+        let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's, and alive.
+        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        let resources = ShadeResources {
+            table: self.engine.table(),
+            lights: Resource::buffer(self.light_buffer.handle()),
+            light_vertices: Resource::buffer(self.vertex_buffer.handle()),
+            position,
+            normal,
+            base_color,
+            specular,
+            radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
+        };
+        // SAFETY: The set is new, and the resources live until the submission was waited for.
+        unsafe { pass.write_set(set, &resources) }?;
+        let frame = ShadeFrame {
+            size: self.size,
+            camera: Vec3::from(self.camera.camera),
+            position_from_clip: None,
+            light_count: self.lights.len() as u32,
+        };
+        self.engine.host().try_submit_timed(|commands| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            // SAFETY: The commands are being recorded outside a render pass; the set was written with images
+            // of the frame's size.
+            unsafe { pass.record(commands, set, &frame) }?;
+            Ok(())
+        })
+    }
+
+    /// Adds the light that surfaces reflect, by `samples` Monte Carlo samples a pixel of the true BRDF.
+    /// `progress` is told how many samples are done. GPU time, where the queue has timestamps.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn reference(
+        &mut self,
+        samples: u32,
+        seed: u32,
+        mut progress: impl FnMut(u32),
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
+        let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
+        let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
+        let resources: Vec<_> = buffers
+            .into_iter()
+            .map(|buffer| Resource::buffer(buffer.handle()))
+            .chain(self.g_buffer.sampled())
+            .chain([Resource::StorageImage { view: self.g_buffer.radiance.view() }])
+            .collect();
+        let pass = self.engine.pass(&REFERENCE, &[], &resources)?;
+
+        let mut total = Some(Duration::ZERO);
+        let mut done = 0;
+        while done < samples {
+            let sample_count = self.samples_a_dispatch().min(samples - done);
+            let took = self.reference_step(&pass, done, sample_count, samples, seed)?;
+            total = total.zip(took).map(|(total, took)| total + took);
+            done += sample_count;
+            progress(done);
+        }
+        Ok(total)
+    }
+
+    fn reference_step(
+        &self,
+        pass: &BoundPass,
+        first_sample: u32,
+        sample_count: u32,
+        samples: u32,
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        let constants = ReferenceConstants {
+            camera: self.camera.camera,
+            light_count: self.lights.len() as u32,
+            first_sample,
+            sample_count,
+            weight: (f64::from(sample_count) / f64::from(samples)) as f32,
+            seed,
+        };
+        self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            pass.record(commands, &constants, self.items())
+        })
+    }
+
+    /// So many that a dispatch stays far below a second on a GPU, where a driver may reset the device, and
+    /// around a second on a CPU.
+    fn samples_a_dispatch(&self) -> u32 {
+        let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
+        let light_samples = pixels * (self.lights.len() as u64).max(1);
+        ((1 << 23) / light_samples).clamp(1, 64) as u32
+    }
+
+    /// The radiance image: rgb, and in w whether there is a surface; rows from the top.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn radiance(&mut self) -> Result<Vec<Vec4>, EngineError> {
+        self.ensure_visible()?;
+        let texels: Vec<[f32; 4]> = self.g_buffer.radiance.download(Usage::COMPUTE_WRITE)?;
+        Ok(texels.into_iter().map(Vec4::from_array).collect())
+    }
+
+    /// The G-buffer, after [`SceneRenderer::visibility`].
+    pub fn g_buffer(&self) -> &GBuffer {
+        &self.g_buffer
+    }
+
+    fn ensure_visible(&mut self) -> Result<(), EngineError> {
+        if !self.shown {
+            self.visibility()?;
+        }
+        Ok(())
+    }
+
+    fn items(&self) -> [u32; 3] {
+        [self.size[0], self.size[1], 1]
+    }
+}
