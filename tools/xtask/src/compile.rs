@@ -10,9 +10,6 @@ use std::path::Path;
 /// Folders that `#include` searches after the including file's own, from the checkout's root.
 pub const INCLUDE_FOLDERS: [&str; 2] = ["shaders/include", "shaders/kernels"];
 
-/// Where the kernels are, from the checkout's root.
-pub const KERNEL_FOLDER: &str = "shaders/kernels";
-
 /// What decides the SPIR-V beside the sources; a part of the hash of the sources.
 pub const OPTIONS: &str = "glsl compute, vulkan 1.1, spirv 1.3, not optimised, warnings are errors";
 
@@ -25,11 +22,11 @@ pub struct Compiled {
     pub sources: BTreeMap<String, String>,
 }
 
-/// Compiles the kernel `name`. The inner error is the compiler's, one `path:line: message` a line.
-pub fn compile(root: &Path, name: &str) -> Result<Result<Compiled, String>, TaskError> {
+/// Compiles the kernel at `path` from the root. The inner error is the compiler's, one `path:line: message` a
+/// line.
+pub fn compile(root: &Path, path: &str) -> Result<Result<Compiled, String>, TaskError> {
     let compiler = Compiler::new().map_err(TaskError::Compiler)?;
-    let path = format!("{KERNEL_FOLDER}/{name}.comp");
-    let text = read(&root.join(&path)).map_err(TaskError::file(&root.join(&path)))?;
+    let text = read(&root.join(path)).map_err(TaskError::file(&root.join(path)))?;
     let included = RefCell::new(Included::default());
     let mut options = CompileOptions::new().map_err(TaskError::Compiler)?;
 
@@ -46,11 +43,11 @@ pub fn compile(root: &Path, name: &str) -> Result<Result<Compiled, String>, Task
         Ok(ResolvedInclude { resolved_name: path, content: text })
     });
 
-    let result = compiler.compile_into_spirv(&text, ShaderKind::Compute, &path, "main", Some(&options));
+    let result = compiler.compile_into_spirv(&text, ShaderKind::Compute, path, "main", Some(&options));
     let mut included = included.take();
     Ok(match result {
         Ok(artifact) => {
-            included.sources.insert(path, text);
+            included.sources.insert(path.to_owned(), text);
             Ok(Compiled { spirv: artifact.as_binary_u8().to_vec(), sources: included.sources })
         }
         Err(shaderc::Error::CompilationError(_, messages)) => Err(included.explain(&messages)),
@@ -134,7 +131,7 @@ mod tests {
     fn the_sources_are_the_kernel_and_what_it_includes() {
         let folder =
             checkout(&[("good", "#include \"arealight/one.glsl\"", "")], &[("one", "#define ONE 1\n")]);
-        let compiled = compile(folder.path(), "good").unwrap().unwrap();
+        let compiled = compile(folder.path(), "shaders/kernels/good.comp").unwrap().unwrap();
         assert_eq!(compiled.spirv[..4], [0x03, 0x02, 0x23, 0x07]);
         let paths: Vec<_> = compiled.sources.keys().map(String::as_str).collect();
         assert_eq!(paths, ["shaders/include/arealight/one.glsl", "shaders/kernels/good.comp"]);
@@ -146,7 +143,7 @@ mod tests {
             &[("bad", "#include \"arealight/one.glsl\"", "")],
             &[("one", "#include \"two.glsl\"\n"), ("two", "\n\nfloat f() { return g(); }\n")],
         );
-        let messages = compile(folder.path(), "bad").unwrap().unwrap_err();
+        let messages = compile(folder.path(), "shaders/kernels/bad.comp").unwrap().unwrap_err();
         assert!(messages.contains("shaders/include/arealight/two.glsl:3: error: 'g'"), "{messages}");
         assert!(messages.contains("included from shaders/include/arealight/one.glsl\n"), "{messages}");
         assert!(messages.contains("included from shaders/kernels/bad.comp\n"), "{messages}");
@@ -155,7 +152,7 @@ mod tests {
     #[test]
     fn a_missing_include_says_where_it_was_sought() {
         let folder = checkout(&[("bad", "#include \"arealight/none.glsl\"", "")], &[]);
-        let messages = compile(folder.path(), "bad").unwrap().unwrap_err();
+        let messages = compile(folder.path(), "shaders/kernels/bad.comp").unwrap().unwrap_err();
         assert!(messages.contains("shaders/kernels/bad.comp:3"), "{messages}");
         assert!(messages.contains("cannot find \"arealight/none.glsl\" in"), "{messages}");
     }
@@ -164,7 +161,7 @@ mod tests {
     fn a_warning_is_an_error() {
         // An extension that the compiler does not know is a warning.
         let folder = checkout(&[("warns", "#extension GL_NOT_THERE : enable", "")], &[]);
-        let messages = compile(folder.path(), "warns").unwrap().unwrap_err();
+        let messages = compile(folder.path(), "shaders/kernels/warns.comp").unwrap().unwrap_err();
         assert!(messages.contains("GL_NOT_THERE"), "{messages}");
     }
 }

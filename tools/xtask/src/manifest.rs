@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// `crates/arealight/spirv/manifest.json`.
+/// `manifest.json`.
 #[derive(Debug, Default, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Manifest {
     /// By kernel.
@@ -27,14 +27,14 @@ pub struct Entry {
 }
 
 impl Manifest {
-    /// Where it is.
-    pub fn path(root: &Path) -> PathBuf {
-        root.join("crates/arealight/spirv/manifest.json")
+    /// Where it is, among the modules of `folder`.
+    pub fn path(folder: &Path) -> PathBuf {
+        folder.join("manifest.json")
     }
 
     /// Reads it; empty where there is none yet.
-    pub fn read(root: &Path) -> Result<Self, TaskError> {
-        let path = Self::path(root);
+    pub fn read(folder: &Path) -> Result<Self, TaskError> {
+        let path = Self::path(folder);
         match std::fs::read(&path) {
             Ok(bytes) => {
                 serde_json::from_slice(&bytes).map_err(|source| TaskError::Manifest { path, source })

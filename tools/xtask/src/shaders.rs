@@ -1,7 +1,7 @@
 //! `shaders`: compiles the kernels, or checks that the embedded SPIR-V is what they compile to.
 
 use crate::TaskError;
-use crate::compile::{Compiled, KERNEL_FOLDER, compile};
+use crate::compile::{Compiled, compile};
 use crate::manifest::{Entry, Manifest, hash};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -9,10 +9,22 @@ use std::process::{Command, Stdio};
 
 const REMEDY: &str = "run: SHADERC_LIB_DIR=\"$(tools/shaderc.sh)\" cargo run -p xtask -- shaders";
 
-/// Compile the kernels to the SPIR-V that the crate `arealight` embeds.
+/// Kernels and where their modules go, both from the checkout's root.
+struct KernelSet {
+    sources: &'static str,
+    modules: &'static str,
+}
+
+/// What the crate `arealight` embeds, and the wrong-doers that its host's tests must catch.
+const SETS: [KernelSet; 2] = [
+    KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
+    KernelSet { sources: "tools/host/tests/canary", modules: "tools/host/tests/canary" },
+];
+
+/// Compile the kernels to the SPIR-V that is checked in.
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
-/// the sources' hash, the module's hash and the compiler.
+/// the sources' hash, the module's hash and the compiler. Likewise for tools/host/tests/canary.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.
@@ -31,44 +43,38 @@ pub struct Arguments {
 
 /// Whether every kernel compiled, or passed the check.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
-    let available = kernels(root)?;
-    if let Some(name) = arguments.names.iter().find(|name| !available.contains(name)) {
-        return Err(TaskError::NoSuchKernel { name: name.clone(), available: available.join(", ") });
-    }
-    if arguments.check {
-        let findings = check(root, &available)?;
-        for finding in &findings {
-            println!("{}: {}", finding.severity(arguments.strict), finding.text());
-        }
-        let fresh = !findings.iter().any(|finding| finding.is_error(arguments.strict));
-        println!("{} kernels checked: {}", available.len(), if fresh { "fresh" } else { REMEDY });
-        Ok(fresh)
-    } else {
-        let names = if arguments.names.is_empty() { &available } else { &arguments.names };
-        write(root, names, &available)
-    }
+    if arguments.check { check_all(root, arguments.strict) } else { write_all(root, &arguments.names) }
 }
 
-/// Compiles `names`, writes each module that differs, and brings the manifest up to date.
-fn write(root: &Path, names: &[String], available: &[String]) -> Result<bool, TaskError> {
-    let mut manifest = Manifest::read(root)?;
-    manifest.kernels.retain(|name, _| available.contains(name));
-    let mut all_compiled = true;
-    for name in names {
-        match compile_and_validate(root, name)? {
-            Ok(compiled) => {
-                let changed = write_if_changed(&spirv_path(root, name), &compiled.spirv)?;
-                let state = if changed { "written" } else { "unchanged" };
-                println!("{name}: {} bytes, {state}", compiled.spirv.len());
-                manifest.kernels.insert(name.clone(), Entry::of(&compiled));
-            }
-            Err(messages) => {
-                eprint!("{messages}");
-                all_compiled = false;
-            }
-        }
+/// Checks every set, and reports.
+fn check_all(root: &Path, strict: bool) -> Result<bool, TaskError> {
+    let (mut kernels, mut findings) = (0, vec![]);
+    for set in &SETS {
+        let checked = Checkout { root, set }.check()?;
+        kernels += checked.0;
+        findings.extend(checked.1);
     }
-    write_if_changed(&Manifest::path(root), manifest.to_text().as_bytes())?;
+    for finding in &findings {
+        println!("{}: {}", finding.severity(strict), finding.text());
+    }
+    let fresh = !findings.iter().any(|finding| finding.is_error(strict));
+    println!("{kernels} kernels checked: {}", if fresh { "fresh" } else { REMEDY });
+    Ok(fresh)
+}
+
+/// Compiles the kernels of these names in every set, or all.
+fn write_all(root: &Path, names: &[String]) -> Result<bool, TaskError> {
+    let mut available = vec![];
+    for set in &SETS {
+        available.extend(Checkout { root, set }.kernels()?);
+    }
+    if let Some(name) = names.iter().find(|name| !available.contains(name)) {
+        return Err(TaskError::NoSuchKernel { name: name.clone(), available: available.join(", ") });
+    }
+    let mut all_compiled = true;
+    for set in &SETS {
+        all_compiled &= Checkout { root, set }.write(names)?;
+    }
     Ok(all_compiled)
 }
 
@@ -78,11 +84,11 @@ enum Finding {
     /// The sources do not compile.
     Broken { messages: String },
     /// The sources have changed since the module was made, or it was never made.
-    Stale { name: String },
+    Stale { path: String },
     /// The module is not the one that the manifest records.
-    Replaced { name: String },
+    Replaced { path: String },
     /// This compiler makes another module of the same sources.
-    OtherCompiler { name: String, theirs: String, ours: String },
+    OtherCompiler { path: String, theirs: String, ours: String },
     /// A module or record whose kernel is gone.
     Orphan { path: String },
 }
@@ -99,79 +105,120 @@ impl Finding {
     fn text(&self) -> String {
         match self {
             Self::Broken { messages } => format!("does not compile:\n{}", messages.trim_end()),
-            Self::Stale { name } => format!("{name}.spv is older than its sources"),
-            Self::Replaced { name } => format!("{name}.spv is not the module that manifest.json records"),
-            Self::OtherCompiler { name, theirs, ours } => format!(
-                "{name}.spv was made by another version of the compiler ({theirs}; here: {ours}) from the same \
+            Self::Stale { path } => format!("{path} is older than its sources"),
+            Self::Replaced { path } => format!("{path} is not the module that manifest.json records"),
+            Self::OtherCompiler { path, theirs, ours } => format!(
+                "{path} was made by another version of the compiler ({theirs}; here: {ours}) from the same \
                  sources"
             ),
-            Self::Orphan { path } => {
-                format!("{path} has no source in {KERNEL_FOLDER}: delete it, or restore the source")
-            }
+            Self::Orphan { path } => format!("{path} has no source: delete it, or restore the source"),
         }
     }
 }
 
-/// Compares what is embedded with what the sources compile to.
-fn check(root: &Path, available: &[String]) -> Result<Vec<Finding>, TaskError> {
-    let manifest = Manifest::read(root)?;
-    let mut findings = vec![];
-    for name in available {
-        let compiled = match compile_and_validate(root, name)? {
+/// A set of kernels in a checkout.
+struct Checkout<'a> {
+    root: &'a Path,
+    set: &'a KernelSet,
+}
+
+impl Checkout<'_> {
+    /// The kernels' names, sorted.
+    fn kernels(&self) -> Result<Vec<String>, TaskError> {
+        stems(&self.root.join(self.set.sources), "comp")
+    }
+
+    fn modules(&self) -> PathBuf {
+        self.root.join(self.set.modules)
+    }
+
+    /// A module's path from the root.
+    fn module(&self, name: &str) -> String {
+        format!("{}/{name}.spv", self.set.modules)
+    }
+
+    /// Compiles the kernels of these names, or all, writes each module that differs, and brings the manifest
+    /// up to date. Whether all compiled.
+    fn write(&self, names: &[String]) -> Result<bool, TaskError> {
+        let available = self.kernels()?;
+        let mut manifest = Manifest::read(&self.modules())?;
+        manifest.kernels.retain(|name, _| available.contains(name));
+        let mut all_compiled = true;
+        for name in available.iter().filter(|name| names.is_empty() || names.contains(name)) {
+            match self.compile(name)? {
+                Ok(compiled) => {
+                    let path = self.module(name);
+                    let changed = write_if_changed(&self.root.join(&path), &compiled.spirv)?;
+                    let state = if changed { "written" } else { "unchanged" };
+                    println!("{path}: {} bytes, {state}", compiled.spirv.len());
+                    manifest.kernels.insert(name.clone(), Entry::of(&compiled));
+                }
+                Err(messages) => {
+                    eprint!("{messages}");
+                    all_compiled = false;
+                }
+            }
+        }
+        write_if_changed(&Manifest::path(&self.modules()), manifest.to_text().as_bytes())?;
+        Ok(all_compiled)
+    }
+
+    /// Compares what is checked in with what the sources compile to: how many kernels, and what is wrong.
+    fn check(&self) -> Result<(usize, Vec<Finding>), TaskError> {
+        let available = self.kernels()?;
+        let manifest = Manifest::read(&self.modules())?;
+        let mut findings = vec![];
+        for name in &available {
+            let path = self.module(name);
+            match self.compile(name)? {
+                Ok(compiled) => {
+                    let module = std::fs::read(self.root.join(&path)).ok();
+                    let here = Entry::of(&compiled);
+                    findings.extend(compare(path, &here, manifest.kernels.get(name), module.as_deref()));
+                }
+                Err(messages) => findings.push(Finding::Broken { messages }),
+            }
+        }
+        let gone = |name: &String| !available.contains(name);
+        for name in stems(&self.modules(), "spv")?.into_iter().filter(gone) {
+            findings.push(Finding::Orphan { path: self.module(&name) });
+        }
+        for name in manifest.kernels.into_keys().filter(gone) {
+            findings.push(Finding::Orphan { path: format!("{name} in {}/manifest.json", self.set.modules) });
+        }
+        Ok((available.len(), findings))
+    }
+
+    /// Compiles a kernel and has spirv-val look at the module, where that tool is installed.
+    fn compile(&self, name: &str) -> Result<Result<Compiled, String>, TaskError> {
+        let path = format!("{}/{name}.comp", self.set.sources);
+        let compiled = match compile(self.root, &path)? {
             Ok(compiled) => compiled,
-            Err(messages) => {
-                findings.push(Finding::Broken { messages });
-                continue;
-            }
+            Err(messages) => return Ok(Err(messages)),
         };
-        let embedded = std::fs::read(spirv_path(root, name)).ok();
-        findings.extend(compare(
-            name,
-            &Entry::of(&compiled),
-            manifest.kernels.get(name),
-            embedded.as_deref(),
-        ));
+        Ok(match validate(&compiled.spirv)? {
+            None => Ok(compiled),
+            Some(messages) => Err(format!("{path}: error: invalid SPIR-V: {messages}\n")),
+        })
     }
-    for name in stems(&root.join("crates/arealight/spirv"), "spv")? {
-        if !available.contains(&name) {
-            findings.push(Finding::Orphan { path: format!("crates/arealight/spirv/{name}.spv") });
-        }
-    }
-    for name in manifest.kernels.keys().filter(|name| !available.contains(name)) {
-        findings.push(Finding::Orphan { path: format!("{name} in crates/arealight/spirv/manifest.json") });
-    }
-    Ok(findings)
 }
 
-/// Compares one kernel: `here` as compiled now, `recorded` by the manifest, `embedded` in the crate.
-fn compare(name: &str, here: &Entry, recorded: Option<&Entry>, embedded: Option<&[u8]>) -> Option<Finding> {
-    let name = name.to_owned();
-    let (Some(recorded), Some(embedded)) = (recorded, embedded) else {
-        return Some(Finding::Stale { name });
+/// Compares one module: `here` as compiled now, `recorded` by the manifest, `module` as it is checked in.
+fn compare(path: String, here: &Entry, recorded: Option<&Entry>, module: Option<&[u8]>) -> Option<Finding> {
+    let (Some(recorded), Some(module)) = (recorded, module) else {
+        return Some(Finding::Stale { path });
     };
     if recorded.source_sha256 != here.source_sha256 {
-        return Some(Finding::Stale { name });
+        return Some(Finding::Stale { path });
     }
-    if recorded.spirv_sha256 != hash(embedded) {
-        return Some(Finding::Replaced { name });
+    if recorded.spirv_sha256 != hash(module) {
+        return Some(Finding::Replaced { path });
     }
     if recorded.spirv_sha256 != here.spirv_sha256 {
         let (theirs, ours) = (recorded.compiler.clone(), here.compiler.clone());
-        return Some(Finding::OtherCompiler { name, theirs, ours });
+        return Some(Finding::OtherCompiler { path, theirs, ours });
     }
     None
-}
-
-/// Compiles a kernel and has spirv-val look at the module, where that tool is installed.
-fn compile_and_validate(root: &Path, name: &str) -> Result<Result<Compiled, String>, TaskError> {
-    let compiled = match compile(root, name)? {
-        Ok(compiled) => compiled,
-        Err(messages) => return Ok(Err(messages)),
-    };
-    Ok(match validate(&compiled.spirv)? {
-        None => Ok(compiled),
-        Some(messages) => Err(format!("{KERNEL_FOLDER}/{name}.comp: error: invalid SPIR-V: {messages}\n")),
-    })
 }
 
 /// What spirv-val says against a module; nothing where it is not installed.
@@ -194,15 +241,6 @@ fn validate(spirv: &[u8]) -> Result<Option<String>, TaskError> {
     let output = tool.wait_with_output().map_err(failed)?;
     let said = String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr);
     Ok((!output.status.success()).then(|| said.trim().to_owned()))
-}
-
-fn spirv_path(root: &Path, name: &str) -> PathBuf {
-    root.join(format!("crates/arealight/spirv/{name}.spv"))
-}
-
-/// The kernels' names, sorted.
-fn kernels(root: &Path) -> Result<Vec<String>, TaskError> {
-    stems(&root.join(KERNEL_FOLDER), "comp")
 }
 
 /// The names without ending of the files in a folder that have this ending, sorted.
@@ -252,64 +290,70 @@ pub mod tests {
         folder
     }
 
-    fn compiled_checkout() -> (tempfile::TempDir, Vec<String>) {
+    const ONE: &str = "crates/arealight/spirv/one.spv";
+    const TWO: &str = "crates/arealight/spirv/two.spv";
+
+    fn kernels_of(folder: &tempfile::TempDir) -> Checkout<'_> {
+        Checkout { root: folder.path(), set: &SETS[0] }
+    }
+
+    fn findings(folder: &tempfile::TempDir) -> Vec<Finding> {
+        kernels_of(folder).check().unwrap().1
+    }
+
+    fn compiled_checkout() -> tempfile::TempDir {
         let folder = checkout(
             &[("one", "#include \"arealight/part.glsl\"", "float x = PART;"), ("two", "", "")],
             &[("part", "#define PART 1.0\n")],
         );
-        let names = kernels(folder.path()).unwrap();
-        assert!(write(folder.path(), &names, &names).unwrap());
-        (folder, names)
+        assert!(kernels_of(&folder).write(&[]).unwrap());
+        folder
     }
 
     #[test]
     fn what_was_just_written_is_fresh() {
-        let (folder, names) = compiled_checkout();
-        assert_eq!(check(folder.path(), &names).unwrap(), []);
+        let folder = compiled_checkout();
+        assert_eq!(findings(&folder), []);
     }
 
     #[test]
     fn a_changed_include_makes_its_kernel_stale_and_no_other() {
-        let (folder, names) = compiled_checkout();
+        let folder = compiled_checkout();
         // The same SPIR-V would come of it: the sources count.
         let part = folder.path().join("shaders/include/arealight/part.glsl");
         std::fs::write(part, "#define PART 1.0 // one\n").unwrap();
-        assert_eq!(check(folder.path(), &names).unwrap(), [Finding::Stale { name: "one".to_owned() }]);
+        assert_eq!(findings(&folder), [Finding::Stale { path: ONE.to_owned() }]);
     }
 
     #[test]
     fn a_module_from_elsewhere_is_found_out() {
-        let (folder, names) = compiled_checkout();
-        std::fs::copy(spirv_path(folder.path(), "one"), spirv_path(folder.path(), "two")).unwrap();
-        assert_eq!(check(folder.path(), &names).unwrap(), [Finding::Replaced { name: "two".to_owned() }]);
+        let folder = compiled_checkout();
+        std::fs::copy(folder.path().join(ONE), folder.path().join(TWO)).unwrap();
+        assert_eq!(findings(&folder), [Finding::Replaced { path: TWO.to_owned() }]);
     }
 
     #[test]
     fn a_missing_module_is_stale_and_one_without_a_source_an_orphan() {
-        let (folder, names) = compiled_checkout();
-        let from = spirv_path(folder.path(), "one");
-        std::fs::rename(from, spirv_path(folder.path(), "three")).unwrap();
+        let folder = compiled_checkout();
         let path = "crates/arealight/spirv/three.spv".to_owned();
-        assert_eq!(
-            check(folder.path(), &names).unwrap(),
-            [Finding::Stale { name: "one".to_owned() }, Finding::Orphan { path }]
-        );
+        std::fs::rename(folder.path().join(ONE), folder.path().join(&path)).unwrap();
+        assert_eq!(findings(&folder), [Finding::Stale { path: ONE.to_owned() }, Finding::Orphan { path }]);
     }
 
     #[test]
     fn another_compiler_is_a_note_unless_strict() {
-        let (folder, names) = compiled_checkout();
+        let folder = compiled_checkout();
         // Another compiler's module: one that the manifest records, of the same sources.
-        let mut other = std::fs::read(spirv_path(folder.path(), "one")).unwrap();
+        let mut other = std::fs::read(folder.path().join(ONE)).unwrap();
         other[8] ^= 1;
-        std::fs::write(spirv_path(folder.path(), "one"), &other).unwrap();
-        let mut manifest = Manifest::read(folder.path()).unwrap();
+        std::fs::write(folder.path().join(ONE), &other).unwrap();
+        let mut manifest = Manifest::read(&kernels_of(&folder).modules()).unwrap();
         manifest.kernels.get_mut("one").unwrap().spirv_sha256 = hash(&other);
-        std::fs::write(Manifest::path(folder.path()), manifest.to_text()).unwrap();
+        std::fs::write(Manifest::path(&kernels_of(&folder).modules()), manifest.to_text()).unwrap();
 
-        let findings = check(folder.path(), &names).unwrap();
+        let findings = findings(&folder);
         assert!(
-            matches!(&findings[..], [Finding::OtherCompiler { name, .. }] if name == "one"),
+            matches!(&findings[..], [Finding::OtherCompiler { path, .. }] if path == ONE),
             "{findings:?}"
         );
         assert!(!findings[0].is_error(false));
@@ -319,11 +363,10 @@ pub mod tests {
     #[test]
     fn a_kernel_that_does_not_compile_keeps_the_others_from_nothing() {
         let folder = checkout(&[("bad", "", "x"), ("good", "", "")], &[]);
-        let names = kernels(folder.path()).unwrap();
-        assert!(!write(folder.path(), &names, &names).unwrap());
-        let manifest = Manifest::read(folder.path()).unwrap();
+        assert!(!kernels_of(&folder).write(&[]).unwrap());
+        let manifest = Manifest::read(&kernels_of(&folder).modules()).unwrap();
         assert_eq!(manifest.kernels.keys().collect::<Vec<_>>(), ["good"]);
-        let findings = check(folder.path(), &names).unwrap();
+        let findings = findings(&folder);
         assert!(matches!(&findings[..], [Finding::Broken { .. }]), "{findings:?}");
     }
 }
