@@ -7,8 +7,9 @@
 //! error is bisected until the sum of the errors is small. The error of a triangle is the difference between
 //! a rule of degree 8 and one of degree 5, an estimate of the latter's error: the value is far better.
 
+use crate::polygon::power_of_two_near;
 use glam::DVec3;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, VecDeque};
 
 mod rules;
 
@@ -51,9 +52,18 @@ pub struct Region {
 impl Region {
     /// The region of a planar polygon. It counts positively if its front, the right-hand side of its vertex
     /// order, faces the origin, else negatively.
+    ///
+    /// Fewer than three or non-finite vertices make an empty region.
     pub fn polygon(vertices: &[DVec3]) -> Self {
+        let largest = vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
+        if largest == 0.0 || !vertices.iter().all(|v| v.is_finite()) {
+            return Self::default();
+        }
+        // Solid angle knows no scale; cubes of lengths must not overflow
+        let scale = power_of_two_near(1.0 / largest);
         let pairs = vertices.get(1..).unwrap_or_default().windows(2);
-        Self { triangles: pairs.map(|pair| [vertices[0], pair[0], pair[1]]).collect() }
+        let triangle = |pair: &[DVec3]| [vertices[0], pair[0], pair[1]].map(|v| v * scale);
+        Self { triangles: pairs.map(triangle).collect() }
     }
 
     /// Every direction once: the faces of a box around the origin.
@@ -92,12 +102,9 @@ impl Region {
         resolved: impl Fn(&[DVec3; 3]) -> bool,
         integrand: impl Fn(DVec3) -> [f64; N],
     ) -> Estimate<N> {
-        let mut pieces: Vec<Piece<N>> = Vec::new();
-        for triangle in &self.triangles {
-            split_until_resolved(*triangle, settings.max_evaluations / (4 * POINTS), &resolved, &mut |t| {
-                pieces.push(Piece::new(t, &integrand));
-            });
-        }
+        let triangles =
+            split_until_resolved(&self.triangles, settings.max_evaluations / (2 * POINTS), &resolved);
+        let pieces = triangles.into_iter().map(|triangle| Piece::new(triangle, &integrand)).collect();
         refine(pieces, settings, &integrand)
     }
 }
@@ -108,31 +115,30 @@ const POINTS: usize = 22;
 /// Bisections after which a triangle is taken as it is: 2^-60 of the polygon's size.
 const MAX_DEPTH: usize = 120;
 
-/// Bisects a triangle until it is not larger than its distance from the origin, and resolved.
+/// Bisects triangles until each is not larger than half its distance from the origin, and resolved; or until
+/// there are `max_triangles`.
 fn split_until_resolved(
-    triangle: [DVec3; 3],
+    triangles: &[[DVec3; 3]],
     max_triangles: usize,
     resolved: &impl Fn(&[DVec3; 3]) -> bool,
-    take: &mut impl FnMut([DVec3; 3]),
-) {
+) -> Vec<[DVec3; 3]> {
     // A triangle whose plane holds the origin has no solid angle
-    if volume(&triangle) == 0.0 {
-        return;
-    }
-    let mut stack = vec![(triangle, 0)];
-    let mut count = 0;
-    while let Some((triangle, depth)) = stack.pop() {
-        let small = longest_edge(&triangle) <= distance_to_origin(&triangle);
-        count += 1;
-        if depth >= MAX_DEPTH || count > max_triangles || (small && resolved(&triangle)) {
-            take(triangle);
+    let seen = triangles.iter().filter(|triangle| volume(triangle) != 0.0);
+    let mut queue: VecDeque<([DVec3; 3], usize)> = seen.map(|triangle| (*triangle, 0)).collect();
+    let mut done = Vec::new();
+    while let Some((triangle, depth)) = queue.pop_front() {
+        let small = longest_edge(&triangle) <= 0.5 * distance_to_origin(&triangle);
+        let full = done.len() + queue.len() >= max_triangles;
+        if depth >= MAX_DEPTH || full || (small && resolved(&triangle)) {
+            done.push(triangle);
         } else {
             // As long as it is large, halve its length; then the angle that it spans
             let halves =
                 if small { bisect(&triangle, angle_squared) } else { bisect(&triangle, length_squared) };
-            stack.extend(halves.map(|half| (half, depth + 1)));
+            queue.extend(halves.map(|half| (half, depth + 1)));
         }
     }
+    done
 }
 
 /// Bisects the piece of the largest error until the sum of errors meets the tolerance.
@@ -309,4 +315,84 @@ pub(crate) fn distance_to_origin(triangle: &[DVec3; 3]) -> f64 {
         (p + along * t).length()
     };
     to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn the_sphere_and_its_parts_have_their_solid_angles() {
+        let settings = Settings::default();
+        let angle = |region: &Region| region.integrate(&settings, |_| true, |_| [1.0]).value[0];
+        // errors are far below the estimates that the tolerance of 1e-6 is for
+        assert!((angle(&Region::sphere()) - 4.0 * PI).abs() < 1e-8);
+        let lune = Region::sphere().clipped(DVec3::X).clipped(DVec3::new(-1.0, 1.0, 0.0));
+        assert!((angle(&lune) - PI / 2.0).abs() < 1e-8);
+        let octant = [DVec3::X, DVec3::Z, DVec3::Y];
+        assert!((angle(&Region::polygon(&octant)) - PI / 2.0).abs() < 1e-8);
+        let reversed = [DVec3::X, DVec3::Y, DVec3::Z];
+        assert!((angle(&Region::polygon(&reversed)) + PI / 2.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_lobe_is_missed_unless_the_caller_says_that_it_is_narrow() {
+        // A lobe of a millionth of a radian, off every point of the unrefined rule
+        let axis = DVec3::new(0.2, 0.3, 1.0).normalize_or(DVec3::Z);
+        let width = 1e-6;
+        let lobe = |w: DVec3| [(-(w - axis).length_squared() / (width * width)).exp() / (PI * width * width)];
+        let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
+        let region = Region::polygon(&square);
+        let resolved = |t: &[DVec3; 3]| {
+            let around = t.map(|p| p.normalize_or_zero() - axis);
+            longest_edge(&around) < width + distance_to_origin(&around)
+        };
+        let found = region.integrate(&Settings::default(), resolved, lobe).value[0];
+        assert!((found - 1.0).abs() < 1e-7, "{found}");
+        assert_eq!(region.integrate(&Settings::default(), |_| true, lobe).value[0], 0.0, "the twin");
+    }
+
+    #[test]
+    fn the_limit_on_evaluations_holds_and_shows_in_the_error() {
+        let settings = Settings { relative_tolerance: 1e-12, max_evaluations: 20_000 };
+        let jump = |w: DVec3| [if w.x + 0.3 * w.y > 0.123 { 1.0 } else { 0.0 }];
+        let estimate = Region::sphere().integrate(&settings, |_| true, jump);
+        assert!(estimate.evaluations <= 20_000 + 2 * POINTS);
+        assert!(estimate.error[0] > 1e-9 && (estimate.value[0] - 2.0 * PI).abs() < 1.0, "{estimate:?}");
+        // An integrand that is resolved nowhere ends as well
+        let estimate = Region::sphere().integrate(&settings, |_| false, |_| [1.0]);
+        assert!((estimate.value[0] - 4.0 * PI).abs() < 1e-4);
+    }
+
+    #[test]
+    fn distances_to_a_triangle_are_right_at_faces_edges_and_corners() {
+        let at = |x: f64, y: f64, z: f64| {
+            [DVec3::ZERO, DVec3::X, DVec3::Y].map(|corner| corner - DVec3::new(x, y, z))
+        };
+        for (point, distance) in [
+            ([0.25, 0.25, 2.0], 2.0),
+            ([0.5, -3.0, 0.0], 3.0),
+            ([-3.0, -4.0, 0.0], 5.0),
+            ([1.0, 1.0, 0.0], 0.5_f64.sqrt()),
+            ([0.2, 0.3, 0.0], 0.0),
+        ] {
+            let [x, y, z] = point;
+            assert!((distance_to_origin(&at(x, y, z)) - distance).abs() < 1e-15, "{point:?}");
+        }
+        assert_eq!(distance_to_origin(&[DVec3::X * 2.0; 3]), 2.0);
+    }
+
+    #[test]
+    fn regions_of_any_size_have_their_solid_angle() {
+        for exponent in [-300, -20, 0, 20, 300] {
+            let scale = 10_f64.powi(exponent);
+            let octant = [DVec3::X, DVec3::Z, DVec3::Y].map(|v| v * scale);
+            let angle =
+                Region::polygon(&octant).integrate(&Settings::default(), |_| true, |_| [1.0]).value[0];
+            assert!((angle - PI / 2.0).abs() < 1e-8, "1e{exponent}: {angle}");
+        }
+        let bad = [DVec3::X, DVec3::NAN, DVec3::Y];
+        assert_eq!(Region::polygon(&bad), Region::default());
+    }
 }

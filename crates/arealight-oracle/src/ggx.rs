@@ -65,7 +65,7 @@ impl Ggx {
     }
 
     /// Draws a half vector from the visible normals (Heitz 2018).
-    fn sample_visible_normal(&self, view: DVec3, u: [f64; 2]) -> DVec3 {
+    fn sample_visible_normal(self, view: DVec3, u: [f64; 2]) -> DVec3 {
         let a = self.alpha;
         // Stretch the view so that the surface has alpha = 1
         let stretched = DVec3::new(a * view.x, a * view.y, view.z).normalize_or(DVec3::Z);
@@ -82,7 +82,7 @@ impl Ggx {
         DVec3::new(a * normal.x, a * normal.y, normal.z.max(0.0)).normalize_or(DVec3::Z)
     }
 
-    fn visible_normal_density(&self, view: DVec3, half: DVec3) -> f64 {
+    fn visible_normal_density(self, view: DVec3, half: DVec3) -> f64 {
         let a2 = self.alpha * self.alpha;
         // D G1 <v, h> / cos_v, with G1 / cos_v = 2 / (cos_v + sqrt(alpha² + (1 - alpha²) cos_v²))
         let root = (a2 + (1.0 - a2) * view.z * view.z).sqrt();

@@ -9,24 +9,24 @@
 //! origin (seen from there the vertices run counter-clockwise), and negative for one seen from behind.
 //!
 //! # Accuracy
-//! Relative to the given vertices: absolute error below 4e-15 while no vertex and no edge comes nearer to
-//! the origin than 1e-3 of the largest distance; nearer, the value itself depends on the vertices' last bits, and
-//! the error is what moving them by a few of those bits does. For small or far polygons, whose edge terms cancel,
-//! the relative error stays below 1e-12 at any distance, except close to edge-on.
+//! Relative to the given vertices and matrix, against 60 digits: the absolute error stays below 3e-15, also
+//! in contact (measured: 2.4e-15 with the light 1e-12 of its size away, 2e-16 elsewhere). The edge terms of
+//! small or far polygons would cancel; their error stays below 1e-12 of what a disk of the same extent would
+//! send from there, at any distance.
 
 use crate::cubature::{DEGREE_8, TrianglePoint};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Largest offset over smallest distance below which the sum over edges gives way to cubature. There the
+/// Largest offset over the anchor's distance below which the sum over edges gives way to cubature. There the
 /// edges would lose two digits by cancellation; the degree 8 rule's error is below 1e-14.
 const SMALL: f64 = 1.0 / 64.0;
 
 /// The signed integral of the clamped cosine `max(0, cos) / pi` over a planar polygon, in [-1, 1].
 ///
 /// `vertices` are relative to the shading point, in the surface frame (z is the normal); any number, convex
-/// or concave. What lies below z = 0 is clipped. Fewer than three or non-finite vertices give 0, and so does
-/// a polygon whose plane holds the origin.
+/// or concave. What lies below z = 0 is clipped. Fewer than three or non-finite vertices give 0. On the polygon
+/// itself the integral jumps: where the origin lies on it, the result is some value between both sides'.
 pub fn form_factor(vertices: &[DVec3]) -> f64 {
     transformed_form_factor(&DMat3::IDENTITY, vertices)
 }
@@ -69,6 +69,9 @@ pub fn emitted(signed: f64, two_sided: bool) -> f64 {
 /// that run back over each other along the horizon: their terms cancel.
 fn clip(points: &[DVec3], height: f64) -> Vec<DVec3> {
     let mut clipped = Vec::with_capacity(points.len() + 4);
+    if !points.iter().any(|p| p.z + height > 0.0) {
+        return clipped;
+    }
     for (i, &a) in points.iter().enumerate() {
         let b = points[(i + 1) % points.len()];
         let (z_a, z_b) = (a.z + height, b.z + height);
@@ -132,6 +135,6 @@ fn small_polygon(anchor: DVec3, offsets: &[DVec3]) -> f64 {
 }
 
 /// A power of two within a factor of two of `value`, which is positive; far inside the range of exponents.
-fn power_of_two_near(value: f64) -> f64 {
+pub(crate) fn power_of_two_near(value: f64) -> f64 {
     value.log2().round().clamp(-1000.0, 1000.0).exp2()
 }

@@ -55,7 +55,11 @@ pub fn truth(
 ) -> Truth {
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
-    let region = Region::polygon(&vertices).clipped(DVec3::Z);
+    let region = if light.two_sided || faces_origin(&vertices) {
+        Region::polygon(&vertices).clipped(DVec3::Z)
+    } else {
+        Region::default()
+    };
     let (view, lobe) = (frame.view(), Ggx { alpha: surface.alpha });
     // Integrate each lobe's weight of the light: cos / pi, f cos, and f cos (1 - cos theta_vh)^5
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
@@ -67,11 +71,7 @@ pub fn truth(
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
         Estimate { value: [0.0; 2], error: [0.0; 2], evaluations: 0 }
     } else {
-        let resolved = |triangle: &[DVec3; 3]| lobe_is_resolved(lobe, view, triangle);
-        region.integrate(settings, resolved, |direction| {
-            let value = lobe.evaluate(view, direction);
-            [value, value * Ggx::schlick_weight(view, direction)]
-        })
+        lobe_integrals(lobe, view, &region, settings)
     };
     // Combine them, with the light's side
     let sum = |d: f64, g: [f64; 2]| {
@@ -84,6 +84,27 @@ pub fn truth(
     Truth { radiance, error, evaluations: diffuse.evaluations + glossy.evaluations }
 }
 
+/// Whether the front of a polygon is on the origin's side of its plane.
+fn faces_origin(vertices: &[DVec3]) -> bool {
+    let Some(&anchor) = vertices.first() else { return false };
+    let pairs = vertices[1..].windows(2);
+    let area: DVec3 = pairs.map(|pair| (pair[0] - anchor).cross(pair[1] - anchor)).sum();
+    area.dot(anchor) < 0.0
+}
+
+/// The integrals of `f cos` and of `f cos (1 - cos theta_vh)^5` over a region of the surface frame, for a GGX
+/// lobe without Fresnel term. Over the hemisphere they are the lobe's albedo and its Schlick part.
+///
+/// `view` is a unit vector in the surface frame. The lobe is found however narrow it is, down to
+/// [`arealight::MIN_ALPHA`].
+pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settings) -> Estimate<2> {
+    let resolved = |triangle: &[DVec3; 3]| lobe_is_resolved(lobe, view, triangle);
+    region.integrate(settings, resolved, |direction| {
+        let value = lobe.evaluate(view, direction);
+        [value, value * Ggx::schlick_weight(view, direction)]
+    })
+}
+
 /// Whether a triangle is so small that the GGX lobe varies slowly over it: its image under the half vector
 /// must not be larger than the scale on which D varies there, `alpha + sin theta_h`.
 fn lobe_is_resolved(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> bool {
@@ -93,7 +114,7 @@ fn lobe_is_resolved(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> bool {
     let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
     // Near grazing the lobe narrows to a fan: the error estimate sees to what is finer than this
     let finest = 1e-2 * lobe.alpha * lobe.alpha;
-    let [p, q, r] = triangle.map(|p| p.normalize_or_zero());
+    let [p, q, r] = triangle.map(DVec3::normalize_or_zero);
     let angle = p.distance(q).max(q.distance(r)).max(r.distance(p));
     angle < 0.5 && (size <= lobe.alpha + distance_to_origin(&halves) || angle < finest)
 }

@@ -1,1 +1,152 @@
+//! What a file of cases may say, and what is said about one that is wrong.
 
+use super::*;
+
+/// A case of `material` under `light`, both the inside of JSON objects.
+fn case(material: &str, light: &str) -> String {
+    format!(
+        r#"{{"name": "a case", "position": [1, 2, 3], "normal": [0, 0, 2], "view": [1, 0, 1], {material},
+             "light": {{"radiance": [1, 2, 3], {light}}}}}"#
+    )
+}
+
+fn read_one(text: &str) -> Result<Case, CaseError> {
+    read_cases(&format!(r#"{{"cases": [{text}]}}"#)).map(|mut cases| cases.remove(0))
+}
+
+fn message(material: &str, light: &str) -> String {
+    read_one(&case(material, light)).unwrap_err().to_string()
+}
+
+fn reason(material: &str, light: &str) -> String {
+    read_one(&case(material, light)).unwrap().supported().unwrap_err().to_string()
+}
+
+const GGX: &str = r#""alpha": 0.25, "F0": [0.1, 0.2, 0.3], "albedo": [0.5, 0.6, 0.7]"#;
+const QUAD: &str = r#""type": "polygon", "vertices": [[1, 2, 4], [2, 2, 4], [2, 3, 4], [1, 3, 4]]"#;
+
+#[test]
+fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
+    let supported = read_one(&case(GGX, QUAD)).unwrap().supported().unwrap();
+    assert_eq!(supported.name, "a case");
+    assert_eq!((supported.normal, supported.view), (DVec3::new(0.0, 0.0, 2.0), DVec3::new(1.0, 0.0, 1.0)));
+    let surface = Surface {
+        diffuse_albedo: DVec3::new(0.5, 0.6, 0.7),
+        f0: DVec3::new(0.1, 0.2, 0.3),
+        f90: 1.0,
+        alpha: 0.25,
+    };
+    assert_eq!(supported.surface, surface);
+    assert_eq!(supported.light.vertices[2], DVec3::new(1.0, 1.0, 1.0));
+    assert!(!supported.light.two_sided);
+    let light = supported.polygon_light();
+    assert_eq!(
+        (light.vertices[1], light.radiance),
+        (DVec3::new(1.0, 0.0, 1.0), glam::Vec3::new(1.0, 2.0, 3.0))
+    );
+}
+
+#[test]
+fn without_f0_there_is_no_fresnel_term_and_diffuse_has_no_glossy_lobe() {
+    let surface = read_one(&case(r#""alpha": 0.5"#, QUAD)).unwrap().supported().unwrap().surface;
+    assert_eq!((surface.f0, surface.f90, surface.diffuse_albedo), (DVec3::ONE, 1.0, DVec3::ZERO));
+    let diffuse = r#""bsdf": "diffuse", "albedo": [0.5, 0.25, 1]"#;
+    let surface = read_one(&case(diffuse, QUAD)).unwrap().supported().unwrap().surface;
+    assert_eq!((surface.f0, surface.f90), (DVec3::ZERO, 0.0));
+    assert_eq!(surface.diffuse_albedo, DVec3::new(0.5, 0.25, 1.0));
+}
+
+#[test]
+fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
+    let disk =
+        r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0], "two_sided": true"#;
+    let CaseLight { two_sided: true, shape: CaseShape::Disk { axis_v, .. }, .. } =
+        read_one(&case(GGX, disk)).unwrap().light
+    else {
+        panic!("a two-sided disk")
+    };
+    assert_eq!(axis_v, DVec3::new(0.0, 2.0, 0.0));
+    assert_eq!(reason(GGX, disk), "light.type \"disk\" is not supported yet");
+    let sphere = r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#;
+    assert_eq!(reason(GGX, sphere), "light.type \"sphere\" is not supported yet");
+    let cylinder = r#""type": "cylinder", "p0": [0, 0, 5], "p1": [1, 0, 5], "radius": 0.5, "caps": true"#;
+    assert_eq!(reason(GGX, cylinder), "light.type \"cylinder\" is not supported yet");
+    let textured = format!(r#"{QUAD}, "texture": "light.exr", "uv": [[0, 0], [1, 0], [1, 1], [0, 1]]"#);
+    assert_eq!(reason(GGX, &textured), "textured lights are not supported yet");
+    assert_eq!(reason(r#""alpha_x": 0.5, "alpha_y": 0.1"#, QUAD), "anisotropic GGX is not supported yet");
+    assert!(read_one(&case(r#""alpha_x": 0.5, "alpha_y": 0.5"#, QUAD)).unwrap().supported().is_ok());
+    assert_eq!(
+        reason(r#""alpha": 1e-9"#, QUAD),
+        "alpha 0.000000001 is below 0.0001, the smallest that is shaded"
+    );
+}
+
+#[test]
+fn an_unknown_field_is_never_ignored() {
+    assert_eq!(reason(&format!(r#"{GGX}, "coat": 1"#), QUAD), "the field \"coat\" is not known");
+    assert_eq!(
+        reason(GGX, &format!(r#"{QUAD}, "two_sidde": true"#)),
+        "the field \"light.two_sidde\" is not known"
+    );
+    // A field of another kind of case is unknown too
+    assert_eq!(
+        reason(r#""bsdf": "diffuse", "albedo": [1, 1, 1], "alpha": 1"#, QUAD),
+        "the field \"alpha\" is not known"
+    );
+}
+
+#[test]
+fn errors_name_the_case_and_the_field() {
+    let two = r#""type": "polygon", "vertices": [[1, 2, 4], [2, 2, 4]]"#;
+    let bent = r#""type": "polygon", "vertices": [[0, 0, 1], [1, 0, 1], [1, 1, 1.1], [0, 1, 1]]"#;
+    let short_uv = format!(r#"{QUAD}, "texture": "t.exr", "uv": [[0, 0]]"#);
+    let null = r#""type": "polygon", "vertices": [[1, 2, 4], [2, null, 4], [0, 0, 4]]"#;
+    for (material, light, expected) in [
+        (GGX, two, "light.vertices: 2 given, a polygon has at least 3"),
+        (GGX, bent, "light.vertices["),
+        (GGX, short_uv.as_str(), "light.uv: 1 given for 4 vertices"),
+        (GGX, null, "light.vertices[1][1]: is null (some programs write NaN so), where a number should be"),
+        (GGX, r#""type": "cube""#, "light.type: \"cube\" is not known"),
+        (GGX, r#""type": "sphere", "center": [0, 0, 0], "radius": -1"#, "light.radius: -1 must be above 0"),
+        (GGX, r#""type": "sphere", "radius": 1"#, "light.center: is missing"),
+        (GGX, r#""type": 3"#, "light.type: is the number 3, where a text should be"),
+        (r#""alpha": 0"#, QUAD, "alpha: 0 must be above 0 and at most 1"),
+        (r#""alpha": 1.5"#, QUAD, "alpha: 1.5 must be above 0 and at most 1"),
+        (r#""F0": [0, 0, 0]"#, QUAD, "alpha: is missing"),
+        (r#""alpha": 0.5, "alpha_x": 0.5"#, QUAD, "alpha: give either alpha, or alpha_x and alpha_y"),
+        (r#""alpha": 0.5, "F0": [0, 0, 2]"#, QUAD, "F0: [0, 0, 2] must be from 0 to 1"),
+        (r#""alpha": 0.5, "albedo": [0, 0, -1]"#, QUAD, "albedo: [0, 0, -1] must be not negative"),
+        (r#""alpha": 0.5, "G": "v-cavity""#, QUAD, "G: \"v-cavity\" is not known"),
+        (r#""bsdf": "diffuse""#, QUAD, "albedo: is missing"),
+        (r#""bsdf": "velvet""#, QUAD, "bsdf: \"velvet\" is not known"),
+    ] {
+        let message = message(material, light);
+        assert!(message.starts_with(&format!("case 'a case': {expected}")), "{message}\nnot {expected}");
+    }
+    let zero = case(GGX, QUAD).replace("[0, 0, 2]", "[0, 0, 0]");
+    assert_eq!(
+        read_one(&zero).unwrap_err().to_string(),
+        "case 'a case': normal: is zero, and has no direction"
+    );
+    let nameless = case(GGX, QUAD).replace("\"name\"", "\"title\"");
+    assert_eq!(read_one(&nameless).unwrap_err().to_string(), "case 'cases[0]': name: is missing");
+}
+
+#[test]
+fn files_that_are_no_cases_are_refused() {
+    let message = |text: &str| read_cases(text).unwrap_err().to_string();
+    assert!(message("[]").starts_with("cases: missing or no array; a file of cases is"));
+    assert!(message(r#"{"cases": [3]}"#).starts_with("cases[0]: is the number 3, where an object"));
+    assert!(message("").starts_with("not JSON: EOF"));
+    for number in ["NaN", "nan", "-Infinity", "Infinity", "inf"] {
+        let text = format!("{{\"cases\": [\n{}]}}", case(&format!("\"alpha\": {number}"), QUAD));
+        let message = message(&text);
+        assert!(
+            message.contains("at line 2 column") && message.ends_with("JSON has no NaN and no infinity"),
+            "{message}"
+        );
+    }
+    assert!(message(r#"{"cases": [1e999]}"#).contains("number out of range at line 1"));
+    let twice = format!(r#"{{"cases": [{0}, {0}]}}"#, case(GGX, QUAD));
+    assert_eq!(message(&twice), "case 'a case': name: another case has the same name");
+}

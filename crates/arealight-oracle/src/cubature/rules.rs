@@ -74,14 +74,12 @@ mod tests {
     use super::*;
 
     /// The largest error of a rule over the monomials `x^i y^j` of one degree.
-    fn error_at(points: &[TrianglePoint], degree: u32) -> f64 {
-        let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
-        let error = |i: u32| {
+    fn error_at(points: &[TrianglePoint], degree: i32) -> f64 {
+        let factorial = |n: i32| (1..=n).map(f64::from).product::<f64>();
+        let error = |i: i32| {
             let j = degree - i;
             let exact = 2.0 * factorial(i) * factorial(j) / factorial(degree + 2);
-            let monomial = |p: &TrianglePoint| {
-                p.weight * p.barycentric[0].powi(i as i32) * p.barycentric[1].powi(j as i32)
-            };
+            let monomial = |p: &TrianglePoint| p.weight * p.barycentric[0].powi(i) * p.barycentric[1].powi(j);
             (points.iter().map(monomial).sum::<f64>() - exact).abs()
         };
         (0..=degree).map(error).fold(0.0, f64::max)

@@ -1,0 +1,8 @@
+//! Properties of the oracle, and its parts against each other and against the reference.
+
+mod common;
+mod ggx;
+mod ltsd;
+mod polygon;
+mod reference;
+mod shading;
