@@ -287,17 +287,22 @@ fn choose(candidates: Vec<Candidate>, wanted: Option<&str>) -> Result<Candidate,
         let describe = |one: Candidate| format!("{} ({})", one.name, one.lack.unwrap_or_default());
         return Err(HostError::NoDevice { found: others.into_iter().map(describe).collect() });
     }
-    let Some(wanted) = wanted else {
-        let best = usable.into_iter().min_by_key(|one| rank(one.properties.device_type));
-        return best.ok_or(HostError::NoDevice { found: vec![] });
-    };
+    let default = default_index(&usable);
     let available = usable.iter().map(|one| format!("{}: {}", one.index, one.name)).collect();
-    let asked_for = |one: &Candidate| match wanted.parse() {
-        Ok(index) => one.index == index,
-        Err(_) => one.name.to_lowercase().contains(&wanted.to_lowercase()),
+    let asked_for = |one: &Candidate| match wanted.map(|wanted| (wanted, wanted.parse::<usize>())) {
+        None => Some(one.index) == default,
+        Some((_, Ok(index))) => one.index == index,
+        Some((name, Err(_))) => one.name.to_lowercase().contains(&name.to_lowercase()),
     };
     let found = usable.into_iter().find(asked_for);
-    found.ok_or_else(|| HostError::DeviceNotFound { wanted: wanted.to_owned(), available })
+    found
+        .ok_or_else(|| HostError::DeviceNotFound { wanted: wanted.unwrap_or_default().to_owned(), available })
+}
+
+/// The index of the device that is taken when none is asked for: the first usable one of the best kind.
+pub(crate) fn default_index(candidates: &[Candidate]) -> Option<usize> {
+    let usable = candidates.iter().filter(|one| one.lack.is_none());
+    usable.min_by_key(|one| rank(one.properties.device_type)).map(|one| one.index)
 }
 
 /// Lower is taken first.

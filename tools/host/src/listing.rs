@@ -1,6 +1,6 @@
 //! What Vulkan offers here.
 
-use crate::device::{Candidate, candidates};
+use crate::device::{Candidate, candidates, default_index};
 use crate::error::HostError;
 use crate::instance::{Instance, version_text};
 use crate::validation::Validation;
@@ -46,6 +46,8 @@ pub struct DeviceSummary {
     pub driver: String,
     /// The Vulkan version that it speaks.
     pub api_version: String,
+    /// Whether it is taken when none is asked for.
+    pub is_default: bool,
     /// Why it cannot be used; `None` where it can.
     pub lack: Option<String>,
     /// The queue family that would be used.
@@ -64,14 +66,17 @@ pub struct DeviceSummary {
 /// [`HostError::LoaderMissing`] where there is no Vulkan at all. No device is an empty list.
 pub fn devices() -> Result<Vec<DeviceSummary>, HostError> {
     let instance = Instance::new(Validation::Off)?;
-    Ok(candidates(&instance)?.into_iter().map(|candidate| summary(&instance, candidate)).collect())
+    let candidates = candidates(&instance)?;
+    let default = default_index(&candidates);
+    Ok(candidates.into_iter().map(|candidate| summary(&instance, candidate, default)).collect())
 }
 
-fn summary(instance: &Instance, candidate: Candidate) -> DeviceSummary {
+fn summary(instance: &Instance, candidate: Candidate, default: Option<usize>) -> DeviceSummary {
     // SAFETY: The physical device is of this instance, which is alive.
     let features = unsafe { instance.raw.get_physical_device_features(candidate.physical_device) };
     DeviceSummary {
         index: candidate.index,
+        is_default: default == Some(candidate.index),
         driver: driver(instance, &candidate),
         name: candidate.name,
         kind: match candidate.properties.device_type {
