@@ -7,7 +7,7 @@
 mod fields;
 
 use crate::shading::RelativeLight;
-use arealight::{MIN_ALPHA, PolygonLight, Surface};
+use arealight::{MIN_ALPHA, Surface};
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
@@ -337,18 +337,6 @@ impl Case {
             two_sided: self.light.two_sided,
         };
         Ok(SupportedCase { name: self.name.clone(), surface, normal: self.normal, view: self.view, light })
-    }
-}
-
-impl SupportedCase {
-    /// The light with the shading point as the origin, named after the case, in the vocabulary's types.
-    pub fn polygon_light(&self) -> PolygonLight {
-        PolygonLight {
-            name: self.name.clone(),
-            vertices: self.light.vertices.clone(),
-            radiance: self.light.radiance.as_vec3(),
-            two_sided: self.light.two_sided,
-        }
     }
 }
 

@@ -39,11 +39,7 @@ fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
     assert_eq!(supported.surface, surface);
     assert_eq!(supported.light.vertices[2], DVec3::new(1.0, 1.0, 1.0));
     assert!(!supported.light.two_sided);
-    let light = supported.polygon_light();
-    assert_eq!(
-        (light.vertices[1], light.radiance),
-        (DVec3::new(1.0, 0.0, 1.0), glam::Vec3::new(1.0, 2.0, 3.0))
-    );
+    assert_eq!(supported.light.radiance, DVec3::new(1.0, 2.0, 3.0));
 }
 
 #[test]
