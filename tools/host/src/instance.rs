@@ -71,7 +71,11 @@ impl Instance {
         };
 
         // SAFETY: What the info points to lives until the call returns, and the log until the instance is gone.
-        let raw = unsafe { entry.create_instance(&info, None) }.named("vkCreateInstance")?;
+        let raw = match unsafe { entry.create_instance(&info, None) } {
+            // A loader without any driver says this.
+            Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(HostError::NoDevice { found: vec![] }),
+            created => created.named("vkCreateInstance")?,
+        };
         let mut instance = Self { raw, messages, messenger: None, entry };
         if validation != Validation::Off {
             instance.listen()?;
