@@ -1,0 +1,21 @@
+//! Writes the scenes of `scenes/`: `cargo run -p arealight-scene --example make_scenes [FOLDER]`.
+
+mod demo;
+mod room;
+mod shapes;
+mod sweep;
+mod writer;
+
+use std::path::{Path, PathBuf};
+
+fn main() -> std::io::Result<()> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let folder = std::env::args_os().nth(1).map_or(default, PathBuf::from);
+    std::fs::create_dir_all(&folder)?;
+    for (name, bytes) in [("sweep.glb", sweep::glb()), ("room.glb", room::glb()), ("demo.glb", demo::glb())] {
+        let path = folder.join(name);
+        println!("{}: {} bytes", path.display(), bytes.len());
+        std::fs::write(path, bytes)?;
+    }
+    Ok(())
+}
