@@ -3,8 +3,8 @@
 //! A suite that returns early without a device proves nothing, so:
 //! - with `AREALIGHT_REQUIRE_GPU=1` a missing device or validation layer fails the test;
 //! - without, the test says `skipped: …`;
-//! - a test that does get a device appends its name to the file that `AREALIGHT_GPU_TEST_LOG` names, where it
-//!   is set, so that a script can insist on how many did;
+//! - where `AREALIGHT_GPU_TEST_LOG` names a file, each test appends a line to it, `ran …` or `skipped …`, so that
+//!   a script can list those and insist on how many ran;
 //! - what the validation layer says fails the test when the [`TestHost`] is dropped.
 //!
 //! `AREALIGHT_DEVICE` chooses the device, and `AREALIGHT_VALIDATION` (`off`, `core`, `synchronization` or
@@ -71,16 +71,18 @@ pub fn device_with(validation: Validation) -> Option<TestHost> {
     let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
     match Host::new(options) {
         Ok(host) => {
-            record_execution();
+            record("ran");
             Some(TestHost { log: host.message_log(), host: Some(host) })
         }
         Err(error) if required => panic!("AREALIGHT_REQUIRE_GPU=1, and: {error}"),
         Err(error @ (HostError::LoaderMissing(_) | HostError::NoDevice { .. })) => {
             println!("skipped: no Vulkan device ({error})");
+            record("skipped");
             None
         }
         Err(error @ HostError::ValidationLayerMissing) => {
             println!("skipped: {error}");
+            record("skipped");
             None
         }
         Err(error) => panic!("{error}"),
@@ -96,14 +98,14 @@ pub fn assert_silent(messages: &[Message]) {
     assert!(lines.is_empty(), "the validation layer says:\n{}", lines.join("\n"));
 }
 
-/// Appends the test's name to the log of tests that had a device.
-fn record_execution() {
+/// Appends what became of the test to the log that `AREALIGHT_GPU_TEST_LOG` names.
+fn record(outcome: &str) {
     let Some(path) = std::env::var_os("AREALIGHT_GPU_TEST_LOG") else { return };
     let binary = std::env::current_exe().ok();
     let binary = binary.as_deref().and_then(|path| path.file_stem()).unwrap_or_default().to_string_lossy();
     let name = std::env::var("NEXTEST_TEST_NAME")
         .unwrap_or_else(|_| std::thread::current().name().unwrap_or("unnamed").to_owned());
-    let line = format!("{binary} {name}\n");
+    let line = format!("{outcome} {binary} {name}\n");
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&path);
     let written = file.and_then(|mut file| file.write_all(line.as_bytes()));
     assert!(written.is_ok(), "AREALIGHT_GPU_TEST_LOG={}: {written:?}", path.display());

@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Installs what is missing on this machine, and says what and why:
+#
+#   tools/setup.sh run     what the command line needs: a linker, the Vulkan loader, a Vulkan driver
+#   tools/setup.sh test    that, and what the tests need: validation layers, shader compilers
+#
+# On Debian 12 as root it installs by apt-get. Anywhere else it says what to install. Running it again is free.
+set -euo pipefail
+
+mode="${1:-run}"
+if [[ "$mode" != run && "$mode" != test ]]; then
+    echo "usage: tools/setup.sh [run|test]" >&2
+    exit 2
+fi
+
+# Whether any of the files is there.
+any_file() {
+    local file
+    for file in "$@"; do [[ -e "$file" ]] && return 0; done
+    return 1
+}
+
+# Whether a Vulkan file of this kind (icd.d, explicit_layer.d) and name is in one of the loader's folders.
+vulkan_file() {
+    any_file /usr/share/vulkan/$1/$2 /usr/local/share/vulkan/$1/$2 /etc/vulkan/$1/$2 \
+        "${HOME:-/root}"/.local/share/vulkan/$1/$2
+}
+
+has_program() { command -v "$1" >/dev/null; }
+has_loader() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
+has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
+has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
+has_library() {
+    [[ -n "${SHADERC_LIB_DIR:-}" ]] || any_file "/usr/lib/$(uname -m)-linux-gnu/$1" "/usr/lib64/$1" "/usr/lib/$1"
+}
+
+# The Rust toolchain is not ours to install.
+if ! has_program cargo && [[ ! -x "${HOME:-/root}/.cargo/bin/cargo" ]]; then
+    cat >&2 <<'MESSAGE'
+error: Rust is not installed (no `cargo`). Install its stable toolchain, 1.88 or later: with rustup, Rust's own
+installer, or from your distribution if it has one that new. Then run this again.
+MESSAGE
+    exit 1
+fi
+
+# What is needed, Debian's package for it, and what for.
+missing=()
+reasons=()
+need() { # package, reason, check and its arguments
+    local package="$1" reason="$2"
+    shift 2
+    if ! "$@"; then
+        missing+=("$package")
+        reasons+=("$(printf '  %-26s %s' "$package" "$reason")")
+    fi
+}
+need gcc "links Rust programs" has_program cc
+need libvulkan1 "the Vulkan loader" has_loader
+need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is no GPU" has_driver
+if [[ "$mode" == test ]]; then
+    need g++ "the C++ library, for the shader compiler" has_program c++
+    need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
+    need libshaderc-dev "the shader compiler" has_library libshaderc_combined.a
+    need glslang-dev "a part of it" has_library libMachineIndependent.a
+    need spirv-tools "another part of it, and the SPIR-V validator" has_library libSPIRV-Tools-opt.a
+    need glslang-tools "a second shader compiler, for the GLSL library's check" has_program glslangValidator
+fi
+
+if [[ ${#missing[@]} -eq 0 ]]; then
+    echo "setup: everything is installed"
+    exit 0
+fi
+echo "setup: missing:"
+printf '%s\n' "${reasons[@]}"
+if ! has_program apt-get; then
+    echo "error: there is no apt-get here. Install what provides the above (the names are Debian 12's)." >&2
+    exit 1
+fi
+if [[ "$(id -u)" -ne 0 ]]; then
+    echo "error: not root. Run: sudo apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+fi
+echo "setup: installing by apt-get"
+export DEBIAN_FRONTEND=noninteractive
+apt-get update -qq
+apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+echo "setup: done"

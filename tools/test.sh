@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Every check of the project: installs what is missing, then formatting, lints, tests, documentation, shaders.
+# Goes on after a step that fails, ends with a summary, and fails if any step did.
+#
+# With AREALIGHT_REQUIRE_GPU=1 (as in CI) a test without a Vulkan device fails. Otherwise it is skipped and listed.
+set -uo pipefail
+
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+cd "$root" || exit 1
+export PATH="$PATH:${HOME:-/root}/.cargo/bin"
+
+# So many tests must have had a device, where one is required. Raise it with every GPU test that is added: a test
+# that is lost, or returns before it asks for a device, then shows.
+gpu_test_floor=15
+
+tools/setup.sh test || exit 1
+SHADERC_LIB_DIR="$(tools/shaderc.sh)" || exit 1
+export SHADERC_LIB_DIR
+
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+export AREALIGHT_GPU_TEST_LOG="$scratch/gpu-tests"
+: >"$AREALIGHT_GPU_TEST_LOG"
+
+summary=()
+failed=0
+step() { # name, command and its arguments
+    local name="$1" began=$SECONDS state=ok
+    shift
+    printf '\n== %s\n' "$name"
+    "$@" || { state=FAILED; failed=1; }
+    summary+=("$(printf '%-8s %4d s  %s' "$state" "$((SECONDS - began))" "$name")")
+}
+
+# Runs the tests, and keeps the line that counts them.
+run_tests() {
+    local status
+    if cargo nextest --version >/dev/null 2>&1; then
+        cargo nextest run --workspace --locked 2>&1 | tee "$scratch/tests"
+        status=$?
+        grep -E '^ *Summary' "$scratch/tests" >"$scratch/count"
+    else
+        echo "cargo-nextest is not installed: using cargo test"
+        cargo test --workspace --locked --lib --bins --tests --examples --no-fail-fast 2>&1 | tee "$scratch/tests"
+        status=$?
+        awk '/^test result:/ { passed += $4; failed += $6; ignored += $8 }
+            END { printf "%d tests passed, %d failed, %d ignored\n", passed, failed, ignored }' \
+            "$scratch/tests" >"$scratch/count"
+    fi
+    return "$status"
+}
+
+# Counts the tests that had a device, and lists those that were skipped.
+check_gpu_tests() {
+    local ran skipped
+    ran="$(grep '^ran ' "$AREALIGHT_GPU_TEST_LOG" | sort -u | wc -l)"
+    skipped="$(grep '^skipped ' "$AREALIGHT_GPU_TEST_LOG" | sort -u)"
+    echo "$ran tests had a Vulkan device (required with AREALIGHT_REQUIRE_GPU=1: $gpu_test_floor)"
+    [[ -z "$skipped" ]] || echo "$skipped"
+    [[ "${AREALIGHT_REQUIRE_GPU:-}" != 1 || "$ran" -ge "$gpu_test_floor" ]]
+}
+
+# Whether every relative link of the documents leads to a file.
+check_links() {
+    local broken=0 document link
+    while IFS= read -r document; do
+        while IFS= read -r link; do
+            if [[ ! -e "$(dirname "$document")/$link" ]]; then
+                echo "$document: the link to $link leads nowhere"
+                broken=1
+            fi
+        done < <(grep -oE '\]\([^) ]+' "$document" | sed -e 's/^](//' -e 's/#.*//' | grep -vE '^$|^[a-z]+:')
+    done < <(git ls-files --cached --others --exclude-standard '*.md')
+    return "$broken"
+}
+
+# Debian 12's compiler made the SPIR-V that is checked in: there it must be the same to the byte.
+strict=()
+if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
+
+step "format" cargo fmt --all --check
+step "links of documents" check_links
+step "lints" cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+step "tests" run_tests
+step "tests that had a GPU" check_gpu_tests
+step "examples in the documentation" cargo test --workspace --doc --locked --quiet
+step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
+step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
+
+printf '\n== summary\n'
+printf '%s\n' "${summary[@]}"
+cat "$scratch/count" 2>/dev/null
+if [[ "$failed" -ne 0 ]]; then
+    echo "FAILED"
+    exit 1
+fi
+echo "all passed in $SECONDS s"
