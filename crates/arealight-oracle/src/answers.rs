@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn answers_survive_being_written_and_read() {
         let answers = vec![
-            Answer::new("a \"quoted\" name", DVec3::new(0.1, 1e-300, 3e8)),
+            Answer::new("a \"quoted\" name", DVec3::new(0.44691750956508275, 1e-300, 51.24416514123215)),
             Answer::none("b", "light.type \"disk\" is not supported yet"),
             Answer::new("c", DVec3::new(f64::NAN, 0.0, 0.0)),
         ];

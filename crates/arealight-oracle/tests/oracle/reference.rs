@@ -54,3 +54,15 @@ fn truth_agrees_with_the_reference() {
     // Both programs integrate adaptively; the reference's own estimates reach 1e-5
     assert!(errors[0].0 < 1e-4, "{:?}", errors[0]);
 }
+
+#[test]
+fn a_slightly_wrong_lobe_does_not_agree() {
+    // The twin: one percent of alpha is a hundred times the bound
+    let changed =
+        supported().into_iter().filter(|(family, _)| family.material == "ggx").map(|(_, mut case)| {
+            case.surface.alpha *= 0.99;
+            relative_error(answer(&case), known(&case.name))
+        });
+    let wrong = changed.filter(|error| *error > 1e-4).count();
+    assert!(wrong > 45, "only {wrong} of 50 cases notice");
+}
