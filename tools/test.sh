@@ -70,7 +70,7 @@ check_links() {
                 broken=1
             fi
         done < <(grep -oE '\]\([^) ]+' "$document" | sed -e 's/^](//' -e 's/#.*//' | grep -vE '^$|^[a-z]+:')
-    done < <(git ls-files --cached --others --exclude-standard '*.md')
+    done < <(find . -name '*.md' -not -path './target/*' -not -path './.git/*')
     return "$broken"
 }
 
