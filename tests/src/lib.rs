@@ -1,1 +1,51 @@
-//! What the GPU tests share.
+//! What the GPU tests share: an engine that is validated, random shading points, and a comparison that
+//! counts what it compared.
+
+mod compare;
+mod points;
+
+pub use compare::Comparison;
+pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
+
+use arealight_engine::Engine;
+use arealight_host::testing::TestHost;
+use arealight_vk::TableFormat;
+
+/// A device with the built-in table. Fields go in this order, so that the host hears what was left behind.
+pub struct TestEngine {
+    engine: Engine,
+    host: TestHost,
+}
+
+impl std::ops::Deref for TestEngine {
+    type Target = Engine;
+
+    fn deref(&self) -> &Engine {
+        &self.engine
+    }
+}
+
+impl TestEngine {
+    /// The engine on a validated device; `None` where there is no device and none is required.
+    ///
+    /// # Panics
+    /// Where a device is required and missing, or the upload fails.
+    pub fn new() -> Option<Self> {
+        Self::with_format(TableFormat::default())
+    }
+
+    /// As [`TestEngine::new`], with the table in another format.
+    ///
+    /// # Panics
+    /// As [`TestEngine::new`].
+    pub fn with_format(format: TableFormat) -> Option<Self> {
+        let host = arealight_host::testing::device_or_skip()?;
+        let engine = Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
+        Some(Self { engine, host })
+    }
+
+    /// The validated host.
+    pub fn test_host(&self) -> &TestHost {
+        &self.host
+    }
+}

@@ -14,6 +14,9 @@ pub enum Failure {
         /// What is wrong with it.
         message: String,
     },
+    /// A scene that cannot be shown; the text names the file. Exit code 3.
+    #[error("{0}")]
+    Scene(String),
     /// An argument is well-formed but cannot be used. Exit code 2, as for a malformed one.
     #[error("{argument}: {message}")]
     Argument {
@@ -40,7 +43,7 @@ impl Failure {
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Argument { .. } => 2,
-            Self::Input { .. } => 3,
+            Self::Input { .. } | Self::Scene(_) => 3,
             Self::Device(_) => 4,
             Self::Output { .. } => 5,
         })

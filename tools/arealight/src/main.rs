@@ -2,6 +2,9 @@
 
 mod commands;
 mod failure;
+mod gpu;
+mod picture;
+mod progress;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -15,6 +15,15 @@ pub struct Picture {
     pub pixels: Vec<Vec3>,
 }
 
+/// What a picture is saved as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// OpenEXR, float32 radiance.
+    Exr,
+    /// PNG, 8 bits, sRGB.
+    Png,
+}
+
 /// How radiance becomes what a screen shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Exposure {
@@ -41,9 +50,19 @@ impl Picture {
     /// `.exr` holds the mean radiance in float32, untouched by `exposure`; `.png` is exposed, tone-mapped sample
     /// by sample (so that the edge of a bright light stays smooth), and encoded as sRGB.
     pub fn save(&self, path: &Path, factor: u32, exposure: Exposure) -> Result<(), Failure> {
+        match Self::check_format(path)? {
+            Format::Exr => self.resolve(factor, |radiance| radiance).save_exr(path),
+            Format::Png => {
+                self.resolve(factor, |radiance| tone_map(radiance * exposure.ev.exp2())).save_png(path)
+            }
+        }
+    }
+
+    /// The format that a path's ending names: ask before long work.
+    pub fn check_format(path: &Path) -> Result<Format, Failure> {
         match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
-            Some("exr") => self.resolve(factor, |radiance| radiance).save_exr(path),
-            Some("png") => self.resolve(factor, |radiance| tone_map(radiance * exposure.ev.exp2())).save_png(path),
+            Some("exr") => Ok(Format::Exr),
+            Some("png") => Ok(Format::Png),
             _ => Err(Failure::Argument {
                 argument: "--output",
                 message: format!("{}: the file's name must end in .png or .exr", path.display()),

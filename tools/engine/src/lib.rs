@@ -32,6 +32,9 @@ pub enum EngineError {
     /// The recorder.
     #[error(transparent)]
     Recorder(#[from] arealight_vk::Error),
+    /// The scene does not fit the device's buffers.
+    #[error(transparent)]
+    Scene(#[from] arealight_scene::BufferError),
     /// A buffer is larger than the device binds.
     #[error("{name}: {bytes} bytes, but the device binds at most {limit} to a shader: use a smaller scene")]
     BufferTooLarge {

@@ -1,0 +1,370 @@
+//! A whole frame: visibility, shading and the reference, each against its own independent twin.
+
+use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::{Effects, PolygonLight, Quality};
+use arealight_engine::{EvalPoint, SceneRenderer};
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_oracle::cubature::Settings;
+use arealight_oracle::shading::{RelativeLight, truth};
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::{Comparison, TestEngine};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use glam::camera::rh::proj::vulkan;
+use glam::{DVec3, Mat4, Vec3, Vec4};
+use std::path::Path;
+
+const SIZE: [u32; 2] = [64, 40];
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+    Scene::load(path).expect("our own scenes load")
+}
+
+fn camera(scene: &Scene) -> Camera {
+    scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera")
+}
+
+struct View<'a> {
+    buffers: SceneBuffers,
+    camera: Camera,
+    renderer: SceneRenderer<'a>,
+}
+
+fn view<'a>(engine: &'a TestEngine, scene: &'a Scene) -> View<'a> {
+    let camera = camera(scene);
+    let buffers = SceneBuffers::new(scene, camera.position).unwrap();
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
+    renderer.visibility().unwrap();
+    View { buffers, camera, renderer }
+}
+
+fn texels(image: &Image) -> Vec<Vec4> {
+    let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_READ).unwrap();
+    texels.into_iter().map(Vec4::from_array).collect()
+}
+
+fn half_texels(image: &Image) -> Vec<Vec4> {
+    let texels: Vec<[u16; 4]> = image.download(Usage::COMPUTE_READ).unwrap();
+    texels.into_iter().map(|t| Vec4::from_array(t.map(from_half))).collect()
+}
+
+/// A finite binary16 number.
+fn from_half(bits: u16) -> f32 {
+    let magnitude = f32::from_bits(u32::from(bits & 0x7fff) << 13) * 2.0_f32.powi(112);
+    if bits & 0x8000 == 0 { magnitude } else { -magnitude }
+}
+
+/// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.
+fn points(view: &View<'_>, light: &PolygonLight) -> Vec<Option<EvalPoint>> {
+    let g_buffer = view.renderer.g_buffer();
+    let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
+    let (colors, speculars) = (half_texels(&g_buffer.base_color), half_texels(&g_buffer.specular));
+    let point = |i: usize| {
+        let position = positions[i].truncate().as_dvec3();
+        let material = arealight::Material {
+            base_color: colors[i].truncate(),
+            metalness: colors[i].w,
+            roughness: normals[i].w,
+            dielectric_f0: speculars[i].truncate(),
+            dielectric_f90: speculars[i].w,
+        };
+        EvalPoint {
+            surface: material.surface(),
+            position: position + view.buffers.origin,
+            normal: normals[i].truncate().as_dvec3(),
+            view: -position,
+            light: light.clone(),
+        }
+    };
+    (0..positions.len()).map(|i| (positions[i].w != 0.0).then(|| point(i))).collect()
+}
+
+#[test]
+fn visibility_finds_what_a_float64_walk_finds() {
+    let Some(engine) = TestEngine::new() else { return };
+    for name in ["room.glb", "sweep.glb"] {
+        let scene = scene(name);
+        let view = view(&engine, &scene);
+        let positions = texels(&view.renderer.g_buffer().position);
+        let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+        let (mut agree, mut edges) = (0, 0);
+        for (i, found) in positions.iter().enumerate() {
+            let (x, y) = (i as u32 % SIZE[0], i as u32 / SIZE[0]);
+            let plane = [
+                (f64::from(x) + 0.5) / f64::from(SIZE[0]) * 2.0 - 1.0,
+                1.0 - (f64::from(y) + 0.5) / f64::from(SIZE[1]) * 2.0,
+            ];
+            let direction = view.camera.direction(plane, aspect);
+            let hit = view.buffers.closest_hit(view.camera.position, direction);
+            let expected = hit.map(|hit| direction * f64::from(hit.distance));
+            let same = match expected {
+                None => found.w == 0.0,
+                // Positions come from float32 barycentrics: a few parts in 1e6 of the distance
+                Some(at) => found.w != 0.0 && found.truncate().as_dvec3().distance(at) < 1e-5 * at.length(),
+            };
+            if same { agree += 1 } else { edges += 1 }
+        }
+        // A ray through an edge may meet either triangle, in either precision
+        assert!(edges * 500 <= agree, "{name}: {edges} pixels differ, {agree} agree");
+        assert!(positions.iter().filter(|p| p.w != 0.0).count() > positions.len() / 4, "{name} is not empty");
+    }
+}
+
+#[test]
+fn the_shade_pass_equals_eval_at_every_pixel() {
+    let Some(engine) = TestEngine::new() else { return };
+    for name in ["room.glb", "sweep.glb"] {
+        let scene = scene(name);
+        let mut view = view(&engine, &scene);
+        // Emission alone, then with the light that surfaces reflect
+        let emitted = view.renderer.radiance().unwrap();
+        view.renderer.shade(scene.effects(), Quality::default()).unwrap();
+        let shaded = view.renderer.radiance().unwrap();
+
+        let mut expected = vec![DVec3::ZERO; shaded.len()];
+        for light in &scene.lights {
+            let points = points(&view, light);
+            let some: Vec<EvalPoint> = points.iter().flatten().cloned().collect();
+            let mut answers = engine.eval(&some, Quality::default()).unwrap().into_iter();
+            for (sum, point) in expected.iter_mut().zip(&points) {
+                if point.is_some() {
+                    *sum += answers.next().expect("an answer a point").as_dvec3();
+                }
+            }
+        }
+        let brightest = expected.iter().map(|e| e.max_element()).fold(0.0, f64::max);
+        assert!(brightest > 0.1, "{name} is lit");
+        let mut comparison = Comparison::new(format!("{name}: shade against eval"));
+        for (i, expected) in expected.iter().enumerate() {
+            // A pixel on a light touches it, where the form factor jumps by up to one with the last bit
+            if emitted[i].truncate() != Vec3::ZERO {
+                continue;
+            }
+            let reflected = (shaded[i] - emitted[i]).truncate().as_dvec3();
+            for channel in 0..3 {
+                // Positions are rounded relative to the camera here and to the point there, and alpha is 0.0025
+                // or more: see rounding() in shading.rs, three times for as many roundings more
+                let bound = 1e-3 * brightest;
+                comparison.add(reflected[channel], expected[channel], bound, || format!("pixel {i}"));
+            }
+        }
+        comparison.assert_all();
+    }
+}
+
+#[test]
+fn the_reference_converges_to_the_truth() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("room.glb");
+    let mut view = view(&engine, &scene);
+    let emitted = view.renderer.radiance().unwrap();
+    let samples = 256;
+    view.renderer.reference(samples, 7, |_| {}).unwrap();
+    let sampled = view.renderer.radiance().unwrap();
+
+    // The truth at every 37th pixel, by cubature
+    let settings = Settings { relative_tolerance: 1e-4, ..Settings::default() };
+    let per_light: Vec<_> = scene.lights.iter().map(|light| points(&view, light)).collect();
+    let (mut difference, mut total, mut count) = (DVec3::ZERO, DVec3::ZERO, 0);
+    for i in (0..sampled.len()).step_by(37) {
+        if per_light[0][i].is_none() {
+            continue;
+        }
+        let exact: DVec3 = per_light
+            .iter()
+            .filter_map(|points| points[i].as_ref())
+            .map(|p| {
+                let light = RelativeLight::new(&p.light, p.position);
+                truth(&p.surface, p.normal, p.view, &light, &settings).radiance
+            })
+            .sum();
+        difference += (sampled[i] - emitted[i]).truncate().as_dvec3() - exact;
+        total += exact;
+        count += 1;
+    }
+    assert!(count > 30, "{count} pixels have a surface");
+    // Over all pixels the noise of 256 samples averages out: what stays would be a bias. Noise of one pixel is
+    // around its mean / sqrt(256), of the mean of 50 pixels a seventh of that, 1 %: three of those
+    for channel in 0..3 {
+        let bias = (difference[channel] / total[channel]).abs();
+        assert!(bias < 0.03, "channel {channel}: {bias} of the light is missing or too much");
+    }
+}
+
+#[test]
+fn the_fitted_lobes_look_like_the_reference() {
+    let Some(engine) = TestEngine::new() else { return };
+    for name in ["room.glb", "sweep.glb", "demo.glb"] {
+        let scene = scene(name);
+        let mut fitted = view(&engine, &scene);
+        let emitted = fitted.renderer.radiance().unwrap();
+        fitted.renderer.shade(scene.effects(), Quality::default()).unwrap();
+        let fitted = fitted.renderer.radiance().unwrap();
+        let mut sampled = view(&engine, &scene);
+        sampled.renderer.reference(64, 3, |_| {}).unwrap();
+        let sampled = sampled.renderer.radiance().unwrap();
+        // A smoke test: the mean reflected light of the picture, to 5 %
+        let mean = |picture: &[Vec4]| {
+            picture.iter().zip(&emitted).map(|(p, e)| (*p - *e).truncate().as_dvec3()).sum::<DVec3>()
+        };
+        let (fitted, sampled) = (mean(&fitted), mean(&sampled));
+        for channel in 0..3 {
+            let ratio = fitted[channel] / sampled[channel];
+            assert!((ratio - 1.0).abs() < 0.05, "{name}, channel {channel}: {ratio}");
+        }
+    }
+}
+
+/// One pixel that sees a point, through a G-buffer that the test makes itself.
+struct OnePixel<'a> {
+    engine: &'a TestEngine,
+    position: Image,
+    depth: Image,
+    normal: Image,
+    base_color: Image,
+    radiance: Image,
+}
+
+impl<'a> OnePixel<'a> {
+    fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
+        let image = |name, format, usage| {
+            let description = ImageDescription { name, extent: [1, 1], layers: 1, format, usage };
+            engine.host().image(&description).unwrap()
+        };
+        let sampled = |name, texel: [f32; 4]| {
+            let image = image(name, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+            image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
+            image
+        };
+        let depth_image = image("depth", vk::Format::R32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+        depth_image.upload(&[depth], Usage::COMPUTE_READ).unwrap();
+        let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::STORAGE);
+        radiance.upload(&[[0.25_f32, 0.5, 1.0, 1.0]], Usage::COMPUTE_WRITE).unwrap();
+        Self {
+            engine,
+            position: sampled("position", position.to_array()),
+            depth: depth_image,
+            normal: sampled("normal", [0.0, 0.0, 2.0, 0.5]),
+            base_color: sampled("base colour", [0.8, 0.6, 0.4, 0.25]),
+            radiance,
+        }
+    }
+
+    fn shade(&self, options: ShadeOptions, lights: &[PolygonLight], camera: Vec3, matrix: Option<Mat4>) -> Vec4 {
+        let host = self.engine.host();
+        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        unsafe {
+            let pass = ShadePass::new(self.engine.context(), options).unwrap();
+            let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
+            let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
+            let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
+            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+            let set = pool.allocate(pass.set_layout()).unwrap();
+            let sampled = |image: &Image| Resource::SampledImage {
+                view: image.view(),
+                layout: Usage::COMPUTE_READ.layout,
+            };
+            let from_depth = options.position == PositionSource::Depth;
+            let resources = ShadeResources {
+                table: self.engine.table(),
+                lights: Resource::buffer(light_buffer.handle()),
+                light_vertices: Resource::buffer(vertex_buffer.handle()),
+                position: sampled(if from_depth { &self.depth } else { &self.position }),
+                normal: sampled(&self.normal),
+                base_color: sampled(&self.base_color),
+                specular: sampled(&self.base_color),
+                radiance: Resource::StorageImage { view: self.radiance.view() },
+            };
+            pass.write_set(set, &resources).unwrap();
+            let frame =
+                ShadeFrame { size: [1, 1], camera, position_from_clip: matrix, light_count: lights.len() as u32 };
+            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
+        }
+        let texel: Vec<[f32; 4]> = self.radiance.download(Usage::COMPUTE_WRITE).unwrap();
+        Vec4::from_array(texel[0])
+    }
+}
+
+fn lamp() -> PolygonLight {
+    let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    PolygonLight {
+        name: "lamp".into(),
+        vertices: square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect(),
+        radiance: Vec3::new(1.0, 2.0, 3.0),
+        two_sided: false,
+    }
+}
+
+fn options() -> ShadeOptions {
+    ShadeOptions { effects: Effects::DIFFUSE | Effects::GLOSSY, ..ShadeOptions::all() }
+}
+
+#[test]
+fn output_overwrites_or_adds() {
+    let Some(engine) = TestEngine::new() else { return };
+    let camera = Vec3::new(0.0, -1.0, 1.0);
+    let pixel = || OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+    let over = pixel().shade(options(), &[lamp()], camera, None);
+    assert!(over.min_element() > 0.05 && over.w == 1.0, "{over}");
+    let added = pixel().shade(ShadeOptions { output: Output::Add, ..options() }, &[lamp()], camera, None);
+    assert_eq!(added.truncate(), over.truncate() + Vec3::new(0.25, 0.5, 1.0));
+
+    // Without a surface: overwriting clears, adding leaves alone
+    let nothing = || OnePixel::new(&engine, Vec4::ZERO, 1.0);
+    assert_eq!(nothing().shade(options(), &[lamp()], camera, None), Vec4::ZERO);
+    let left = nothing().shade(ShadeOptions { output: Output::Add, ..options() }, &[lamp()], camera, None);
+    assert_eq!(left, Vec4::new(0.25, 0.5, 1.0, 1.0));
+}
+
+#[test]
+fn every_effect_is_the_sum_of_its_parts_and_absent_ones_change_nothing() {
+    let Some(engine) = TestEngine::new() else { return };
+    let camera = Vec3::new(0.0, -1.0, 1.0);
+    let shade = |effects| {
+        let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+        pixel.shade(ShadeOptions { effects, ..options() }, &[lamp()], camera, None).truncate()
+    };
+    let (diffuse, glossy) = (shade(Effects::DIFFUSE), shade(Effects::GLOSSY));
+    let both = shade(Effects::DIFFUSE | Effects::GLOSSY);
+    assert!(diffuse.min_element() > 0.0 && glossy.min_element() > 0.0);
+    // Radiance times a sum, against a sum of products: one rounding each
+    assert!((diffuse + glossy - both).abs().max_element() < 1e-6, "{diffuse} + {glossy} = {both}");
+    // No light has two sides, so the effect changes no bit
+    assert_eq!(shade(Effects::DIFFUSE | Effects::GLOSSY | Effects::TWO_SIDED), both);
+    assert_eq!(shade(Effects::empty()), Vec3::ZERO);
+    // The fourth image is read only when it is called for
+    assert_ne!(shade(Effects::all()), both);
+}
+
+#[test]
+fn depth_gives_the_same_as_positions() {
+    let Some(engine) = TestEngine::new() else { return };
+    let camera = Vec3::new(0.5, -3.0, 4.0);
+    let target = Vec3::new(0.1, 0.2, 0.0);
+    // The pixel's ray goes through the middle of the image: look at the point
+    let view = glam::camera::rh::view::look_at_mat4(camera, target, Vec3::Y);
+    for projection in [vulkan::perspective(0.8, 1.0, 0.1, 100.0), vulkan::perspective_infinite_reverse(0.8, 1.0, 0.1)]
+    {
+        let clip = projection * view * target.extend(1.0);
+        let pixel = OnePixel::new(&engine, target.extend(1.0), clip.z / clip.w);
+        let by_position = pixel.shade(options(), &[lamp()], camera, None);
+        let from_depth = ShadeOptions { position: PositionSource::Depth, ..options() };
+        let matrix = (projection * view).inverse();
+        let by_depth = pixel.shade(from_depth, &[lamp()], camera, Some(matrix));
+        // Depth in float32, unprojected: 1e-5 of the distance
+        assert!((by_position - by_depth).abs().max_element() < 1e-3, "{by_position} {by_depth}");
+        for cleared in [0.0, 1.0] {
+            let empty = OnePixel::new(&engine, Vec4::ZERO, cleared);
+            assert_eq!(empty.shade(from_depth, &[lamp()], camera, Some(matrix)), Vec4::ZERO);
+        }
+    }
+}
+
+#[test]
+fn an_image_without_lights_is_black() {
+    let Some(engine) = TestEngine::new() else { return };
+    let pixel = OnePixel::new(&engine, Vec4::new(0.0, 0.0, 0.0, 1.0), 0.5);
+    assert_eq!(pixel.shade(options(), &[], Vec3::Z, None), Vec4::new(0.0, 0.0, 0.0, 1.0));
+}

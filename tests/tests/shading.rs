@@ -1,0 +1,141 @@
+//! The GPU against the float64 oracle: the same table, the same integral, in another precision.
+
+use arealight::{FormFactor, Quality};
+use arealight_engine::EvalPoint;
+use arealight_oracle::shading::{RelativeLight, ltc};
+use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
+use arealight_vk::TableFormat;
+use glam::DVec3;
+
+const COUNT: usize = 4000;
+
+fn expected(point: &EvalPoint) -> DVec3 {
+    let light = RelativeLight::new(&point.light, point.position);
+    ltc(&arealight_table::ggx(), &point.surface, point.normal, point.view, &light)
+}
+
+/// What float32 may lose of a form factor in the lobe of `alpha`. Vertices, frame and matrix are rounded about
+/// sixteen times, each by 2^-24 of a direction, and the lobe turns a direction's error into 1/alpha of itself;
+/// beside that stands the walk's own 1e-6.
+fn rounding(alpha: f64) -> f64 {
+    1e-6 + 16.0 * 2.0_f64.powi(-24) / alpha
+}
+
+/// Polygons of 3 to 12 vertices, convex and concave, above, across and below the horizon.
+fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight::Surface) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    (0..COUNT)
+        .map(|i| {
+            let distance = 10.0_f64.powf(random.between(-1.0, 2.0));
+            let center = random.direction() * distance;
+            let size = distance * random.between(0.1, 1.5);
+            let vertices = random.polygon(center, 3 + i % 10, size * 0.3, size);
+            let cos_view = random.between(0.02, 1.0);
+            let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
+            let mut given = point(surface(&mut random), view, vertices, i % 3 == 0);
+            // Anywhere in the world, turned anyhow
+            given.normal = random.direction() * random.between(0.5, 2.0);
+            let frame = arealight_oracle::frame::SurfaceFrame::new(given.normal, random.direction());
+            given.view = frame.from_surface(given.view);
+            given.position = random.direction() * 1000.0;
+            for vertex in &mut given.light.vertices {
+                *vertex = frame.from_surface(*vertex) + given.position;
+            }
+            given
+        })
+        .collect()
+}
+
+fn compare(what: &str, points: &[EvalPoint], quality: Quality, bound: impl Fn(&EvalPoint) -> f64) -> Option<Comparison> {
+    let engine = TestEngine::new()?;
+    let answers = engine.eval(points, quality).unwrap();
+    assert_eq!(answers.len(), points.len());
+    let mut comparison = Comparison::new(what);
+    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+        let expected = expected(given);
+        for channel in 0..3 {
+            let place = || format!("point {index}, channel {channel}: {given:?}");
+            comparison.add(answer[channel].into(), expected[channel], bound(given), place);
+        }
+    }
+    Some(comparison)
+}
+
+#[test]
+fn lambert_is_exact_to_float32() {
+    let points = lights(1, |_| lambert_surface());
+    let Some(comparison) = compare("Lambert", &points, Quality::default(), |_| rounding(1.0)) else { return };
+    comparison.assert_all();
+}
+
+#[test]
+fn glossy_follows_the_table_to_float32() {
+    let points = lights(2, |random| glossy_surface(10.0_f64.powf(random.between(-2.0, 0.0))));
+    let bound = |point: &EvalPoint| rounding(point.surface.alpha);
+    let Some(comparison) = compare("GGX", &points, Quality::default(), bound) else { return };
+    comparison.assert_all();
+}
+
+#[test]
+fn fresnel_and_both_lobes_add_up() {
+    let points = lights(3, |random| arealight::Surface {
+        diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
+        f0: DVec3::new(0.04, 0.5, 0.9),
+        f90: random.unit(),
+        alpha: random.between(0.05, 1.0),
+    });
+    let bound = |point: &EvalPoint| 2.0 * rounding(point.surface.alpha);
+    let Some(comparison) = compare("both lobes", &points, Quality::default(), bound) else { return };
+    comparison.assert_all();
+}
+
+#[test]
+fn the_fast_rung_is_within_its_error_and_no_better_than_it_says() {
+    let points = lights(4, |_| lambert_surface());
+    let quality = Quality { form_factor: FormFactor::Fast };
+    // 1.2e-4 of each edge's share, and the shares of a polygon's edges, signs aside, add up to at most 1 for
+    // every horizon they circle: concave outlines of this family reach 2.
+    let Some(comparison) = compare("fast Lambert", &points, quality, |_| 2.4e-4 + rounding(1.0)) else { return };
+    assert!(comparison.largest() > 1e-5, "the fast polynomial was not used");
+    comparison.assert_all();
+}
+
+#[test]
+fn a_table_in_float16_is_close() {
+    let points = lights(5, |random| glossy_surface(random.between(0.01, 1.0)));
+    let Some(engine) = TestEngine::with_format(TableFormat::Rgba16Float) else { return };
+    let answers = engine.eval(&points, Quality::default()).unwrap();
+    let mut comparison = Comparison::new("float16 table");
+    for (given, answer) in points.iter().zip(&answers) {
+        // An entry is rounded by 2^-12 of itself; entries are of order one, and so is what a form factor
+        // changes with each of the four, and with the albedo
+        let bound = 6.0 * 2.0_f64.powi(-12) + rounding(given.surface.alpha);
+        comparison.add(answer.x.into(), expected(given).x, bound, || format!("{given:?}"));
+    }
+    assert!(comparison.largest() > 1e-6, "the table was not rounded");
+    comparison.assert_all();
+}
+
+#[test]
+fn the_comparison_notices_a_wrong_light() {
+    // The twin of the tests above: the GPU is given the lights of other points
+    let points = lights(1, |_| lambert_surface());
+    let Some(engine) = TestEngine::new() else { return };
+    let answers = engine.eval(&points[1..], Quality::default()).unwrap();
+    let mut comparison = Comparison::new("shifted");
+    for (given, answer) in points.iter().zip(&answers) {
+        comparison.add(answer.x.into(), expected(given).x, rounding(1.0), || String::new());
+    }
+    assert!(comparison.failures() > COUNT / 4, "{} noticed", comparison.failures());
+}
+
+#[test]
+fn a_light_that_cannot_be_shaded_is_named() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut points = lights(6, |_| lambert_surface());
+    points.truncate(3);
+    points[2].light.vertices[1].y = f64::NAN;
+    let error = engine.eval(&points, Quality::default()).unwrap_err();
+    assert!(error.to_string().starts_with("light 'test': vertices[1]"), "{error}");
+    assert!(engine.eval(&[], Quality::default()).unwrap().is_empty());
+}

@@ -1,0 +1,26 @@
+//! The commands' way to a device.
+
+pub mod eval;
+
+use crate::failure::Failure;
+use arealight::LightTable;
+use arealight_engine::{Engine, EngineError, Host, HostOptions};
+use std::path::Path;
+
+/// An engine on the device of that name, or on the best one.
+pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failure> {
+    let options = HostOptions { device: device.map(str::to_owned), ..HostOptions::default() };
+    let host = Host::new(options).map_err(|error| Failure::Device(error.to_string()))?;
+    Engine::new(host, table, arealight_vk::TableFormat::default())
+        .map_err(|error| Failure::Device(error.to_string()))
+}
+
+/// An error of the engine as a command reports it: a light of the input that cannot be shaded is the input's
+/// fault, all else the device's.
+pub fn failure(error: EngineError, input: &Path) -> Failure {
+    match error {
+        EngineError::Recorder(arealight_vk::Error::Light(error)) => Failure::input(input, error),
+        error @ (EngineError::BufferTooLarge { .. } | EngineError::Scene(_)) => Failure::input(input, error),
+        error => Failure::Device(error.to_string()),
+    }
+}
