@@ -92,6 +92,13 @@ pub fn square_points(count: usize) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
+/// Whether a triangle spans less than 0.3 as seen through a matrix: a lobe that is wide on the far side of the
+/// matrix is then resolved on this one.
+pub fn is_small_through(matrix: &DMat3, triangle: &[DVec3; 3]) -> bool {
+    let [a, b, c] = triangle.map(|p| (*matrix * p).normalize_or_zero());
+    a.distance(b).max(b.distance(c)).max(c.distance(a)) < 0.3
+}
+
 /// A unit view direction in the surface frame, at `theta` from the normal.
 pub fn view_at(theta: f64) -> DVec3 {
     DVec3::new(theta.sin(), 0.0, theta.cos().max(0.0))

@@ -1,6 +1,6 @@
 //! Properties of the closed form, and the closed form against cubature and against other closed forms.
 
-use crate::common::{Star, box_around, matrix, star};
+use crate::common::{Star, box_around, is_small_through, matrix, star};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use arealight_oracle::polygon::{emitted, form_factor, transformed_form_factor};
@@ -90,7 +90,8 @@ proptest! {
         prop_assert!((sum - 1.0).abs() < 1e-14, "{sum}");
         let five: f64 = faces[..5].iter().map(|face| transformed_form_factor(&matrix, face)).sum();
         let sixth = transformed_form_factor(&matrix, &faces[5]);
-        prop_assert!(sixth == 0.0 || (five - 1.0).abs() > 0.5 * sixth, "the twin: five faces leave a gap");
+        // (a face below the horizon sends nothing but rounding)
+        prop_assert!(sixth < 1e-12 || (five - 1.0).abs() > 0.5 * sixth, "the twin: five faces leave a gap");
     }
 
     #[test]
@@ -133,7 +134,7 @@ proptest! {
         let lobe = TransformedDistribution::from_inverse(Original::ClampedCosine, matrix).unwrap();
         // Cut at the horizon of cosine space, where the transformed cosine has a kink
         let region = Region::polygon(&star.vertices).clipped(matrix.row(2));
-        let integral = region.integrate(&Settings::default(), |_| true, |w| [lobe.evaluate(w)]).value[0];
+        let integral = region.integrate(&Settings::default(), |t| is_small_through(&matrix, t), |w| [lobe.evaluate(w)]).value[0];
         let closed = transformed_form_factor(&matrix, &star.vertices);
         prop_assert!((integral - closed).abs() < 1e-7, "{integral} and {closed}");
     }
