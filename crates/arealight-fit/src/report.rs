@@ -1,0 +1,93 @@
+//! How well a table does: its polygon integrals against the true BRDF's on random quads.
+
+use arealight::{LightTable, TableSample};
+use arealight_oracle::cubature::{Region, Settings};
+use arealight_oracle::ggx::Ggx;
+use arealight_oracle::polygon::transformed_form_factor;
+use arealight_oracle::shading::lobe_integrals;
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::brdf::view_direction;
+
+mod quads;
+
+pub use quads::{Family, Quad, random_quads};
+
+/// The reflectances at normal incidence at which a table is judged: dielectrics to metals.
+pub const REFLECTANCES: [f64; 7] = [0.02, 0.04, 0.1, 0.2, 0.4, 0.7, 1.0];
+
+/// A quad with the true integrals of GGX over it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The quad, the view and the roughness.
+    pub quad: Quad,
+    /// Integral of `f cos` over the part above the surface.
+    pub lobe: f64,
+    /// Integral of `f cos (1 - cos theta_vh)^5` over the same.
+    pub schlick: f64,
+}
+
+/// The absolute errors of the integral of a lobe over many quads of unit radiance, at one reflectance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Errors {
+    /// The reflectance at normal incidence.
+    pub f0: f64,
+    /// Their mean.
+    pub mean: f64,
+    /// Below which 95 % of them lie.
+    pub percentile_95: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// Draws quads and integrates GGX over them, to about 1e-6.
+pub fn cases(count: usize, seed: u64, progress: &(dyn Fn() + Sync)) -> Vec<Case> {
+    let settings = Settings { relative_tolerance: 1e-4, max_evaluations: 1_000_000 };
+    random_quads(count, seed)
+        .into_par_iter()
+        .map(|quad| {
+            let lobe = Ggx { alpha: quad.roughness * quad.roughness };
+            let region = Region::polygon(&quad.vertices).clipped(DVec3::Z);
+            let estimate = lobe_integrals(lobe, view_direction(quad.cos_view), &region, &settings);
+            progress();
+            let [lobe, schlick] = estimate.value;
+            Case { quad, lobe, schlick }
+        })
+        .collect()
+}
+
+/// Measures a table at each of [`REFLECTANCES`].
+pub fn measure(table: &LightTable, cases: &[Case]) -> Vec<Errors> {
+    measure_lookup(|roughness, cos_view| table.lookup(roughness, cos_view), cases)
+}
+
+/// Measures anything that answers a roughness and a view's cosine with a lobe.
+pub fn measure_lookup(lookup: impl Fn(f64, f64) -> TableSample, cases: &[Case]) -> Vec<Errors> {
+    let answers: Vec<(TableSample, f64)> = cases
+        .iter()
+        .map(|case| {
+            let sample = lookup(case.quad.roughness, case.quad.cos_view);
+            (sample, transformed_form_factor(&sample.inverse, &case.quad.vertices).max(0.0))
+        })
+        .collect();
+    REFLECTANCES
+        .iter()
+        .map(|&f0| {
+            let errors = cases.iter().zip(&answers).map(|(case, (sample, form_factor))| {
+                let scale = f0 * sample.albedo + (1.0 - f0) * sample.schlick;
+                let truth = f0 * case.lobe + (1.0 - f0) * case.schlick;
+                (scale * form_factor - truth).abs()
+            });
+            summarise(f0, errors.collect())
+        })
+        .collect()
+}
+
+/// Mean, 95th percentile and maximum; zero for no errors at all.
+fn summarise(f0: f64, mut errors: Vec<f64>) -> Errors {
+    errors.sort_by(f64::total_cmp);
+    let mean = errors.iter().sum::<f64>() / errors.len().max(1) as f64;
+    let percentile_95 = errors.get(errors.len() * 95 / 100).copied().unwrap_or(0.0);
+    Errors { f0, mean, percentile_95, max: errors.last().copied().unwrap_or(0.0) }
+}

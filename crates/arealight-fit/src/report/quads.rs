@@ -1,0 +1,101 @@
+//! Random quads, views and roughnesses on which a table is judged.
+
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Where the lights of a family lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Family {
+    /// About the mirror direction of the view.
+    Mirror,
+    /// Anywhere above the surface.
+    Random,
+    /// Through the plane of the surface.
+    Horizon,
+}
+
+impl Family {
+    /// All of them, in the order in which they are drawn.
+    pub const ALL: [Self; 3] = [Self::Mirror, Self::Random, Self::Horizon];
+}
+
+/// One case: a quad of unit radiance, a view and a roughness.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quad {
+    /// Its family.
+    pub family: Family,
+    /// In [0.1, 1].
+    pub roughness: f64,
+    /// Of an angle in [0°, 89°].
+    pub cos_view: f64,
+    /// In the surface frame, relative to the shading point, its front towards it.
+    pub vertices: [DVec3; 4],
+}
+
+/// Draws `count` quads, a third of each family. The same seed gives the same quads everywhere.
+pub fn random_quads(count: usize, seed: u64) -> Vec<Quad> {
+    let mut random = Random(seed);
+    (0..count).map(|i| random_quad(&mut random, Family::ALL[i % 3])).collect()
+}
+
+fn random_quad(random: &mut Random, family: Family) -> Quad {
+    let roughness = random.between(0.1, 1.0);
+    let theta = random.between(0.0, 89.0_f64.to_radians());
+    // Choose a size, then a distance at which the quad keeps off the shading point
+    let half_width = random.between(0.1_f64.ln(), 2.0_f64.ln()).exp();
+    let half_height = half_width * random.between(0.3, 1.0);
+    let distance = random.between(0.3, 2.0);
+    let direction = match family {
+        Family::Mirror => {
+            let mirror = DVec3::new(-theta.sin(), 0.0, theta.cos());
+            let spread = roughness * roughness;
+            let jitter = random.direction() * spread * random.unit();
+            let aimed = (mirror + jitter).normalize_or(DVec3::Z);
+            aimed.with_z(aimed.z.abs())
+        }
+        Family::Random => {
+            let direction = random.direction();
+            direction.with_z(direction.z.abs())
+        }
+        Family::Horizon => {
+            let phi = PI * random.between(0.5, 1.5);
+            let height = 0.5 * random.between(-1.0, 1.0) * half_height.min(1.0);
+            DVec3::new(phi.cos(), phi.sin(), height).normalize_or(DVec3::X)
+        }
+    };
+    // Face the shading point, tilted at random by up to about 60°
+    let normal = (-direction + 0.9 * random.direction() * random.unit()).normalize_or(DVec3::Z);
+    let tangent = normal.cross(random.direction()).normalize_or(normal.any_orthonormal_vector());
+    let (u, v) = (tangent * half_width, normal.cross(tangent) * half_height);
+    let centre = direction * distance;
+    let mut vertices = [centre - u - v, centre + u - v, centre + u + v, centre - u + v];
+    // The front is the right-hand side of the vertex order: turn it to the shading point
+    if normal.dot(centre) > 0.0 {
+        vertices.reverse();
+    }
+    Quad { family, roughness, cos_view: theta.cos(), vertices }
+}
+
+/// SplitMix64 (Steele, Lea, Flood 2014): small, and the same on every machine.
+struct Random(u64);
+
+impl Random {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    fn direction(&mut self) -> DVec3 {
+        let z = self.between(-1.0, 1.0);
+        let (sin_phi, cos_phi) = (2.0 * PI * self.unit()).sin_cos();
+        let radius = (1.0 - z * z).max(0.0).sqrt();
+        DVec3::new(radius * cos_phi, radius * sin_phi, z)
+    }
+}

@@ -1,0 +1,211 @@
+//! Reads a table, trusting nothing.
+
+use arealight::table::MAX_SIZE;
+use arealight::{LightTable, TableDescription};
+use exr::block::UncompressedBlock;
+use exr::block::reader::ChunksReader;
+use exr::meta::attribute::{AttributeValue, SampleType, Text};
+use exr::meta::header::Header;
+use exr::meta::{BlockDescription, magic_number};
+use exr::prelude::{Compression, Vec2};
+use std::io::Cursor;
+
+use super::{AXES, FORMAT, FRAME, Layer, MAGNITUDE, MATRIX, NORMALISATION, VERSION, attribute};
+use crate::ReadError;
+
+/// The table in a file.
+pub fn read(file: &[u8]) -> Result<LightTable, ReadError> {
+    if !file.starts_with(&magic_number::BYTES) {
+        return Err(ReadError::NotExr);
+    }
+    // Read the headers alone, and check all that they say
+    let reader = exr::block::read(Cursor::new(file), true).map_err(|error| damaged("header", &error))?;
+    let headers = reader.headers();
+    let description = check_attributes(headers)?;
+    let (matrix_index, matrix_header) = find_layer(headers, &MATRIX)?;
+    let (magnitude_index, magnitude_header) = find_layer(headers, &MAGNITUDE)?;
+    if headers.len() != 2 {
+        return Err(ReadError::LayerCount { count: headers.len() });
+    }
+    let size = check_layer(matrix_header, &MATRIX, None)?;
+    check_layer(magnitude_header, &MAGNITUDE, Some(size))?;
+
+    // Read the texels into what the headers call for
+    let mut matrix = Texels::<4>::new(&MATRIX, matrix_header, size);
+    let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_header, size);
+    let mut unknown_layer = false;
+    reader
+        .all_chunks(true)
+        .and_then(|chunks| {
+            chunks.decompress_sequential(true, |_, block| {
+                match block.index.layer {
+                    layer if layer == matrix_index => matrix.insert(&block),
+                    layer if layer == magnitude_index => magnitude.insert(&block),
+                    _ => unknown_layer = true,
+                }
+                Ok(())
+            })
+        })
+        .map_err(|error| damaged("texels", &error))?;
+    if unknown_layer {
+        return Err(ReadError::Damaged {
+            part: "texels",
+            reason: "a block of a layer that is not there".into(),
+        });
+    }
+    Ok(LightTable::new(description, size as u32, matrix.finish()?, magnitude.finish()?)?)
+}
+
+fn damaged(part: &'static str, error: &exr::error::Error) -> ReadError {
+    ReadError::Damaged { part, reason: error.to_string() }
+}
+
+/// Checks the attributes that say what the texels mean, in the order in which they matter.
+fn check_attributes(headers: &[Header]) -> Result<TableDescription, ReadError> {
+    let format = attribute(headers, attribute::FORMAT)?;
+    expect_text(attribute::FORMAT, format, FORMAT)?;
+    match attribute(headers, attribute::VERSION)? {
+        AttributeValue::I32(VERSION) => {}
+        other => return Err(unexpected(attribute::VERSION, other, &VERSION.to_string())),
+    }
+    for (name, expected) in
+        [(attribute::AXES, AXES), (attribute::FRAME, FRAME), (attribute::NORMALISATION, NORMALISATION)]
+    {
+        expect_text(name, attribute(headers, name)?, expected)?;
+    }
+    let text = |name| match attribute(headers, name)? {
+        AttributeValue::Text(text) => Ok(text.to_string()),
+        other => Err(unexpected(name, other, "a string")),
+    };
+    Ok(TableDescription { brdf: text(attribute::BRDF)?, made_by: text(attribute::MADE_BY)? })
+}
+
+/// The attribute in the first header that has it. Some programs move shared attributes to the layers, or keep
+/// them in the first one only.
+fn attribute<'a>(headers: &'a [Header], name: &'static str) -> Result<&'a AttributeValue, ReadError> {
+    let key = Text::from(name);
+    headers
+        .iter()
+        .find_map(|header| {
+            header.shared_attributes.other.get(&key).or_else(|| header.own_attributes.other.get(&key))
+        })
+        .ok_or(ReadError::MissingAttribute { attribute: name })
+}
+
+fn expect_text(name: &'static str, value: &AttributeValue, expected: &str) -> Result<(), ReadError> {
+    match value {
+        AttributeValue::Text(text) if text.to_string() == expected => Ok(()),
+        other => Err(unexpected(name, other, expected)),
+    }
+}
+
+fn unexpected(attribute: &'static str, value: &AttributeValue, expected: &str) -> ReadError {
+    const LONGEST: usize = 200;
+    let mut found = match value {
+        AttributeValue::Text(text) => text.to_string(),
+        AttributeValue::I32(number) => number.to_string(),
+        other => format!("{other:?}"),
+    };
+    // Do not repeat a book that someone stored there
+    if let Some((end, _)) = found.char_indices().nth(LONGEST) {
+        found.truncate(end);
+        found.push_str("...");
+    }
+    ReadError::Attribute { attribute, found, expected: expected.to_owned() }
+}
+
+fn find_layer<'a>(headers: &'a [Header], layer: &Layer) -> Result<(usize, &'a Header), ReadError> {
+    let name = Some(Text::from(layer.name));
+    let mut found = headers.iter().enumerate().filter(|(_, header)| header.own_attributes.layer_name == name);
+    found.next().ok_or(ReadError::MissingLayer { layer: layer.name })
+}
+
+/// Checks a layer's header and returns its size.
+fn check_layer(header: &Header, layer: &Layer, size: Option<usize>) -> Result<usize, ReadError> {
+    let Vec2(width, height) = header.layer_size;
+    let is_square = width == height && (2..=MAX_SIZE as usize).contains(&width);
+    if !is_square || size.is_some_and(|size| size != width) {
+        return Err(ReadError::Size { layer: layer.name, width, height });
+    }
+    let storage = |found: String| Err(ReadError::Storage { layer: layer.name, found });
+    if header.deep {
+        return storage("deep data".into());
+    }
+    if header.blocks != BlockDescription::ScanLines {
+        return storage("tiles".into());
+    }
+    if !matches!(header.compression, Compression::Uncompressed | Compression::ZIP1 | Compression::ZIP16) {
+        return storage(format!("compression {}", header.compression));
+    }
+    let list = &header.channels.list;
+    let is_expected = |channel: &exr::meta::attribute::ChannelDescription| {
+        let name = channel.name.to_string();
+        layer.channels.contains(&name.as_str())
+            && channel.sample_type == SampleType::F32
+            && channel.sampling == Vec2(1, 1)
+    };
+    // Names are unique, as the header's own check has shown, so that counting them is enough
+    if list.len() != layer.channels.len() || !list.iter().all(is_expected) {
+        let found: Vec<String> = list
+            .iter()
+            .take(8)
+            .map(|channel| format!("{} {:?}", channel.name, channel.sample_type))
+            .collect();
+        let expected = if layer.channels.len() == 4 { "R G B A" } else { "R G" };
+        return Err(ReadError::Channels { layer: layer.name, found: found.join(", "), expected });
+    }
+    Ok(width)
+}
+
+/// The texels of a layer, filled block by block.
+struct Texels<const N: usize> {
+    layer: &'static str,
+    size: usize,
+    /// For each channel in the file's order, its place in a texel.
+    places: Vec<usize>,
+    texels: Vec<[f32; N]>,
+    /// Which scan lines have come.
+    lines: Vec<bool>,
+}
+
+impl<const N: usize> Texels<N> {
+    fn new(layer: &Layer, header: &Header, size: usize) -> Self {
+        let place = |name: &Text| layer.channels.iter().position(|c| *c == name.to_string()).unwrap_or(0);
+        let places = header.channels.list.iter().map(|channel| place(&channel.name)).collect();
+        Self {
+            layer: layer.name,
+            size,
+            places,
+            texels: vec![[0.0; N]; size * size],
+            lines: vec![false; size],
+        }
+    }
+
+    /// Copies a block's scan lines; a block that does not fit the layer is passed over, and its lines are
+    /// found missing in the end.
+    fn insert(&mut self, block: &UncompressedBlock) {
+        let Vec2(left, top) = block.index.pixel_position;
+        let Vec2(width, height) = block.index.pixel_size;
+        let line_bytes = self.size * N * 4;
+        if left != 0 || width != self.size || block.data.len() != height * line_bytes {
+            return;
+        }
+        for (y, line) in (top..self.size).zip(block.data.chunks_exact(line_bytes)) {
+            for (&place, samples) in self.places.iter().zip(line.chunks_exact(self.size * 4)) {
+                let texels = &mut self.texels[y * self.size..(y + 1) * self.size];
+                for (texel, sample) in texels.iter_mut().zip(samples.chunks_exact(4)) {
+                    texel[place] = f32::from_ne_bytes([sample[0], sample[1], sample[2], sample[3]]);
+                }
+            }
+            self.lines[y] = true;
+        }
+    }
+
+    fn finish(self) -> Result<Vec<[f32; N]>, ReadError> {
+        let found = self.lines.iter().filter(|line| **line).count();
+        if found != self.size {
+            return Err(ReadError::Incomplete { layer: self.layer, found, expected: self.size });
+        }
+        Ok(self.texels)
+    }
+}

@@ -1,0 +1,64 @@
+//! Writes a table.
+
+use arealight::LightTable;
+use exr::prelude::*;
+use std::io::Cursor;
+
+use super::canonical::sort_attributes;
+use super::{AXES, FORMAT, FRAME, Layer as TableLayer, MAGNITUDE, MATRIX, NORMALISATION, VERSION, attribute};
+
+/// The file of a table.
+pub fn write(table: &LightTable) -> Vec<u8> {
+    let size = table.size() as usize;
+    let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions((size, size)));
+    let description = table.description();
+    for (name, value) in [
+        (attribute::FORMAT, FORMAT),
+        (attribute::AXES, AXES),
+        (attribute::FRAME, FRAME),
+        (attribute::NORMALISATION, NORMALISATION),
+        (attribute::BRDF, &description.brdf),
+        (attribute::MADE_BY, &description.made_by),
+    ] {
+        attributes.other.insert(text(name), AttributeValue::Text(text(value)));
+    }
+    attributes.other.insert(text(attribute::VERSION), AttributeValue::I32(VERSION));
+
+    let layers = [layer(&MATRIX, size, table.matrix()), layer(&MAGNITUDE, size, table.magnitude())];
+    let image = Image { attributes, layer_data: Layers::from(layers) };
+    let mut bytes = Vec::new();
+    image
+        .write()
+        .non_parallel()
+        .to_buffered(Cursor::new(&mut bytes))
+        .expect("a valid table, in memory, meets all of the format's rules");
+    sort_attributes(&mut bytes);
+    bytes
+}
+
+fn layer<const N: usize>(
+    layer: &TableLayer,
+    size: usize,
+    texels: &[[f32; N]],
+) -> Layer<AnyChannels<FlatSamples>> {
+    let channels = layer.channels.iter().enumerate().map(|(c, &name)| {
+        AnyChannel::new(name, FlatSamples::F32(texels.iter().map(|texel| texel[c]).collect()))
+    });
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        blocks: Blocks::ScanLines,
+        line_order: LineOrder::Increasing,
+    };
+    Layer::new(
+        (size, size),
+        LayerAttributes::named(layer.name),
+        encoding,
+        AnyChannels::sort(channels.collect()),
+    )
+}
+
+/// Text in EXR's Latin-1.
+fn text(value: &str) -> Text {
+    let latin: String = value.chars().map(|c| if u32::from(c) < 256 { c } else { '?' }).collect();
+    Text::new_or_none(latin).unwrap_or_default()
+}
