@@ -84,7 +84,8 @@ step "lints" cargo clippy --workspace --all-targets --locked --quiet -- -D warni
 step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests
 step "examples in the documentation" cargo test --workspace --doc --locked --quiet
-step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked --quiet
+# The command line and the library have the same name, and their pages would collide.
+step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --exclude arealight-cli --no-deps --locked --quiet
 step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
 step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
 
