@@ -5,6 +5,7 @@ use crate::instance::{Instance, version_text};
 use crate::validation::{Message, MessageLog, Validation};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -42,7 +43,8 @@ pub struct Host {
 }
 
 struct Inner {
-    instance: Instance,
+    /// Dropped last, and not at all where the device is not.
+    instance: ManuallyDrop<Instance>,
     physical_device: vk::PhysicalDevice,
     properties: vk::PhysicalDeviceProperties,
     device: ash::Device,
@@ -118,7 +120,7 @@ impl Host {
             }
         };
         let inner = Inner {
-            instance,
+            instance: ManuallyDrop::new(instance),
             physical_device,
             properties,
             device,
@@ -224,10 +226,12 @@ impl Drop for Inner {
             return;
         }
         // SAFETY: Every object of the device holds the host and is thus gone, and no work is pending, since
-        // submissions are waited for; the allocator frees its memory before the device goes.
+        // submissions are waited for. The allocator frees its memory before the device goes, and the instance,
+        // which is not touched again, goes last.
         unsafe {
             drop(allocator);
             self.device.destroy_device(None);
+            ManuallyDrop::drop(&mut self.instance);
         }
     }
 }

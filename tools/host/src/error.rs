@@ -69,10 +69,10 @@ pub enum HostError {
         call: &'static str,
     },
     /// Submitted work did not finish in time. The host is of no more use.
-    #[error("the GPU did not finish within {seconds} s: submit less at once, or raise HostOptions::timeout")]
+    #[error("the GPU did not finish within {timeout:?}: submit less at once, or raise HostOptions::timeout")]
     TimedOut {
         /// How long was waited.
-        seconds: u64,
+        timeout: std::time::Duration,
     },
     /// An argument of a function of this crate cannot be used.
     #[error("{name}: {message}")]

@@ -154,7 +154,7 @@ struct Submission<'a> {
 impl<'a> Submission<'a> {
     fn new(host: &'a Host) -> Result<Self, HostError> {
         if host.is_abandoned() {
-            return Err(HostError::TimedOut { seconds: host.timeout().as_secs() });
+            return Err(HostError::TimedOut { timeout: host.timeout() });
         }
         let device = host.device();
         let mut submission = Self {
@@ -215,7 +215,7 @@ impl<'a> Submission<'a> {
         match unsafe { device.wait_for_fences(&[self.fence], true, nanoseconds) } {
             Err(vk::Result::TIMEOUT) => {
                 self.host.abandon();
-                Err(HostError::TimedOut { seconds: timeout.as_secs() })
+                Err(HostError::TimedOut { timeout })
             }
             waited => waited.named("vkWaitForFences"),
         }

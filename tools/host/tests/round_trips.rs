@@ -134,6 +134,33 @@ fn commands_are_timed_where_there_are_timestamps() {
 }
 
 #[test]
+fn work_that_does_not_finish_is_an_error_and_dropping_everything_is_safe() {
+    let Some(tested) = device_or_skip() else { return };
+    let options = HostOptions {
+        device: Some(tested.device_name()),
+        timeout: Duration::from_millis(50),
+        ..HostOptions::default()
+    };
+    let host = Host::new(options).unwrap();
+    let buffer = host.storage_buffer("busy", &[1_u32; 4]).unwrap();
+    let device = host.device().clone();
+    // SAFETY: The device is alive.
+    let event = unsafe { device.create_event(&vk::EventCreateInfo::default(), None) }.unwrap();
+    // The GPU waits for the CPU, and the CPU for the GPU.
+    let waited = host.submit(|commands| {
+        let (host_stage, all) = (vk::PipelineStageFlags::HOST, vk::PipelineStageFlags::ALL_COMMANDS);
+        // SAFETY: The commands are being recorded, and the event is of this device.
+        unsafe { device.cmd_wait_events(commands, &[event], host_stage, all, &[], &[], &[]) };
+    });
+    assert!(matches!(waited, Err(HostError::TimedOut { .. })), "{waited:?}");
+    // From then on it is of no more use, and says so.
+    assert!(matches!(host.submit(|_| ()), Err(HostError::TimedOut { .. })));
+    drop((buffer, host));
+    // SAFETY: What was pending is never destroyed; so the device and its event are still there.
+    unsafe { device.set_event(event) }.unwrap();
+}
+
+#[test]
 fn buffers_may_outlive_the_host_they_came_from() {
     let Some(host) = device_or_skip() else { return };
     let options = HostOptions { device: Some(host.device_name()), ..HostOptions::default() };
