@@ -1,17 +1,15 @@
 //! The hierarchy of boxes around triangles that the visibility kernel walks, and a float64 twin of its walk.
 
 use arealight::gpu::{GpuBvhNode, GpuMaterial, GpuTriangle};
-use glam::{DVec3, Vec3, Vec3A};
-use obvhs::bvh2::leaf_collapser::collapse;
-use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use glam::{DVec3, Vec3};
+use std::ops::Range;
 
 /// The deepest hierarchy, in nodes from the root to a leaf: a walk with a stack of this many entries holds
 /// it. The visibility kernel relies on it.
 pub const MAX_DEPTH: u32 = 48;
 
 /// The most triangles of a leaf.
-const MAX_LEAF: u32 = 4;
+const MAX_LEAF: usize = 4;
 
 /// A binary hierarchy of boxes. The root is node 0; children of an inner node are neighbours.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -28,68 +26,20 @@ pub struct Bvh {
 pub type Box3 = [Vec3; 2];
 
 impl Bvh {
-    /// Builds a hierarchy by locally ordered clustering; where that becomes too deep (boxes that grow
-    /// exponentially, say), by halving the boxes along their longest extent.
+    /// Builds a hierarchy from the top: each node is split where the surface area heuristic is least, among
+    /// a few places along each axis (Wald 2007). Where that would become too deep, because boxes grow
+    /// exponentially or are all the same, nodes are halved: time is `n log n` whatever the boxes are.
     pub fn build(boxes: &[Box3]) -> Self {
-        let clustered = Self::by_clustering(boxes);
-        match clustered.max_depth {
-            0..=MAX_DEPTH => clustered,
-            _ => Self::by_halving(boxes),
-        }
+        Self::no_deeper_than(MAX_DEPTH, boxes)
     }
 
-    fn by_clustering(boxes: &[Box3]) -> Self {
-        let boxes: Vec<_> = boxes
-            .iter()
-            .map(|[min, max]| obvhs::aabb::Aabb::new(Vec3A::from(*min), Vec3A::from(*max)))
-            .collect();
-        let indices = (0..boxes.len() as u32).collect();
-        let mut builder = PlocBuilder::with_capacity(boxes.len());
-        let mut bvh = builder.build(PlocSearchDistance::Medium, &boxes, indices, SortPrecision::U64, 3);
-        // Move subtrees to where they cost less; a tree that is too deep is not kept anyway
-        if bvh.max_depth <= obvhs::bvh2::DEFAULT_MAX_STACK_DEPTH {
-            ReinsertionOptimizer::default().run(&mut bvh, 0.05, None);
-            collapse(&mut bvh, MAX_LEAF, 1.0);
+    fn no_deeper_than(limit: u32, boxes: &[Box3]) -> Self {
+        let order = (0..boxes.len() as u32).collect();
+        let mut builder = Builder { limit, boxes, order, nodes: Vec::new() };
+        if !boxes.is_empty() {
+            builder.build();
         }
-        let nodes = bvh.nodes.iter().map(|node| GpuBvhNode {
-            min: node.aabb().min.to_array(),
-            first: node.first_index,
-            max: node.aabb().max.to_array(),
-            count: node.prim_count,
-        });
-        Self::measured(nodes.collect(), bvh.primitive_indices)
-    }
-
-    /// Depth is the logarithm of the count: at most 31 for 2^32 boxes.
-    fn by_halving(boxes: &[Box3]) -> Self {
-        let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
-        let mut nodes = vec![GpuBvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 }];
-        let mut stack = vec![(0_usize, 0..order.len())];
-        while let Some((node, range)) = stack.pop() {
-            // Bound the range
-            let [min, max] = range
-                .clone()
-                .map(|i| boxes[order[i] as usize])
-                .fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-            let (first, count) = if range.len() <= MAX_LEAF as usize {
-                (range.start as u32, range.len() as u32)
-            } else {
-                // Halve it by the middles along the longest extent
-                let axis = (max - min).max_position();
-                let middle = range.len() / 2;
-                order[range.clone()].select_nth_unstable_by(middle, |a, b| {
-                    let key = |i: &u32| boxes[*i as usize][0][axis] + boxes[*i as usize][1][axis];
-                    key(a).total_cmp(&key(b))
-                });
-                let first = nodes.len();
-                nodes.extend([nodes[0]; 2]);
-                stack.push((first, range.start..range.start + middle));
-                stack.push((first + 1, range.start + middle..range.end));
-                (first as u32, 0)
-            };
-            nodes[node] = GpuBvhNode { min: min.to_array(), first, max: max.to_array(), count };
-        }
-        Self::measured(nodes, order)
+        Self::measured(builder.nodes, builder.order)
     }
 
     fn measured(nodes: Vec<GpuBvhNode>, order: Vec<u32>) -> Self {
@@ -104,6 +54,143 @@ impl Bvh {
         }
         Self { nodes, order, max_depth }
     }
+}
+
+/// Places along an axis where a node may be split, and one.
+const BINS: usize = 16;
+
+/// What a step down costs, in intersections of a triangle.
+const STEP_COST: f64 = 1.0;
+
+struct Builder<'a> {
+    /// The greatest depth.
+    limit: u32,
+    boxes: &'a [Box3],
+    order: Vec<u32>,
+    nodes: Vec<GpuBvhNode>,
+}
+
+/// A part of the order, with the node that is to hold it.
+struct Task {
+    node: usize,
+    range: Range<usize>,
+    depth: u32,
+}
+
+impl Builder<'_> {
+    fn build(&mut self) {
+        let empty = GpuBvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 };
+        self.nodes.push(empty);
+        let mut tasks = vec![Task { node: 0, range: 0..self.order.len(), depth: 1 }];
+        while let Some(Task { node, range, depth }) = tasks.pop() {
+            let [min, max] = self.bounds(&range);
+            self.nodes[node] = GpuBvhNode { min: min.to_array(), max: max.to_array(), ..empty };
+            let Some(middle) = self.split(&range, [min, max], depth) else {
+                self.nodes[node].first = range.start as u32;
+                self.nodes[node].count = range.len() as u32;
+                continue;
+            };
+            let first = self.nodes.len();
+            self.nodes[node].first = first as u32;
+            self.nodes.extend([empty; 2]);
+            tasks.push(Task { node: first, range: range.start..middle, depth: depth + 1 });
+            tasks.push(Task { node: first + 1, range: middle..range.end, depth: depth + 1 });
+        }
+    }
+
+    /// Orders a range in two parts and gives where the second begins; none for a leaf.
+    fn split(&mut self, range: &Range<usize>, bounds: Box3, depth: u32) -> Option<usize> {
+        if range.len() == 1 || depth >= self.limit {
+            return None;
+        }
+        let centers = self.order[range.clone()].iter().map(|i| self.center(*i));
+        let [low, high] =
+            centers.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], c| [low.min(c), high.max(c)]);
+        // Take the cheapest split, if it is cheaper than a leaf or a leaf would be too large
+        let best = (0..3)
+            .filter_map(|axis| self.cheapest(range, axis, low[axis], high[axis]))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let leaf_cost = range.len() as f64 * half_area(bounds);
+        let small = range.len() <= MAX_LEAF;
+        let Some((_, axis, bin)) =
+            best.filter(|(cost, ..)| !small || cost + STEP_COST * half_area(bounds) < leaf_cost)
+        else {
+            return if small { None } else { Some(self.halve(range, (high - low).max_position())) };
+        };
+        let mut middle = range.start;
+        for i in range.clone() {
+            if bin_of(self.center(self.order[i])[axis], low[axis], high[axis]) <= bin {
+                self.order.swap(i, middle);
+                middle += 1;
+            }
+        }
+        // Halve instead if the larger part could not be halved down to leaves in the depth that is left
+        let larger = (middle - range.start).max(range.end - middle);
+        let fits = larger.div_ceil(MAX_LEAF).next_power_of_two().ilog2() < self.limit - depth;
+        Some(if fits { middle } else { self.halve(range, axis) })
+    }
+
+    /// The least cost of a split along an axis, with the axis and the last bin of the first part.
+    fn cheapest(
+        &self,
+        range: &Range<usize>,
+        axis: usize,
+        low: f32,
+        high: f32,
+    ) -> Option<(f64, usize, usize)> {
+        if low >= high {
+            return None;
+        }
+        let empty = ([Vec3::INFINITY, Vec3::NEG_INFINITY], 0_usize);
+        let join = |(a, n): (Box3, usize), (b, m): (Box3, usize)| ([a[0].min(b[0]), a[1].max(b[1])], n + m);
+        let mut bins = [empty; BINS];
+        for &i in &self.order[range.clone()] {
+            let bin = &mut bins[bin_of(self.center(i)[axis], low, high)];
+            *bin = join(*bin, (self.boxes[i as usize], 1));
+        }
+        // Sum from the end, then compare each place from the start
+        let mut after = [empty; BINS];
+        for bin in (0..BINS - 1).rev() {
+            after[bin] = join(after[bin + 1], bins[bin + 1]);
+        }
+        let cost = |(bounds, count): (Box3, usize)| count as f64 * half_area(bounds);
+        let mut before = empty;
+        let costs = (0..BINS - 1).filter_map(|bin| {
+            before = join(before, bins[bin]);
+            let both = before.1 > 0 && after[bin].1 > 0;
+            both.then(|| (cost(before) + cost(after[bin]), axis, bin))
+        });
+        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Orders a range so that its first half has the smaller centers along an axis.
+    fn halve(&mut self, range: &Range<usize>, axis: usize) -> usize {
+        let (boxes, middle) = (self.boxes, range.len() / 2);
+        let center = |i: &u32| boxes[*i as usize][0][axis] + boxes[*i as usize][1][axis];
+        self.order[range.clone()].select_nth_unstable_by(middle, |a, b| center(a).total_cmp(&center(b)));
+        range.start + middle
+    }
+
+    fn center(&self, index: u32) -> Vec3 {
+        let [min, max] = self.boxes[index as usize];
+        (min + max) * 0.5
+    }
+
+    fn bounds(&self, range: &Range<usize>) -> Box3 {
+        let boxes = self.order[range.clone()].iter().map(|i| self.boxes[*i as usize]);
+        boxes.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    }
+}
+
+/// The bin of a center between `low` and `high`.
+fn bin_of(center: f32, low: f32, high: f32) -> usize {
+    (((center - low) / (high - low) * BINS as f32) as usize).min(BINS - 1)
+}
+
+/// Half the surface of a box.
+fn half_area([min, max]: Box3) -> f64 {
+    let size = (max - min).as_dvec3();
+    size.x * size.y + size.y * size.z + size.z * size.x
 }
 
 /// Where a ray meets a triangle.
@@ -220,15 +307,26 @@ mod tests {
 
     #[test]
     fn boxes_that_grow_exponentially_stay_shallow() {
-        let boxes: Vec<Box3> = (0..160).map(|i| [Vec3::ZERO, Vec3::splat(1.5_f32.powi(i - 80))]).collect();
-        // The twin: clustering alone is deeper than the kernel's stack
-        assert!(Bvh::by_clustering(&boxes).max_depth > MAX_DEPTH);
-        check(&Bvh::build(&boxes), &boxes);
+        // Points along the axes, each half as far as the one before: a split takes few of them off
+        let point = |i: u16| {
+            let mut point = Vec3::ZERO;
+            point[usize::from(i % 3)] = 1e16 * 0.5_f32.powf(f32::from(i) / 3.0);
+            [point; 2]
+        };
+        let boxes: Vec<Box3> = (0..530).map(point).collect();
+        // The twin: without the limit it is deeper than the kernel's stack
+        let free = Bvh::no_deeper_than(u32::MAX, &boxes);
+        assert!(free.max_depth > MAX_DEPTH, "depth {}", free.max_depth);
+        let bvh = Bvh::build(&boxes);
+        check(&bvh, &boxes);
+        for limit in [9, 12, 20] {
+            assert!(Bvh::no_deeper_than(limit, &boxes).max_depth <= limit);
+        }
     }
 
     #[test]
     fn equal_and_flat_boxes_are_held() {
-        let equal = vec![[Vec3::ONE, Vec3::splat(2.0)]; 5000];
+        let equal = vec![[Vec3::ONE, Vec3::splat(2.0)]; 50_000];
         check(&Bvh::build(&equal), &equal);
         let points = vec![[Vec3::splat(3.0); 2]; 100];
         check(&Bvh::build(&points), &points);
@@ -242,7 +340,6 @@ mod tests {
         for count in 1..10 {
             let boxes: Vec<Box3> = (0..count).map(|i| [Vec3::X * i as f32, Vec3::splat(i as f32)]).collect();
             check(&Bvh::build(&boxes), &boxes);
-            check(&Bvh::by_halving(&boxes), &boxes);
         }
     }
 }

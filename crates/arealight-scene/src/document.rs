@@ -132,7 +132,8 @@ impl Document {
         let mut first = None;
         let report = &mut |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
             let field = path();
-            let bounds = field.as_str().ends_with("POSITION.min") || field.as_str().ends_with("POSITION.max");
+            let bounds = ["min", "max"].map(|bound| format!("[\"POSITION\"].{bound}"));
+            let bounds = bounds.iter().any(|bound| field.as_str().ends_with(bound));
             if first.is_none() && !bounds {
                 first = Some((field.as_str().to_owned(), error.to_string()));
             }

@@ -1,0 +1,250 @@
+//! Bad files: each error names the file and the field.
+
+use crate::shapes::panel;
+use crate::writer::{Writer, container};
+use crate::{emitter_with, error};
+use arealight_scene::{Scene, SceneBuffers, SceneError};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+fn lamp() -> Writer {
+    emitter_with(&panel(1.0, 1.0), json!({}))
+}
+
+#[test]
+fn files_that_are_not_gltf() {
+    let missing = Scene::load("/nowhere/scene.glb").unwrap_err();
+    assert!(matches!(missing, SceneError::Read { .. }));
+    assert!(missing.to_string().starts_with("/nowhere/scene.glb: "), "{missing}");
+    let good = lamp().glb();
+    let mut old = good.clone();
+    old[4] = 1;
+    let mut chunk = good.clone();
+    chunk[16] = b'X';
+    let mut long = good.clone();
+    long[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+    for (bytes, text) in [
+        (&b""[..], "EOF"),
+        (b"hello", "expected"),
+        (b"{}", "missing field `asset`"),
+        (br#"{"asset":{"version":"1.0"}}"#, "asset.version is '1.0'"),
+        (b"glTF", "cut short"),
+        (&good[..good.len() - 1], "cut short"),
+        (&old, "binary glTF of version 1"),
+        (&chunk, "no JSO chunk at byte 12"),
+        (&long, "the chunk at byte 12 reaches beyond the file"),
+    ] {
+        let error = Scene::from_bytes(bytes, "bad").unwrap_err();
+        assert!(matches!(error, SceneError::NotGltf { .. }), "{error}");
+        let error = error.to_string();
+        assert!(error.starts_with("bad: not a glTF 2.0 file: ") && error.contains(text), "{error}");
+    }
+}
+
+#[test]
+fn fields_that_break_rules_are_named() {
+    type Change = (fn(&mut Value), &'static str);
+    let changes: &[Change] = &[
+        (
+            |r| r["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]),
+            "extensionsRequired: KHR_draco_mesh_compression is not supported",
+        ),
+        (|r| r["nodes"][0]["mesh"] = json!(7), "nodes[0].mesh: Index out of bounds"),
+        (|r| r["scene"] = json!(3), "scene: Index out of bounds"),
+        (|r| r["scenes"][0]["nodes"] = json!([9]), "scenes[0].nodes[0]: Index out of bounds"),
+        (|r| r["nodes"][0]["children"] = json!([0]), "nodes[0]: is reached twice"),
+        (|r| r["scenes"][0]["nodes"] = json!([0, 0]), "nodes[0]: is reached twice"),
+        (|r| r["nodes"][0]["rotation"] = json!([0, 0, 0, 0]), "nodes[0]: rotation: [0.0, 0.0, 0.0, 0.0]"),
+        (|r| r["nodes"][0]["translation"] = json!([1e20, 0, 0]), "nodes[0]: its world transform"),
+        (|r| r["nodes"][0]["scale"] = json!([1e38, 1e39, 0]), "nodes[0]: its world transform"),
+        (
+            |r| r["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99),
+            "meshes[0].primitives[0].attributes: an accessor does not exist",
+        ),
+        (
+            |r| r["meshes"][0]["primitives"][0]["attributes"] = json!({}),
+            "meshes[0].primitives[0].attributes[\"POSITION\"]: Missing data",
+        ),
+        (|r| r["meshes"][0]["primitives"][0]["mode"] = json!(17), "mode: Invalid value"),
+        (
+            |r| r["accessors"][0]["count"] = json!(1000),
+            "accessors[0]: 1000 elements from byte 0 on do not fit",
+        ),
+        (
+            |r| r["accessors"][0]["count"] = json!(u64::MAX),
+            "accessors[0].count: 18446744073709551615, at most",
+        ),
+        (|r| r["accessors"][0]["type"] = json!("VEC4"), "POSITION: accessors[0] is Vec4, should be Vec3"),
+        (|r| r["accessors"][0]["componentType"] = json!(5123), "POSITION: components of type U16"),
+        (|r| r["accessors"][0]["byteOffset"] = json!(u64::MAX), "do not fit bufferViews[0]"),
+        (|r| r["accessors"][1]["count"] = json!(3), "NORMAL: 3 for 4 positions"),
+        (|r| r["accessors"][3]["componentType"] = json!(5122), "indices: I16 cannot be an index"),
+        (
+            |r| r["bufferViews"][0]["byteStride"] = json!(4),
+            "accessors[0]: a stride of 4 for elements of 12 bytes",
+        ),
+        (
+            |r| r["bufferViews"][0]["byteLength"] = json!(1_u64 << 40),
+            "bufferViews[0]: bytes 0 + 1099511627776 reach",
+        ),
+        (|r| r["bufferViews"][0]["buffer"] = json!(1), "bufferViews[0].buffer: Index out of bounds"),
+        (
+            |r| {
+                r["accessors"][0]["sparse"] = json!({ "count": 5, "indices": { "bufferView": 0,
+            "componentType": 5121 }, "values": { "bufferView": 0 } });
+            },
+            "sparse: has 5 values for 4",
+        ),
+        (
+            |r| {
+                r["accessors"][0]["sparse"] = json!({ "count": 1, "indices": { "bufferView": 0,
+            "componentType": 5125, "byteOffset": 4 }, "values": { "bufferView": 0 } });
+            },
+            "sparse: index",
+        ),
+        (
+            |r| r["nodes"][0]["extensions"] = json!({ "EXT_lights_area": { "light": 0 } }),
+            "extensions.EXT_lights_area: is missing",
+        ),
+        (
+            |r| {
+                r["extensions"] = json!({ "EXT_lights_area": { "lights": [] } });
+                r["nodes"][0]["extensions"] = json!({ "EXT_lights_area": { "light": 2 } });
+            },
+            "nodes[0].extensions.EXT_lights_area: light 2 of 0",
+        ),
+        (
+            |r| {
+                r["extensions"] = json!({ "EXT_lights_area": { "lights": [{ "size": "big" }] } });
+                r["nodes"][0]["extensions"] = json!({ "EXT_lights_area": { "light": 0 } });
+            },
+            "extensions.EXT_lights_area: invalid type: string",
+        ),
+    ];
+    for (change, text) in changes {
+        let mut writer = lamp();
+        change(&mut writer.root);
+        let error = error(writer);
+        assert!(error.starts_with("test.glb: ") && error.contains(text), "{error:?} lacks {text:?}");
+    }
+    // The twin: unchanged, it loads
+    assert!(Scene::from_bytes(&lamp().glb(), "good").is_ok());
+}
+
+#[test]
+fn missing_bounds_of_positions_do_no_harm() {
+    let mut writer = lamp();
+    let accessor = writer.root["accessors"][0].as_object_mut().unwrap();
+    accessor.remove("min");
+    accessor.remove("max");
+    assert!(Scene::from_bytes(&writer.glb(), "test").is_ok());
+}
+
+#[test]
+fn vertices_that_are_not_finite_are_named() {
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+        let mut shape = panel(1.0, 1.0);
+        shape.positions[2][1] = value;
+        let error = error(emitter_with(&shape, json!({})));
+        assert!(error.contains("meshes[0] 'lamp'.primitives[0].POSITION[2]: [0.5, "), "{error}");
+        let mut shape = panel(1.0, 1.0);
+        shape.normals[3][0] = value;
+        let error = crate::error(emitter_with(&shape, json!({})));
+        assert!(error.contains("NORMAL[3]"), "{error}");
+    }
+    let mut shape = panel(1.0, 1.0);
+    shape.positions[1][0] = 3e38;
+    let error = error(emitter_with(&shape, json!({})));
+    assert!(error.contains("POSITION[1] in the world"), "{error}");
+}
+
+#[test]
+fn indices_out_of_range_are_named() {
+    let mut shape = panel(1.0, 1.0);
+    shape.indices[4] = 4;
+    let error = error(emitter_with(&shape, json!({})));
+    assert!(error.contains("primitives[0].indices[4]: index 4, but there are 4 vertices"), "{error}");
+}
+
+#[test]
+fn node_loops_and_deep_trees() {
+    let mut writer = lamp();
+    writer.root["nodes"] = json!([{ "children": [1] }, { "children": [2] }, { "children": [0] }]);
+    assert!(error(writer).contains("nodes[0]: is reached twice"));
+    // Two parents would mean exponential copies
+    let mut writer = lamp();
+    writer.root["nodes"] = json!([{ "children": [1, 2] }, { "children": [2] }, { "mesh": 0 }]);
+    assert!(error(writer).contains("nodes[2]: is reached twice"));
+    // A chain deeper than a thread's stack
+    let mut writer = lamp();
+    let count = 200_000;
+    let mut nodes: Vec<Value> = (1..count).map(|i| json!({ "children": [i] })).collect();
+    nodes.push(json!({ "mesh": 0 }));
+    writer.root["nodes"] = json!(nodes);
+    assert_eq!(crate::load(writer).lights.len(), 1);
+}
+
+#[test]
+fn images_that_cannot_be_read_are_named() {
+    let textured = |bytes: &[u8]| {
+        let mut writer = lamp();
+        writer.texture("broken", bytes);
+        writer.root["materials"][0]["normalTexture"] = json!({ "index": 0 });
+        writer
+    };
+    for (bytes, text) in [
+        (&b"no image at all"[..], "images[0]: "),
+        (b"GIF89a.........", "images[0]: is Gif, must be PNG or JPEG"),
+        (b"\x89PNG\r\n\x1a\n....", "images[0]: "),
+    ] {
+        let error = error(textured(bytes));
+        assert!(error.starts_with("test.glb: ") && error.contains(text), "{error}");
+    }
+    let mut writer = textured(b"");
+    writer.root["images"][0] = json!({ "uri": "missing.png" });
+    assert!(error(writer).contains("images[0]: cannot read 'missing.png'"));
+    let mut writer = textured(b"");
+    writer.root["images"][0] = json!({});
+    assert!(error(writer).contains("images[0]: has neither a URI nor a buffer view"));
+    // An image that nothing uses is not read
+    let mut writer = lamp();
+    writer.texture("broken", b"no image at all");
+    assert!(Scene::from_bytes(&writer.glb(), "test").is_ok());
+}
+
+#[test]
+fn buffers_that_are_missing_or_short_are_named() {
+    let writer = lamp();
+    let mut root = writer.root.clone();
+    root["buffers"] = json!([{ "byteLength": writer.buffer.len() }]);
+    let error = Scene::from_bytes(root.to_string().as_bytes(), "a.gltf").unwrap_err().to_string();
+    assert_eq!(error, "a.gltf: buffers[0]: has neither a URI nor a binary chunk");
+    root["buffers"] = json!([{ "byteLength": writer.buffer.len() + 4 }]);
+    let mut text = root.to_string().into_bytes();
+    text.resize(text.len().next_multiple_of(4), b' ');
+    let error = Scene::from_bytes(&container(&text, &writer.buffer), "a.glb").unwrap_err().to_string();
+    let (has, should) = (writer.buffer.len(), writer.buffer.len() + 4);
+    assert_eq!(error, format!("a.glb: buffers[0]: has {has} bytes, should have {should}"));
+    root["buffers"] = json!([{ "byteLength": 4, "uri": "data:;base64,*" }]);
+    let error = Scene::from_bytes(root.to_string().as_bytes(), "a.gltf").unwrap_err();
+    assert!(matches!(error, SceneError::Resource { .. }), "{error}");
+}
+
+#[test]
+fn scenes_made_by_hand_are_checked_when_packed() {
+    let good = crate::load(lamp());
+    assert!(SceneBuffers::new(&good, DVec3::ZERO).is_ok());
+    let pack = |change: fn(&mut Scene), origin: DVec3| {
+        let mut scene = good.clone();
+        change(&mut scene);
+        SceneBuffers::new(&scene, origin).unwrap_err().to_string()
+    };
+    let text = pack(|scene| scene.triangles[1].material = 5, DVec3::ZERO);
+    assert_eq!(text, "triangles[1].material: index 5, but there are 1");
+    let text = pack(|scene| scene.materials[0].normal_texture = Some(0), DVec3::ZERO);
+    assert_eq!(text, "materials[0].normal_texture: index 0, but there are 0");
+    let text = pack(|scene| scene.triangles[1].positions[0].x = f64::NAN, DVec3::ZERO);
+    assert!(text.starts_with("triangles[1]: [NaN"), "{text}");
+    let text = pack(|_| {}, DVec3::splat(1e17));
+    assert!(text.starts_with("triangles[0]: "), "{text}");
+}

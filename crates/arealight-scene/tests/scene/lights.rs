@@ -1,0 +1,205 @@
+//! What becomes a light.
+
+use crate::shapes::{floor, panel, polygon, rounded_box, sphere, star};
+use crate::writer::Shape;
+use crate::{emitter_with, load, warnings};
+use arealight_scene::{LUMENS_PER_WATT, Scene};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+fn near(a: DVec3, b: DVec3) -> bool {
+    // Positions are float32 numbers in the file: a few of their roundings
+    (a - b).length() < 1e-6 * (1.0 + b.length())
+}
+
+#[test]
+fn a_quad_is_one_light_of_four_vertices() {
+    let scene = load(emitter_with(&panel(2.0, 1.0), json!({ "translation": [0, 5, 0] })));
+    let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
+    assert_eq!((light.name.as_str(), light.vertices.len(), light.two_sided), ("lamp", 4, false));
+    assert_eq!(light.area_vector(), DVec3::Z * 2.0);
+    // emissiveFactor (1, 2/3, 1/3) times a strength of 3
+    assert!((light.radiance - Vec3::new(3.0, 2.0, 1.0)).length() < 1e-6);
+    assert!(light.vertices.iter().all(|v| v.y > 4.0));
+    assert_eq!(warnings(&scene), [""; 0]);
+    // It is visible, too
+    assert_eq!(scene.triangles.len(), 2);
+    assert_eq!(scene.materials[0].emission, light.radiance);
+}
+
+#[test]
+fn a_double_sided_material_makes_a_two_sided_light() {
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
+    writer.root["materials"][0]["doubleSided"] = json!(true);
+    assert!(load(writer).lights[0].two_sided);
+}
+
+#[test]
+fn concave_outlines_are_one_light() {
+    let corner = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]]);
+    for (shape, count) in [(corner, 6), (star(10, 1.0, 0.4), 10)] {
+        let scene = load(emitter_with(&shape, json!({ "rotation": [0.6, 0, 0, 0.8] })));
+        assert_eq!((scene.lights.len(), scene.lights[0].vertices.len()), (1, count));
+        assert_eq!(warnings(&scene), [""; 0]);
+    }
+}
+
+#[test]
+fn islands_are_numbered() {
+    let mut islands = panel(1.0, 1.0);
+    let other = panel(1.0, 1.0);
+    islands.positions.extend(other.positions.iter().map(|[x, y, z]| [x + 3.0, *y, *z]));
+    islands.normals.extend(other.normals);
+    islands.uvs.extend(other.uvs);
+    islands.indices.extend(other.indices.iter().map(|i| i + 4));
+    let scene = load(emitter_with(&islands, json!({})));
+    let names: Vec<_> = scene.lights.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["lamp#1", "lamp#2"]);
+    assert_eq!(warnings(&scene), [""; 0]);
+}
+
+#[test]
+fn a_bent_emitter_says_how_many_lights_it_is() {
+    let scene = load(emitter_with(&rounded_box([1.0; 3], 1e-9, 1).plain(), json!({})));
+    assert_eq!(scene.lights.len(), 6, "a box is six quads");
+    assert!(scene.lights.iter().all(|light| light.vertices.len() == 4));
+    let text = "light 'lamp' (node 0): is not flat: 6 polygon lights, one a flat part";
+    assert_eq!(warnings(&scene), [text]);
+
+    let scene = load(emitter_with(&sphere(1.0, 12, 8), json!({})));
+    // Quads but at the poles, most of them not quite flat
+    let count = scene.lights.len();
+    assert!((96..=168).contains(&count), "{count}");
+    assert!(warnings(&scene)[0].contains(&format!("{count} polygon lights")));
+    // A closed surface's areas add up to zero
+    let sum: DVec3 = scene.lights.iter().map(arealight::PolygonLight::area_vector).sum();
+    assert!(sum.length() < 1e-4, "{sum}");
+}
+
+#[test]
+fn a_hole_splits_the_light_with_a_warning() {
+    // A square ring of four trapezia
+    let corner = |s: f32| [[-s, -s, 0.0], [s, -s, 0.0], [s, s, 0.0], [-s, s, 0.0]];
+    let positions = [corner(2.0), corner(1.0)].concat();
+    let side = |i: u32| [[i, (i + 1) % 4, (i + 1) % 4 + 4], [i, (i + 1) % 4 + 4, i + 4]].concat();
+    let ring = Shape { positions, indices: (0..4).flat_map(side).collect(), ..Shape::default() };
+    let scene = load(emitter_with(&ring, json!({})));
+    assert_eq!(scene.lights.len(), 2);
+    let area: DVec3 = scene.lights.iter().map(arealight::PolygonLight::area_vector).sum();
+    assert_eq!(area, DVec3::Z * 12.0);
+    let text = "light 'lamp' (node 0): has holes or touches itself: 1 more polygon lights make it up";
+    assert_eq!(warnings(&scene), [text]);
+}
+
+#[test]
+fn mirrors_keep_the_front_in_front() {
+    // A panel faces +Z; the mirror image in x and y still does, that in z faces -Z
+    for (scale, front) in
+        [([-1.0, 1.0, 1.0], DVec3::Z), ([1.0, -2.0, 1.0], DVec3::Z * 2.0), ([1.0, 1.0, -1.0], DVec3::NEG_Z)]
+    {
+        let scene = load(emitter_with(&panel(1.0, 1.0), json!({ "scale": scale })));
+        assert!(near(scene.lights[0].area_vector(), front), "{scale:?}");
+        for triangle in &scene.triangles {
+            let [p, q, r] = triangle.positions;
+            let normal = (q - p).cross(r - p);
+            assert!(normal.dot(front) > 0.0 && triangle.normals[0].as_dvec3().dot(front) > 0.0, "{scale:?}");
+        }
+    }
+}
+
+#[test]
+fn a_texture_lights_by_its_linear_mean() {
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
+    // Half white, half black: sRGB 188 would be half, as encoded values 128 would
+    let mut png = std::io::Cursor::new(Vec::new());
+    let image = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([if x == 0 { 255 } else { 0 }; 3]));
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let texture = writer.texture("checker", png.get_ref());
+    writer.root["materials"][0]["emissiveTexture"] = json!({ "index": texture });
+    let scene = load(writer);
+    assert!((scene.lights[0].radiance - Vec3::new(1.5, 1.0, 0.5)).length() < 1e-6);
+    assert_eq!(scene.materials[0].emission, Vec3::new(3.0, 2.0, 1.0), "the camera sees the texture itself");
+    let text = "emissiveTexture: the light has the texture's mean colour everywhere";
+    assert_eq!(warnings(&scene), [format!("light 'lamp' (node 0): {text}")]);
+}
+
+#[test]
+fn black_emission_and_masks() {
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
+    writer.root["materials"][0]["emissiveFactor"] = json!([0, 0, 0]);
+    let scene = load(writer);
+    assert!(scene.lights.is_empty());
+    assert!(scene.warnings.iter().any(|w| w.text.contains("no area lights")));
+
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
+    writer.root["materials"][0]["alphaMode"] = json!("MASK");
+    assert!(warnings(&load(writer))[0].contains("shines where the mask is transparent"));
+}
+
+/// A scene of one `EXT_lights_area` light on a node.
+fn area_light(light: &Value, node: &Value) -> Scene {
+    let mut writer = emitter_with(&floor(1.0, 1.0, 1.0), json!({}));
+    writer.root["materials"][0] = json!({});
+    writer.root["extensions"] = json!({ "EXT_lights_area": { "lights": [light] } });
+    writer.root["extensionsRequired"] = json!(["EXT_lights_area"]);
+    let mut node = node.clone();
+    node["extensions"] = json!({ "EXT_lights_area": { "light": 0 } });
+    writer.node(node);
+    load(writer)
+}
+
+#[test]
+fn area_lights_have_the_extensions_defaults() {
+    let scene = area_light(&json!({}), &json!({}));
+    let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
+    assert_eq!((light.name.as_str(), light.two_sided), ("area light 0", false));
+    assert_eq!(light.area_vector(), DVec3::NEG_Z, "one by one, along -Z");
+    assert!((light.radiance - Vec3::splat((1000.0 / LUMENS_PER_WATT) as f32)).length() < 1e-6);
+    assert_eq!(scene.triangles.len(), 2, "it has no geometry of its own");
+    assert_eq!(warnings(&scene), [""; 0]);
+}
+
+#[test]
+fn area_lights_scale_by_the_largest_component() {
+    let light = json!({ "type": "rect", "color": [1.0, 0.5, 0.25], "intensity": 683, "size": 2,
+                        "rect": { "aspect": 3 }, "name": "key" });
+    let scene = area_light(&light, &json!({ "scale": [0.5, -1.5, 1.0], "translation": [7, 8, 9] }));
+    let light = &scene.lights[0];
+    assert_eq!(light.name, "key");
+    assert_eq!(light.radiance, Vec3::new(1.0, 0.5, 0.25));
+    // The largest is 1.5: width 1.5 × 2 × 3 along x, height 1.5 × 2 along y, still along -Z
+    let extent = |axis: usize| {
+        let along = || light.vertices.iter().map(|v| v[axis]);
+        (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max))
+    };
+    assert_eq!((extent(0), extent(1), extent(2)), ((2.5, 11.5), (6.5, 9.5), (9.0, 9.0)));
+    assert!(light.area_vector().z < 0.0);
+}
+
+#[test]
+fn area_lights_turn_with_their_node() {
+    // A quarter turn about X takes -Z to +Y (then the width is along x, the height along z)
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let light = json!({ "size": 2, "rect": { "aspect": 0.5 } });
+    let scene = area_light(&light, &json!({ "rotation": [half, 0, 0, half] }));
+    assert!(near(scene.lights[0].area_vector(), DVec3::Y * 2.0), "{}", scene.lights[0].area_vector());
+    // A mirror in z turns the light around with the node
+    let scene = area_light(&light, &json!({ "scale": [1, 1, -1] }));
+    assert!(near(scene.lights[0].area_vector(), DVec3::Z * 2.0));
+}
+
+#[test]
+fn area_lights_that_cannot_be_are_left_out() {
+    for (light, node, text) in [
+        (json!({ "type": "disk" }), json!({}), "disks are not supported yet: left out"),
+        (json!({ "type": "blob" }), json!({}), "type 'blob' is not known: left out"),
+        (json!({ "size": 0 }), json!({}), "a rectangle of 0 by 0: left out"),
+        (json!({ "rect": { "aspect": -1 } }), json!({}), "a rectangle of -1 by 1: left out"),
+        (json!({}), json!({ "scale": [1, 1, 0] }), "its node's scale is zero: left out"),
+        (json!({ "intensity": -1 }), json!({}), "must be finite and not negative: left out"),
+    ] {
+        let scene = area_light(&light, &node);
+        assert!(scene.lights.is_empty());
+        assert!(warnings(&scene)[0].ends_with(text), "{:?} should end with {text:?}", warnings(&scene));
+    }
+}

@@ -1,0 +1,96 @@
+//! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
+
+use crate::{demo, room, sweep};
+use arealight::Effects;
+use arealight_scene::{Scene, SceneBuffers};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name)
+}
+
+fn load(name: &str) -> Scene {
+    let scene = Scene::load(path(name)).unwrap();
+    let warnings: Vec<String> = scene.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(warnings, [""; 0], "{name}");
+    let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+    assert!(buffers.max_depth <= arealight_scene::bvh::MAX_DEPTH);
+    // The camera sees a surface in the middle of its lower half, and all shading normals face outwards
+    let camera = scene.camera(None, 16.0 / 9.0).unwrap();
+    assert!(buffers.closest_hit(camera.position, camera.direction([0.0, -0.5], 16.0 / 9.0)).is_some());
+    for triangle in &scene.triangles {
+        let [p, q, r] = triangle.positions;
+        let flat = (q - p).cross(r - p);
+        assert!(triangle.normals.iter().all(|n| n.as_dvec3().dot(flat) > 0.0), "{name}: {triangle:?}");
+    }
+    scene
+}
+
+#[test]
+fn the_files_are_what_the_program_makes() {
+    for (name, bytes) in [("sweep.glb", sweep::glb()), ("room.glb", room::glb()), ("demo.glb", demo::glb())] {
+        let file = std::fs::read(path(name)).unwrap();
+        assert!(file.len() < 300_000, "{name} has {} bytes", file.len());
+        assert!(file == bytes, "{name} is stale: cargo run -p arealight-scene --example make_scenes");
+    }
+}
+
+#[test]
+fn the_sweep_covers_roughness_and_metalness_under_one_rectangle() {
+    let scene = load("sweep.glb");
+    for metalness in sweep::METALNESS {
+        for roughness in sweep::ROUGHNESS {
+            let is_it = |m: &arealight::Material| m.metalness == metalness && m.roughness == roughness;
+            assert!(scene.materials.iter().any(|m| is_it(&m.material)), "{roughness} {metalness}");
+        }
+    }
+    assert_eq!((scene.lights.len(), scene.lights[0].vertices.len()), (1, 4));
+    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY);
+}
+
+/// Whether an outline turns both ways.
+fn is_concave(light: &arealight::PolygonLight) -> bool {
+    let normal = light.area_vector();
+    let corners = light.vertices.iter().zip(light.vertices.iter().cycle().skip(1));
+    let corners = corners.zip(light.vertices.iter().cycle().skip(2));
+    corners.into_iter().any(|((a, b), c)| (*b - *a).cross(*c - *b).dot(normal) < 0.0)
+}
+
+#[test]
+fn the_room_has_outlines_of_many_kinds() {
+    let scene = load("room.glb");
+    let named = |name: &str| scene.lights.iter().find(|light| light.name == name).unwrap();
+    let counts: Vec<usize> = scene.lights.iter().map(|light| light.vertices.len()).collect();
+    assert_eq!(counts, [8, 10, 7, 3, 4, 5]);
+    assert!(is_concave(named("star")) && is_concave(named("arrow")) && !is_concave(named("octagon")));
+    let two_sided = scene.lights.iter().filter(|light| light.two_sided);
+    assert_eq!(two_sided.map(|light| light.name.as_str()).collect::<Vec<_>>(), ["two-sided panel"]);
+    // The platform's top cuts the sunken panel, and is there
+    let sunken = named("sunken panel");
+    assert!(sunken.vertices.iter().any(|v| v.y < room::PLATFORM - 0.2));
+    assert!(sunken.vertices.iter().any(|v| v.y > room::PLATFORM + 0.2));
+    let top = DVec3::new(1.35, room::PLATFORM + 0.1, -0.7);
+    let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+    let hit = buffers.closest_hit(top, DVec3::NEG_Y).unwrap();
+    assert!((hit.distance - 0.1).abs() < 1e-4, "{}", hit.distance);
+}
+
+#[test]
+fn the_demo_shows_what_there_is() {
+    let scene = load("demo.glb");
+    assert_eq!(scene.effects(), Effects::all());
+    let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
+    assert_eq!(letters.len(), 3);
+    assert!(letters.iter().all(|letter| is_concave(letter)));
+    assert!(scene.lights.iter().any(|light| light.name == "key"), "an EXT_lights_area rectangle");
+    let metal = |metalness: f32| scene.materials.iter().any(|m| m.material.metalness == metalness);
+    assert!(metal(0.0) && metal(1.0));
+    // The floor's roughness varies by much
+    let floor = scene.materials.iter().find(|m| m.metallic_roughness_texture.is_some()).unwrap();
+    let texture = scene.textures[floor.metallic_roughness_texture.unwrap() as usize];
+    let texels = &scene.images[texture.image as usize].texels;
+    let green = || texels.iter().map(|texel| texel.to_le_bytes()[1]);
+    assert!(green().min().unwrap() < 30 && green().max().unwrap() > 180);
+    assert_eq!(scene.camera(Some("hero"), 1.0).unwrap().aspect.map(|a| (a * 9.0).round()), Some(16.0));
+}
