@@ -40,7 +40,8 @@ impl TestEngine {
     /// As [`TestEngine::new`].
     pub fn with_format(format: TableFormat) -> Option<Self> {
         let host = arealight_host::testing::device_or_skip()?;
-        let engine = Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
+        let engine =
+            Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
         Some(Self { engine, host })
     }
 

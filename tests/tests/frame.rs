@@ -252,7 +252,13 @@ impl<'a> OnePixel<'a> {
         }
     }
 
-    fn shade(&self, options: ShadeOptions, lights: &[PolygonLight], camera: Vec3, matrix: Option<Mat4>) -> Vec4 {
+    fn shade(
+        &self,
+        options: ShadeOptions,
+        lights: &[PolygonLight],
+        camera: Vec3,
+        matrix: Option<Mat4>,
+    ) -> Vec4 {
         let host = self.engine.host();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
@@ -278,8 +284,12 @@ impl<'a> OnePixel<'a> {
                 radiance: Resource::StorageImage { view: self.radiance.view() },
             };
             pass.write_set(set, &resources).unwrap();
-            let frame =
-                ShadeFrame { size: [1, 1], camera, position_from_clip: matrix, light_count: lights.len() as u32 };
+            let frame = ShadeFrame {
+                size: [1, 1],
+                camera,
+                position_from_clip: matrix,
+                light_count: lights.len() as u32,
+            };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }
         let texel: Vec<[f32; 4]> = self.radiance.download(Usage::COMPUTE_WRITE).unwrap();
@@ -345,7 +355,8 @@ fn depth_gives_the_same_as_positions() {
     let target = Vec3::new(0.1, 0.2, 0.0);
     // The pixel's ray goes through the middle of the image: look at the point
     let view = glam::camera::rh::view::look_at_mat4(camera, target, Vec3::Y);
-    for projection in [vulkan::perspective(0.8, 1.0, 0.1, 100.0), vulkan::perspective_infinite_reverse(0.8, 1.0, 0.1)]
+    for projection in
+        [vulkan::perspective(0.8, 1.0, 0.1, 100.0), vulkan::perspective_infinite_reverse(0.8, 1.0, 0.1)]
     {
         let clip = projection * view * target.extend(1.0);
         let pixel = OnePixel::new(&engine, target.extend(1.0), clip.z / clip.w);

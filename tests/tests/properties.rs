@@ -31,9 +31,8 @@ fn random_polygons(seed: u64, count: usize) -> Vec<Vec<DVec3>> {
 
 /// The faces of a box around the origin, fronts inwards.
 fn faces_of_a_box(low: DVec3, high: DVec3) -> Vec<Vec<DVec3>> {
-    let corner = |x: usize, y: usize, z: usize| {
-        DVec3::new([low.x, high.x][x], [low.y, high.y][y], [low.z, high.z][z])
-    };
+    let corner =
+        |x: usize, y: usize, z: usize| DVec3::new([low.x, high.x][x], [low.y, high.y][y], [low.z, high.z][z]);
     vec![
         vec![corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0)],
         vec![corner(0, 0, 1), corner(0, 1, 1), corner(1, 1, 1), corner(1, 0, 1)],
@@ -51,7 +50,8 @@ fn a_box_of_lights_around_the_point_sums_to_one() {
     let mut points = Vec::new();
     let count = 500;
     for i in 0..count {
-        let low = DVec3::new(random.between(-3.0, -0.1), random.between(-3.0, -0.1), random.between(-3.0, -0.1));
+        let low =
+            DVec3::new(random.between(-3.0, -0.1), random.between(-3.0, -0.1), random.between(-3.0, -0.1));
         let high = DVec3::new(random.between(0.1, 3.0), random.between(0.1, 3.0), random.between(0.1, 3.0));
         let view = random.direction();
         // Any lobe of the table integrates to one in cosine space, times its albedo
@@ -147,7 +147,8 @@ fn scaling_by_a_power_of_two_changes_no_bit() {
     for exponent in [-40, -7, 1, 40] {
         let scale = 2.0_f64.powi(exponent);
         let scaled = |polygon: &Vec<DVec3>| lambert(polygon.iter().map(|v| *v * scale).collect());
-        let before = engine.eval(&polygons.iter().cloned().map(lambert).collect::<Vec<_>>(), Quality::default());
+        let before =
+            engine.eval(&polygons.iter().cloned().map(lambert).collect::<Vec<_>>(), Quality::default());
         let after = engine.eval(&polygons.iter().map(scaled).collect::<Vec<_>>(), Quality::default());
         assert_eq!(before.unwrap(), after.unwrap(), "2^{exponent}");
     }

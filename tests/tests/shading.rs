@@ -46,7 +46,12 @@ fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight::Surface) -> Vec
         .collect()
 }
 
-fn compare(what: &str, points: &[EvalPoint], quality: Quality, bound: impl Fn(&EvalPoint) -> f64) -> Option<Comparison> {
+fn compare(
+    what: &str,
+    points: &[EvalPoint],
+    quality: Quality,
+    bound: impl Fn(&EvalPoint) -> f64,
+) -> Option<Comparison> {
     let engine = TestEngine::new()?;
     let answers = engine.eval(points, quality).unwrap();
     assert_eq!(answers.len(), points.len());
@@ -95,7 +100,9 @@ fn the_fast_rung_is_within_its_error_and_no_better_than_it_says() {
     let quality = Quality { form_factor: FormFactor::Fast };
     // 1.2e-4 of each edge's share, and the shares of a polygon's edges, signs aside, add up to at most 1 for
     // every horizon they circle: concave outlines of this family reach 2.
-    let Some(comparison) = compare("fast Lambert", &points, quality, |_| 2.4e-4 + rounding(1.0)) else { return };
+    let Some(comparison) = compare("fast Lambert", &points, quality, |_| 2.4e-4 + rounding(1.0)) else {
+        return;
+    };
     assert!(comparison.largest() > 1e-5, "the fast polynomial was not used");
     comparison.assert_all();
 }

@@ -25,6 +25,15 @@ pub struct Context {
     pub(crate) device: ash::Device,
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) max_group_count: [u32; 3],
+    pub(crate) limits: DescriptorLimits,
+}
+
+/// How many descriptors of a kind a compute stage may use.
+#[derive(Clone, Copy)]
+pub(crate) struct DescriptorLimits {
+    pub(crate) sampled_images: u32,
+    pub(crate) storage_images: u32,
+    pub(crate) storage_buffers: u32,
 }
 
 impl std::fmt::Debug for Context {
@@ -42,7 +51,7 @@ impl Context {
     /// - The pipeline cache is not used elsewhere while a pass is being made (it is externally synchronised).
     ///
     /// # Errors
-    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1 or a limit is too small.
+    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1.
     pub unsafe fn new(host: &HostDevice<'_>) -> Result<Self, Error> {
         // SAFETY: the caller vouches for the instance and the physical device.
         let properties = unsafe { host.instance.get_physical_device_properties(host.physical_device) };
@@ -53,6 +62,11 @@ impl Context {
             device: host.device.clone(),
             pipeline_cache: host.pipeline_cache,
             max_group_count: properties.limits.max_compute_work_group_count,
+            limits: DescriptorLimits {
+                sampled_images: properties.limits.max_per_stage_descriptor_sampled_images,
+                storage_images: properties.limits.max_per_stage_descriptor_storage_images,
+                storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
+            },
         })
     }
 

@@ -15,7 +15,7 @@ pub enum Error {
         result: vk::Result,
     },
     /// The device lacks something that is needed, or the host did not enable it.
-    #[error("the device lacks {feature}, which {needed_by} needs")]
+    #[error("the device lacks {feature} (or enough of it), which {needed_by} needs")]
     MissingFeature {
         /// The feature, limit or version.
         feature: &'static str,

@@ -72,8 +72,8 @@ impl ComputePass {
     /// destroyed.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::Vulkan`] where a call
-    /// fails.
+    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::MissingFeature`] where
+    /// the kernel binds more than the device can, [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(
         context: &Context,
         kernel: &'static Kernel,
@@ -88,6 +88,7 @@ impl ComputePass {
                 ),
             });
         }
+        check_limits(context, kernel)?;
         // Handles that were made before a later call fails are destroyed with this half-made pass
         let mut pass = Self {
             context: context.clone(),
@@ -316,6 +317,22 @@ impl Drop for ComputePass {
             device.destroy_descriptor_set_layout(self.set_layout, None);
         }
     }
+}
+
+/// Only the kernels of our own tools bind more than every Vulkan device can.
+fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
+    let limits = context.limits;
+    for (kind, limit, feature) in [
+        (BindingKind::SampledImage, limits.sampled_images, "maxPerStageDescriptorSampledImages"),
+        (BindingKind::StorageImage, limits.storage_images, "maxPerStageDescriptorStorageImages"),
+        (BindingKind::StorageBuffer, limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
+    ] {
+        let count = kernel.bindings.iter().filter(|binding| binding.kind == kind).count();
+        if count > limit as usize {
+            return Err(Error::MissingFeature { feature, needed_by: kernel.name });
+        }
+    }
+    Ok(())
 }
 
 fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {

@@ -234,7 +234,10 @@ fn print_summary(
 }
 
 fn milliseconds(time: Option<Duration>) -> String {
-    time.map_or_else(|| "not known (no timestamps)".to_owned(), |time| format!("{:.1} ms", time.as_secs_f64() * 1e3))
+    time.map_or_else(
+        || "not known (no timestamps)".to_owned(),
+        |time| format!("{:.1} ms", time.as_secs_f64() * 1e3),
+    )
 }
 
 fn print_json(
@@ -247,8 +250,10 @@ fn print_json(
 ) {
     let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
     let calls = arealight_scene::required_effects(scene);
-    let effects: Vec<_> =
-        calls.iter().map(|call| json!({ "effect": call.effect.to_string(), "reason": call.reason })).collect();
+    let effects: Vec<_> = calls
+        .iter()
+        .map(|call| json!({ "effect": call.effect.to_string(), "reason": call.reason }))
+        .collect();
     let summary = json!({
         "scene": arguments.scene_name(),
         "triangles": scene.triangles.len(),

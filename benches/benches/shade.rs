@@ -1,0 +1,70 @@
+//! Cost of the shade pass's rungs and of the reference, in GPU time of one frame of the room.
+//!
+//! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
+//! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
+
+use arealight::{Effects, FormFactor, Quality};
+use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use criterion::{Criterion, criterion_group, criterion_main};
+use glam::Vec3;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+const SIZE: [u32; 2] = [320, 180];
+
+/// The sum of `count` runs' GPU times; wall time where the queue has no timestamps.
+fn repeat(count: u64, mut run: impl FnMut() -> Option<Duration>) -> Duration {
+    (0..count)
+        .map(|_| {
+            let start = Instant::now();
+            run().unwrap_or_else(|| start.elapsed())
+        })
+        .sum()
+}
+
+fn shade(criterion: &mut Criterion) {
+    let host = match Host::new(HostOptions::default()) {
+        Ok(host) => host,
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            return;
+        }
+    };
+    let table = arealight_table::ggx();
+    let engine = Engine::new(host, &table, arealight_vk::TableFormat::default()).expect("the table uploads");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/room.glb");
+    let scene = Scene::load(path).expect("our own scene loads");
+    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("it has a camera");
+    let buffers = SceneBuffers::new(&scene, camera.position).expect("it fits");
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let mut renderer =
+        SceneRenderer::new(&engine, &buffers, &scene.lights, constants, SIZE).expect("it fits");
+    renderer.visibility().expect("the device works");
+
+    let fast = Quality { form_factor: FormFactor::Fast };
+    let effects = scene.effects();
+    let mut group = criterion.benchmark_group("shade");
+    group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
+    for (name, effects, quality) in [
+        ("exact", effects, Quality::default()),
+        ("fast", effects, fast),
+        ("exact, diffuse only", effects - Effects::GLOSSY, Quality::default()),
+        ("exact, every effect", Effects::all(), Quality::default()),
+    ] {
+        group.bench_function(name, |bencher| {
+            bencher.iter_custom(|count| {
+                repeat(count, || renderer.shade(effects, quality).expect("the device works"))
+            });
+        });
+    }
+    group.bench_function("reference", |bencher| {
+        bencher.iter_custom(|count| {
+            repeat(count, || renderer.reference(1, 0, |_| {}).expect("the device works"))
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, shade);
+criterion_main!(benches);

@@ -1,0 +1,174 @@
+//! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
+
+use arealight::kernels::{self, EVAL, SHADE, constant};
+use arealight::plan::{PositionSource, ShadeOptions};
+use arealight::{Effects, LightError, PolygonLight};
+use arealight_tests::TestEngine;
+use arealight_vk::{ComputePass, Error, Resource, ShadeFrame, ShadePass, TableFormat, TableImage};
+use ash::vk;
+use glam::{DVec3, Mat4, Vec3};
+
+fn field(error: &Error) -> &'static str {
+    match error {
+        Error::InvalidArgument { field, .. } => field,
+        other => panic!("{other} names no field"),
+    }
+}
+
+fn frame() -> ShadeFrame {
+    ShadeFrame { size: [8, 8], camera: Vec3::ZERO, position_from_clip: None, light_count: 0 }
+}
+
+/// Runs `check` with a pass and a command buffer that is being recorded.
+fn recording(
+    engine: &TestEngine,
+    options: ShadeOptions,
+    check: impl FnOnce(&ShadePass, vk::CommandBuffer, vk::DescriptorSet),
+) {
+    // SAFETY: Submissions are waited for before the pass is dropped.
+    let pass = unsafe { ShadePass::new(engine.context(), options) }.unwrap();
+    let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+    // SAFETY: The layout is the pass's.
+    let set = unsafe { pool.allocate(pass.set_layout()) }.unwrap();
+    engine.host().submit(|commands| check(&pass, commands, set)).unwrap();
+}
+
+#[test]
+fn frames_that_cannot_be_shaded_are_refused_by_field() {
+    let Some(engine) = TestEngine::new() else { return };
+    recording(&engine, ShadeOptions::all(), |pass, commands, set| {
+        for (wrong, expected) in [
+            (ShadeFrame { size: [8, 0], ..frame() }, "size"),
+            (ShadeFrame { camera: Vec3::new(0.0, f32::NAN, 0.0), ..frame() }, "camera"),
+            (
+                ShadeFrame { position_from_clip: Some(Mat4::IDENTITY * f32::INFINITY), ..frame() },
+                "position_from_clip",
+            ),
+            (ShadeFrame { size: [u32::MAX, 8], ..frame() }, "groups"),
+        ] {
+            // SAFETY: Nothing is recorded where an error is returned, so the set need not be written.
+            let error = unsafe { pass.record(commands, set, &wrong) }.unwrap_err();
+            assert_eq!(field(&error), expected, "{error}");
+        }
+    });
+    let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::all() };
+    recording(&engine, from_depth, |pass, commands, set| {
+        // SAFETY: As above.
+        let error = unsafe { pass.record(commands, set, &frame()) }.unwrap_err();
+        assert_eq!(field(&error), "position_from_clip");
+    });
+}
+
+#[test]
+fn resources_that_do_not_fit_are_refused_by_name() {
+    let Some(engine) = TestEngine::new() else { return };
+    let buffer = engine.host().storage_buffer("numbers", &[0.0_f32; 64]).unwrap();
+    let whole = Resource::buffer(buffer.handle());
+    // SAFETY: No submission uses the pass.
+    let pass = unsafe { ComputePass::new(engine.context(), &EVAL, &[]) }.unwrap();
+    let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+    // SAFETY: The layout is the pass's; for the writes, the set is new and unused.
+    unsafe {
+        let set = pool.allocate(pass.set_layout()).unwrap();
+        let write = |resources: &[Resource]| pass.write_set(set, resources);
+        assert_eq!(field(&write(&[]).unwrap_err()), "resources");
+        let right = [engine.table(), whole, whole, whole, whole];
+        write(&right).unwrap();
+        let mut wrong = right;
+        wrong[0] = whole;
+        assert_eq!(field(&write(&wrong).unwrap_err()), "table_image");
+        wrong = right;
+        wrong[3] = Resource::buffer(vk::Buffer::null());
+        let error = write(&wrong).unwrap_err();
+        assert_eq!(field(&error), "cases");
+        assert!(error.to_string().contains("GpuCase[]"), "says what it must hold: {error}");
+    }
+}
+
+#[test]
+fn constants_are_checked_against_the_manifest() {
+    let Some(engine) = TestEngine::new() else { return };
+    // SAFETY: No submission uses a pass.
+    let error = unsafe { ComputePass::new(engine.context(), &EVAL, &[(constant::OUTPUT, 1)]) }.unwrap_err();
+    assert_eq!(field(&error), "specialization");
+    // SAFETY: As above.
+    let pass = unsafe { ComputePass::new(engine.context(), &EVAL, &[(constant::FORM_FACTOR, 1)]) }.unwrap();
+    engine
+        .host()
+        .submit(|commands| {
+            // SAFETY: Nothing is recorded where an error is returned.
+            let error = unsafe { pass.record(commands, vk::DescriptorSet::null(), &[0; 3], [1; 3]) };
+            assert_eq!(field(&error.unwrap_err()), "constants");
+        })
+        .unwrap();
+}
+
+#[test]
+fn a_light_that_calls_for_more_is_named() {
+    let Some(engine) = TestEngine::new() else { return };
+    let sign = PolygonLight {
+        name: "sign".into(),
+        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+        radiance: Vec3::ONE,
+        two_sided: true,
+    };
+    let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
+    recording(&engine, options, |pass, _, _| {
+        let error = pass.pack_lights(std::slice::from_ref(&sign), DVec3::ZERO).unwrap_err();
+        let Error::EffectsTooSmall { light, missing } = &error else { panic!("{error}") };
+        assert_eq!((light.as_str(), *missing), ("sign", Effects::TWO_SIDED));
+        let line = PolygonLight { vertices: vec![DVec3::ZERO, DVec3::X], two_sided: false, ..sign.clone() };
+        let error = pass.pack_lights(&[line], DVec3::ZERO).unwrap_err();
+        assert!(matches!(error, Error::Light(LightError::TooFewVertices { count: 2, .. })), "{error}");
+    });
+}
+
+#[test]
+fn accesses_and_pool_sizes_say_what_the_manifest_says() {
+    let Some(engine) = TestEngine::new() else { return };
+    recording(&engine, ShadeOptions::all(), |pass, _, _| {
+        let accesses = pass.accesses();
+        assert_eq!(accesses.len(), SHADE.bindings.len());
+        for access in &accesses {
+            assert_eq!(access.stage, vk::PipelineStageFlags::COMPUTE_SHADER);
+            let written = access.access.contains(vk::AccessFlags::SHADER_WRITE);
+            assert_eq!(written, access.name == "radiance_image", "{access:?}");
+            assert_eq!(access.layout == vk::ImageLayout::GENERAL, written);
+        }
+        let descriptors: u32 = pass.pool_sizes(3).iter().map(|size| size.descriptor_count).sum();
+        assert_eq!(descriptors as usize, 3 * SHADE.bindings.len());
+    });
+}
+
+#[test]
+fn a_table_image_without_memory_is_refused() {
+    let Some(engine) = TestEngine::new() else { return };
+    let table = arealight_table::ggx();
+    // SAFETY: No submission uses it.
+    let image = unsafe { TableImage::new(engine.context(), &table, TableFormat::Rgba16Float) }.unwrap();
+    let size = u64::from(table.size());
+    assert_eq!(TableFormat::Rgba16Float.bytes(&table).len() as u64, size * size * 2 * 8);
+    assert!(image.memory_requirements().size >= size * size * 2 * 8);
+    let buffer = engine.host().storage_buffer("numbers", &[0.0_f32; 64]).unwrap();
+    let whole = Resource::buffer(buffer.handle());
+    // SAFETY: No submission uses the pass; the set is new.
+    unsafe {
+        let pass = ComputePass::new(engine.context(), &EVAL, &[]).unwrap();
+        let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+        let set = pool.allocate(pass.set_layout()).unwrap();
+        let error = pass.write_set(set, &[image.resource(), whole, whole, whole, whole]).unwrap_err();
+        assert_eq!(field(&error), "table_image");
+    }
+}
+
+#[test]
+fn every_kernel_makes_a_pipeline_with_every_constant() {
+    let Some(engine) = TestEngine::new() else { return };
+    for kernel in kernels::ALL {
+        for value in [0, 1] {
+            let constants: Vec<_> = kernel.constants.iter().map(|&id| (id, value)).collect();
+            // SAFETY: No submission uses it.
+            unsafe { ComputePass::new(engine.context(), kernel, &constants) }.unwrap();
+        }
+    }
+}

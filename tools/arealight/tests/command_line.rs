@@ -1,0 +1,223 @@
+//! The command line as a user meets it: exit codes, messages, files.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_arealight"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Runs a command that must fail with `code` and say all of `words`, without a panic.
+fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
+    let output = run(folder, arguments);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+    assert!(!said.contains("panicked"), "{arguments:?}: {said}");
+    for word in words {
+        assert!(said.contains(word), "{arguments:?} does not say '{word}': {said}");
+    }
+}
+
+fn scene(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name).display().to_string()
+}
+
+fn reference(name: &str) -> String {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/reference").join(name).display().to_string()
+}
+
+fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).expect("the test folder can be written");
+    path
+}
+
+/// Whether there is a device; without one, tests of pictures are skipped unless one is required.
+fn device() -> bool {
+    let output = run(Path::new("."), &["devices"]);
+    let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
+    assert!(!required || output.status.success(), "AREALIGHT_REQUIRE_GPU=1: {}", text(&output.stderr));
+    if !output.status.success() {
+        println!("skipped: no Vulkan device");
+    }
+    output.status.success()
+}
+
+#[test]
+fn help_and_version() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = run(folder.path(), &["--help"]);
+    assert!(help.status.success());
+    for command in ["render", "eval", "fit", "inspect", "devices", "Exit codes"] {
+        assert!(text(&help.stdout).contains(command), "{command}");
+    }
+    assert!(run(folder.path(), &["--version"]).status.success());
+}
+
+#[test]
+fn wrong_arguments_are_exit_code_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let room = scene("room.glb");
+    refuse(folder.path(), &["render", &room, "--size", "12"], 2, &["--size", "1280x720"]);
+    refuse(folder.path(), &["render", &room, "--reference", "0"], 2, &["--reference"]);
+    refuse(folder.path(), &["render", &room, "-o", "picture.bmp"], 2, &["picture.bmp", ".png or .exr"]);
+    refuse(folder.path(), &["render", &room, "--camera", "nobody"], 2, &["--camera", "nobody"]);
+    refuse(folder.path(), &["paint"], 2, &["paint"]);
+}
+
+#[test]
+fn bad_scenes_are_exit_code_3_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    refuse(folder.path(), &["render", "missing.glb"], 3, &["missing.glb"]);
+    write(folder.path(), "noise.glb", b"this is not a scene");
+    refuse(folder.path(), &["render", "noise.glb"], 3, &["noise.glb"]);
+    let room = std::fs::read(scene("room.glb")).unwrap();
+    write(folder.path(), "cut.glb", &room[..room.len() / 2]);
+    refuse(folder.path(), &["render", "cut.glb"], 3, &["cut.glb"]);
+    // A triangle whose first coordinate is NaN
+    let mut positions = vec![];
+    for number in [f32::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        positions.extend(number.to_le_bytes());
+    }
+    write(folder.path(), "triangle.bin", positions);
+    write(
+        folder.path(),
+        "nan.gltf",
+        r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+            "meshes":[{"name":"shard","primitives":[{"attributes":{"POSITION":0}}]}],
+            "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+            "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"uri":"triangle.bin","byteLength":36}]}"#,
+    );
+    refuse(folder.path(), &["render", "nan.gltf"], 3, &["nan.gltf", "NaN"]);
+}
+
+#[test]
+fn bad_cases_are_exit_code_3_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    refuse(folder.path(), &["eval", "missing.json"], 3, &["missing.json"]);
+    write(folder.path(), "noise.json", "{]");
+    refuse(folder.path(), &["eval", "noise.json"], 3, &["noise.json"]);
+    write(folder.path(), "short.json", r#"{"cases":[{"name":"one","position":[0,0,0]}]}"#);
+    refuse(folder.path(), &["eval", "short.json", "--on", "oracle"], 3, &["short.json", "one"]);
+    refuse(folder.path(), &["inspect", "missing.exr"], 3, &["missing.exr"]);
+    write(folder.path(), "noise.exr", "not a table");
+    refuse(folder.path(), &["inspect", "noise.exr"], 3, &["noise.exr"]);
+}
+
+#[test]
+fn devices_that_are_not_there_are_exit_code_4() {
+    let folder = tempfile::tempdir().unwrap();
+    if device() {
+        let wanted = ["render", &scene("room.glb"), "--device", "abacus"];
+        refuse(folder.path(), &wanted, 4, &["abacus"]);
+    }
+    // Without a driver: the loader is told to look nowhere
+    let output = Command::new(env!("CARGO_BIN_EXE_arealight"))
+        .args(["render", &scene("room.glb")])
+        .env("VK_ICD_FILENAMES", "/nonexistent.json")
+        .env("VK_DRIVER_FILES", "/nonexistent.json")
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(4), "{said}");
+    assert!(said.contains("mesa-vulkan-drivers"), "says what to install: {said}");
+}
+
+#[test]
+fn pictures_that_cannot_be_written_are_exit_code_5() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    write(folder.path(), "file", "in the way");
+    refuse(folder.path(), &["render", &scene("room.glb"), "-o", "file/picture.png"], 5, &["file"]);
+}
+
+#[test]
+fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    write(folder.path(), "empty.gltf", r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}"#);
+    let output = run(folder.path(), &["render", "empty.gltf", "--size", "16x8"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("no light"), "{}", text(&output.stderr));
+    assert!(folder.path().join("out/empty.png").is_file());
+}
+
+#[test]
+fn render_makes_pictures_and_says_where() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    let room = scene("room.glb");
+    let output = run(folder.path(), &["render", &room, "--size", "64x36", "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("--json prints JSON");
+    assert_eq!(summary["picture"], "out/room.png");
+    assert!(summary["effects"].as_array().is_some_and(|effects| !effects.is_empty()));
+    let picture = image::open(folder.path().join("out/room.png")).unwrap().to_rgb8();
+    assert_eq!(picture.dimensions(), (64, 36));
+    assert!(picture.pixels().any(|p| p.0.iter().any(|&c| c > 100)), "something is lit");
+
+    // The same radiance by Monte Carlo, as EXR
+    let reference = ["render", &room, "--size", "32x18", "--reference", "8", "-o", "truth.exr"];
+    assert!(run(folder.path(), &reference).status.success());
+    assert!(std::fs::read(folder.path().join("truth.exr")).unwrap().starts_with(&[0x76, 0x2f, 0x31, 0x01]));
+}
+
+#[test]
+fn eval_answers_in_order_with_reasons_and_measures() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    let (cases, truth) = (reference("cases.json"), reference("truth.json"));
+    let evaluate = |on: &str| {
+        let name = format!("{on}.json");
+        let output = run(folder.path(), &["eval", &cases, "-o", &name, "--on", on, "--against", &truth]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let answers = std::fs::read(folder.path().join(name)).unwrap();
+        let answers: serde_json::Value = serde_json::from_slice(&answers).unwrap();
+        (text(&output.stdout), answers["results"].as_array().unwrap().clone())
+    };
+    let (said, gpu) = evaluate("gpu");
+    assert!(said.contains("polygon"), "a family a line: {said}");
+    let (_, oracle) = evaluate("oracle");
+    let given: serde_json::Value = serde_json::from_slice(&std::fs::read(&cases).unwrap()).unwrap();
+    let given = given["cases"].as_array().unwrap();
+    assert_eq!(gpu.len(), given.len());
+    let mut answered = 0;
+    for ((case, gpu), oracle) in given.iter().zip(&gpu).zip(&oracle) {
+        assert_eq!(case["name"], gpu["name"]);
+        let Some(radiance) = gpu["radiance"].as_array() else {
+            assert!(gpu["reason"].as_str().is_some_and(|reason| !reason.is_empty()), "{gpu}");
+            continue;
+        };
+        answered += 1;
+        let numbers = |value: &serde_json::Value| -> Vec<f64> {
+            value.as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect()
+        };
+        let (radiance, oracle) = (numbers(&radiance.clone().into()), numbers(&oracle["radiance"]));
+        let emitted = numbers(&case["light"]["radiance"]);
+        let largest = oracle.iter().copied().fold(0.0, f64::max);
+        for channel in 0..3 {
+            // 1e-4 of the answer; in a lobe's far tail what the form factor may lose, 1e-6 of the light
+            let bound = 1e-4 * largest + 1e-6 * emitted[channel];
+            let difference = (radiance[channel] - oracle[channel]).abs();
+            assert!(difference <= bound, "{}: {radiance:?} {oracle:?}", case["name"]);
+        }
+    }
+    assert_eq!(answered, 70, "untextured polygons, isotropic or diffuse, are answered");
+}
