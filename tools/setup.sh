@@ -30,6 +30,7 @@ has_program() { command -v "$1" >/dev/null; }
 has_loader() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
 has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
 has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
+has_c_library() { any_file "/usr/lib/$(uname -m)-linux-gnu/crt1.o" /usr/lib64/crt1.o /usr/lib/crt1.o; }
 has_library() {
     [[ -n "${SHADERC_LIB_DIR:-}" ]] || any_file "/usr/lib/$(uname -m)-linux-gnu/$1" "/usr/lib64/$1" "/usr/lib/$1"
 }
@@ -55,6 +56,7 @@ need() { # package, reason, check and its arguments
     fi
 }
 need gcc "links Rust programs" has_program cc
+need libc6-dev "the C library, for linking" has_c_library
 need libvulkan1 "the Vulkan loader" has_loader
 need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is no GPU" has_driver
 if [[ "$mode" == test ]]; then
