@@ -91,7 +91,7 @@ fn objects(writer: &mut Writer) {
     // On the right a satin block
     let satin = writer.surface("blue satin", [0.25, 0.42, 0.85], 1.0, 0.36);
     let shape = rounded_box([0.95, 1.35, 0.95], 0.12, 5).plain();
-    let node = json!({ "translation": [2.45, 0.72, -0.35], "rotation": [0, 0.29237, 0, 0.95630] });
+    let node = json!({ "translation": [2.45, 0.72, -0.35], "rotation": [0, -0.13917, 0, 0.99027] });
     writer.object("block", &shape, satin, node);
     // Balls of one shape: a glaze with an index of refraction above glass, chrome, chalk
     writer.use_extension("KHR_materials_ior");
@@ -132,7 +132,7 @@ fn sign(writer: &mut Writer) {
 
 /// A round C: an arc of 270 degrees, as high as the other letters.
 fn letter_c() -> Vec<[f64; 2]> {
-    let steps = 14;
+    let steps = 20;
     let on_arc = |radius: f64, i: i32| {
         let (sin, cos) = (45.0 + 270.0 * f64::from(i) / f64::from(steps)).to_radians().sin_cos();
         [0.7 + radius * cos, 0.75 + radius * sin]
@@ -156,7 +156,7 @@ fn soft_boxes(writer: &mut Writer) {
     writer.root["extensions"] = json!({ "EXT_lights_area": { "lights": [
         { "name": "key", "type": "rect", "color": [1.0, 0.95, 0.88], "intensity": 3400, "size": 1.8,
           "rect": { "aspect": 2.4 } },
-        { "name": "fill", "type": "rect", "color": [0.82, 0.9, 1.0], "intensity": 550, "size": 3.2,
+        { "name": "fill", "type": "rect", "color": [0.82, 0.9, 1.0], "intensity": 800, "size": 3.2,
           "rect": { "aspect": 1.8 } }
     ] } });
     let places = [("key", [-0.8, 4.8, 1.6], [0.0, 0.7, 0.2]), ("fill", [2.5, 4.2, 7.5], [0.0, 0.8, 0.0])];

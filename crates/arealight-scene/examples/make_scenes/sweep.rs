@@ -13,7 +13,7 @@ pub fn glb() -> Vec<u8> {
     let ground = writer.surface("floor", [0.18, 0.18, 0.19], 0.0, 0.3);
     writer.object("floor", &floor(40.0, 40.0, 1.0), ground, json!({}));
     // A row of spheres for each metalness, the metals at the back; all share one shape
-    let shape = writer.primitive(&sphere(0.44, 48, 28).plain());
+    let shape = writer.primitive(&sphere(0.44, 60, 34).plain());
     for (row, metalness) in METALNESS.into_iter().enumerate() {
         for (column, roughness) in ROUGHNESS.into_iter().enumerate() {
             let name = format!("roughness {roughness}, metalness {metalness}");
