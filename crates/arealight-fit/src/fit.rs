@@ -2,38 +2,37 @@
 
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::aim::Aim;
 use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::lobe::Lobe;
 use crate::nodes::Texel;
-use crate::solve::{Loss, Problem};
+use crate::solve::Problem;
 
 /// How a table is fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Nodes a side, 2 to [`arealight::table::MAX_SIZE`].
     pub size: u32,
-    /// What is minimised at each node.
-    pub loss: Loss,
-    /// How often each texel is fitted again from the best of its neighbours.
-    pub passes: u32,
+    /// The lobe that is fitted at each node.
+    pub aim: Aim,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { size: 64, loss: Loss::default(), passes: 1 }
+        Self { size: 64, aim: Aim::default() }
     }
 }
 
 /// Fits a table to a BRDF.
 ///
-/// The first pass runs each column (a roughness) from the normal to the horizon, each texel starting from
-/// the one before. Later passes fit each texel again from the best of its neighbours of the pass before. No
-/// texel depends on one of the same pass in another column, so the result is the same on any number of
+/// Each column (a roughness) runs from the normal to the horizon, each texel starting from the one before, so
+/// that neighbours settle alike. Columns do not depend on each other: the result is the same on any number of
 /// threads.
 ///
-/// `progress` is called from any thread after each texel with the number of texels done and the number to do.
+/// `progress` is called from any thread with the number of steps done and the number to do: two a texel.
 ///
 /// # Errors
 /// [`FitError`] if the settings are out of range, or the BRDF yields no lobe at some texel.
@@ -44,16 +43,18 @@ pub fn fit(
 ) -> Result<LightTable, FitError> {
     settings.check()?;
     let size = settings.size as usize;
-    let done = std::sync::atomic::AtomicU64::new(0);
-    let total = (size * size) as u64 * u64::from(settings.passes + 1);
-    let report = || progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, total);
+    let done = AtomicU64::new(0);
+    let total = 2 * (size * size) as u64;
+    let report = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
 
     // Integrate the albedos
     let magnitude: Vec<Magnitude> = (0..size * size)
         .into_par_iter()
         .map(|i| {
             let (alpha, cos_view) = node_of(settings.size, i);
-            brdf.magnitude(alpha, cos_view)
+            let magnitude = brdf.magnitude(alpha, cos_view);
+            report();
+            magnitude
         })
         .collect();
     let texel = |i: usize| {
@@ -66,56 +67,44 @@ pub fn fit(
         .into_par_iter()
         .map(|x| {
             let mut lobe = start_at_normal(texel(x).alpha);
+            let mut cos_before = 1.0;
             (0..size)
                 .map(|y| {
                     let texel = texel(y * size + x);
-                    lobe = texel.fit(&settings.loss, lobe, &[lobe]);
+                    let guess = lobe.narrowed(cos_before, texel.cos_view);
+                    lobe = texel.fit(&settings.aim, guess, lobe);
+                    cos_before = texel.cos_view;
                     report();
                     lobe
                 })
                 .collect()
         })
         .collect();
-    let mut lobes: Vec<Lobe> = (0..size * size).map(|i| columns[i % size][i / size]).collect();
+    let lobes: Vec<Lobe> = (0..size * size).map(|i| columns[i % size][i / size]).collect();
 
-    // Fit again from the best of the neighbours
-    for _ in 0..settings.passes {
-        lobes = (0..size * size)
-            .into_par_iter()
-            .map(|i| {
-                let candidates: Vec<Lobe> = neighbours(size, i).map(|n| lobes[n]).collect();
-                let lobe = texel(i).fit(&settings.loss, lobes[i], &candidates);
-                report();
-                lobe
-            })
-            .collect();
-    }
     into_table(brdf, settings, &lobes, &magnitude)
 }
 
 impl Texel<'_> {
-    /// Fits from the best of the candidates, on nodes laid out by `guess`.
-    fn fit(&self, loss: &Loss, guess: Lobe, candidates: &[Lobe]) -> Lobe {
-        let guess = Lobe { alpha: self.alpha, ..guess };
-        let nodes = self.nodes(&guess);
-        let problem = Problem::new(loss, &nodes, self.magnitude);
-        let start = candidates
-            .iter()
-            .map(|candidate| Lobe { alpha: self.alpha, ..*candidate })
-            .map(|candidate| (candidate, problem.loss(&candidate)))
-            .fold((guess, problem.loss(&guess)), |best, new| if new.1 < best.1 { new } else { best });
-        problem.minimise(start.0).0
+    /// Fits from the better of two lobes, on nodes laid out by the first.
+    fn fit(&self, aim: &Aim, guess: Lobe, before: Lobe) -> Lobe {
+        let problem = Problem::new(aim, self, &guess);
+        let start = if problem.loss(&before) < problem.loss(&guess) { before } else { guess };
+        // Seen from the normal, the lobe of an isotropic BRDF is round: there the tangent frame is arbitrary
+        // and must not show
+        let free = if self.cos_view == 1.0 { [false, false, false, true] } else { [true; 4] };
+        problem.minimise(start, free)
     }
 }
 
 /// The alpha and the view's cosine at which texel `i` is fitted.
 ///
-/// The first column's alpha lies below the smallest that is shaded, so that a lookup there interpolates
-/// towards a mirror. The last row stays off the horizon: exactly on it a lobe degenerates to a fan that is
-/// `alpha²` wide, and interpolating towards that would narrow every lobe of the last cell.
+/// The first column stands for the smallest alpha that is shaded. The last row stays off the horizon: exactly
+/// on it a lobe degenerates to a fan that is `alpha²` wide, and interpolating towards that would narrow every
+/// lobe of the last cell.
 fn node_of(size: u32, i: usize) -> (f64, f64) {
     let (roughness, cos_view) = LightTable::node(size, i as u32 % size, i as u32 / size);
-    ((roughness * roughness).max(0.01 * MIN_ALPHA), cos_view.max(MIN_COS_VIEW))
+    ((roughness * roughness).max(MIN_ALPHA), cos_view.max(MIN_COS_VIEW))
 }
 
 /// Of the view 0.06 degrees above the horizon.
@@ -126,25 +115,17 @@ fn start_at_normal(alpha: f64) -> Lobe {
     Lobe { texel: [1.0, 0.0, 0.0, 2.0 / (1.0 + alpha)], alpha }
 }
 
-/// A texel's four neighbours.
-fn neighbours(size: usize, i: usize) -> impl Iterator<Item = usize> {
-    let (x, y) = (i % size, i / size);
-    let left = (x > 0).then(|| i - 1);
-    let right = (x + 1 < size).then(|| i + 1);
-    let up = (y > 0).then(|| i - size);
-    let down = (y + 1 < size).then(|| i + size);
-    [left, right, up, down].into_iter().flatten()
-}
-
 fn into_table(
     brdf: &dyn Brdf,
     settings: &Settings,
     lobes: &[Lobe],
     magnitude: &[Magnitude],
 ) -> Result<LightTable, FitError> {
+    let aim: Vec<String> =
+        settings.aim.reflectances.iter().map(|(f0, weight)| format!("f0 {f0} by {weight}")).collect();
     let description = TableDescription {
         brdf: brdf.name().to_owned(),
-        made_by: format!("arealight-fit {} ({:?})", env!("CARGO_PKG_VERSION"), settings.loss),
+        made_by: format!("arealight-fit {}, aimed at {}", env!("CARGO_PKG_VERSION"), aim.join(", ")),
     };
     let matrix = lobes.iter().map(|lobe| lobe.texel.map(|q| q as f32)).collect();
     let magnitude = magnitude.iter().map(|m| [m.albedo as f32, m.schlick as f32]).collect();
@@ -153,23 +134,19 @@ fn into_table(
 
 impl Settings {
     fn check(&self) -> Result<(), FitError> {
-        let loss = &self.loss;
         let out_of = |setting, value, range| Err(FitError::Setting { setting, value, range });
         if !(2..=arealight::table::MAX_SIZE).contains(&self.size) {
             return out_of("size", f64::from(self.size), "2 to 1024");
         }
-        if !(1.0..=2.0).contains(&loss.exponent) {
-            return out_of("exponent", loss.exponent, "1 to 2");
+        if self.aim.reflectances.is_empty() {
+            return out_of("number of reflectances", 0.0, "at least 1");
         }
-        if loss.reflectances.is_empty() {
-            return out_of("reflectances", 0.0, "at least one");
-        }
-        for &(f0, weight) in &loss.reflectances {
+        for &(f0, weight) in &self.aim.reflectances {
             if !(0.0..=1.0).contains(&f0) {
                 return out_of("f0", f0, "0 to 1");
             }
             if !(weight.is_finite() && weight > 0.0) {
-                return out_of("weight", weight, "above 0");
+                return out_of("weight", weight, "finite and above 0");
             }
         }
         Ok(())

@@ -38,6 +38,15 @@ impl Lobe {
         is_finite && q00 > 0.0 && q22 > 0.0 && q00 * q22 - q02 * q20 > 1e-4 * q00 * q22
     }
 
+    /// This lobe as it becomes when the view's cosine changes by a factor: a narrow one follows it in width
+    /// across the plane of incidence, one that is wide at that angle much less.
+    #[must_use]
+    pub fn narrowed(&self, cos_view: f64, new_cos_view: f64) -> Self {
+        let factor = new_cos_view.hypot(self.alpha) / cos_view.hypot(self.alpha);
+        let [q00, q02, q20, q22] = self.texel;
+        Self { texel: [q00 * factor, q02 * factor, q20, q22 * factor], ..*self }
+    }
+
     /// The density of the lobe in a direction of the mirror frame, 1/sr; it integrates to 1.
     pub fn density(&self, direction: DVec3) -> f64 {
         let [q00, q02, q20, q22] = self.texel;

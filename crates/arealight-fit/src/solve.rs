@@ -1,51 +1,46 @@
-//! The fit of one texel: damped Gauss-Newton steps on a robust loss.
+//! The fit of one texel: nonlinear least squares on the integrals over probes.
 
-use crate::brdf::Magnitude;
+use crate::aim::Aim;
 use crate::lobe::Lobe;
-use crate::nodes::Node;
+use crate::nodes::{Node, Texel};
+use crate::probes::probe_rows;
 
-/// What a fit minimises: the sum over reflectances of
-/// `weight * integral |g - D|^exponent`, with `g` the BRDF's lobe at that reflectance, scaled to 1, and `D`
-/// the transformed cosine.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Loss {
-    /// Pairs of a reflectance `f0` and its weight.
-    pub reflectances: Vec<(f64, f64)>,
-    /// Between 1 (indifferent to where energy is missing) and 2 (intent on the peak).
-    pub exponent: f64,
-}
-
-impl Default for Loss {
-    fn default() -> Self {
-        Self { reflectances: vec![(0.04, 11.5), (1.0, 1.0)], exponent: 1.125 }
-    }
-}
-
-/// The residuals' targets at the nodes, prepared once for many evaluations.
-pub struct Problem<'a> {
-    nodes: &'a [Node],
-    exponent: f64,
-    weights: Vec<f64>,
-    /// `targets[node * reflectances + k]`
-    targets: Vec<f64>,
-}
-
+/// Most steps that were ever of use are 20.
 const MAX_STEPS: usize = 40;
 
-impl<'a> Problem<'a> {
-    /// Prepares the loss at the nodes of a texel with these albedos.
-    pub fn new(loss: &Loss, nodes: &'a [Node], magnitude: Magnitude) -> Self {
-        let scale: Vec<(f64, f64)> =
-            loss.reflectances.iter().map(|&(f0, _)| (f0, magnitude.at(f0))).collect();
-        let targets = nodes
-            .iter()
-            .flat_map(|node| {
-                scale.iter().map(|&(f0, albedo)| (f0 * node.value + (1.0 - f0) * node.schlick) / albedo)
-            })
-            .collect();
-        // A term counts as much as the radiance that it gets wrong
-        let weights = loss.reflectances.iter().map(|&(f0, weight)| weight * magnitude.at(f0)).collect();
-        Self { nodes, exponent: loss.exponent, weights, targets }
+/// A step that gains less than this share of the loss is the last.
+const SMALLEST_GAIN: f64 = 1e-6;
+
+/// How strongly a texel is held at its guess, against how strongly the probes determine it. Enough to decide
+/// what they do not, so that the table is smooth; too little to move what they do.
+const ANCHOR: f64 = 1e-3;
+
+/// The least squares of one texel: the sum over probes of (integral of the lobe - integral aimed at)².
+pub struct Problem {
+    nodes: Vec<Node>,
+    /// Probes by nodes: the solid angle of each node that lies in each probe.
+    rows: Vec<f32>,
+    /// The integral aimed at, a probe.
+    targets: Vec<f64>,
+    /// The lobe that the nodes were laid out for.
+    guess: Lobe,
+    /// The weights of the squared distances of the texel's entries from the guess's.
+    anchor: [f64; 4],
+}
+
+impl Problem {
+    /// Prepares the problem of a texel, on nodes laid out for a lobe like `guess`.
+    pub fn new(aim: &Aim, texel: &Texel, guess: &Lobe) -> Self {
+        let nodes = texel.nodes(guess);
+        let rows = probe_rows(texel.alpha, texel.cos_view, &nodes);
+        let [of_lobe, of_schlick] = aim.shares(texel.magnitude);
+        let target: Vec<f32> =
+            nodes.iter().map(|node| (of_lobe * node.value + of_schlick * node.schlick) as f32).collect();
+        let targets = rows.chunks_exact(nodes.len()).map(|row| dot(row, &target)).collect();
+        let mut problem = Self { nodes, rows, targets, guess: *guess, anchor: [0.0; 4] };
+        let (normal, _) = problem.normal_equations(guess, [true; 4]);
+        problem.anchor = std::array::from_fn(|i| ANCHOR * normal[i][i]);
+        problem
     }
 
     /// The loss of a lobe; infinite if it is not valid.
@@ -53,89 +48,86 @@ impl<'a> Problem<'a> {
         if !lobe.is_valid() {
             return f64::INFINITY;
         }
-        let count = self.weights.len();
-        let mut sum = 0.0;
-        for (node, targets) in self.nodes.iter().zip(self.targets.chunks_exact(count)) {
-            let density = lobe.density(node.direction);
-            for (target, weight) in targets.iter().zip(&self.weights) {
-                sum += node.weight * weight * (density - target).abs().powf(self.exponent);
-            }
-        }
-        sum
+        let densities: Vec<f32> = self.nodes.iter().map(|node| lobe.density(node.direction) as f32).collect();
+        let misfit: f64 = self.probes().map(|(row, target)| (dot(row, &densities) - target).powi(2)).sum();
+        let distance: f64 =
+            (0..4).map(|i| self.anchor[i] * (lobe.texel[i] - self.guess.texel[i]).powi(2)).sum();
+        misfit + distance
     }
 
-    /// Minimises the loss from a starting lobe; returns the best lobe found and its loss.
+    /// Minimises the loss from a starting lobe over the entries of the texel that are `free`.
     ///
-    /// Each step solves the weighted least squares that the loss is locally (weights `|residual|^(p - 2)`),
-    /// damped as Levenberg and Marquardt do, and is taken only if the true loss falls.
-    pub fn minimise(&self, start: Lobe) -> (Lobe, f64) {
+    /// Gauss-Newton steps, damped as Levenberg and Marquardt do; one is taken only if the loss falls.
+    pub fn minimise(&self, start: Lobe, free: [bool; 4]) -> Lobe {
         let mut best = start;
         let mut best_loss = self.loss(&start);
         let mut damping = 1e-3;
         for _ in 0..MAX_STEPS {
-            let (normal, slope) = self.normal_equations(&best);
+            let (normal, slope) = self.normal_equations(&best, free);
             // Raise the damping until a step improves
             let mut improved = None;
-            while damping < 1e9 {
-                if let Some(step) = damped_step(&normal, &slope, damping) {
-                    let texel = std::array::from_fn(|i| best.texel[i] - step[i]);
-                    let candidate = Lobe { texel, ..best };
-                    let loss = self.loss(&candidate);
-                    if loss < best_loss {
-                        improved = Some((candidate, loss));
-                        break;
-                    }
-                }
-                damping *= 4.0;
+            while improved.is_none() && damping < 1e9 {
+                improved = damped_step(&normal, &slope, damping)
+                    .map(|step| Lobe { texel: std::array::from_fn(|i| best.texel[i] - step[i]), ..best })
+                    .map(|candidate| (candidate, self.loss(&candidate)))
+                    .filter(|(_, loss)| *loss < best_loss);
+                damping *= if improved.is_some() { 0.2 } else { 4.0 };
             }
             let Some((candidate, loss)) = improved else { break };
-            let gain = (best_loss - loss) / best_loss;
+            let gain = best_loss - loss;
             (best, best_loss) = (candidate, loss);
-            damping = (damping * 0.2).max(1e-9);
-            if gain < 1e-6 {
+            damping = damping.max(1e-9);
+            if gain < SMALLEST_GAIN * best_loss {
                 break;
             }
         }
-        (best, best_loss)
+        best
     }
 
-    /// JᵀWJ and JᵀWr of the residuals D - g.
-    fn normal_equations(&self, lobe: &Lobe) -> ([[f64; 4]; 4], [f64; 4]) {
-        let count = self.weights.len();
+    /// JᵀJ and Jᵀr of the residuals; entries that are not free get a unit diagonal and no slope.
+    fn normal_equations(&self, lobe: &Lobe, free: [bool; 4]) -> ([[f64; 4]; 4], [f64; 4]) {
+        // Evaluate the density and its derivatives at the nodes
+        let mut densities = Vec::with_capacity(self.nodes.len());
+        let mut derivatives: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(self.nodes.len()));
+        for node in &self.nodes {
+            let (density, gradient) = lobe.density_and_gradient(node.direction);
+            densities.push(density as f32);
+            for (column, derivative) in derivatives.iter_mut().zip(gradient) {
+                column.push(derivative as f32);
+            }
+        }
+        // Sum them over each probe, and accumulate
         let mut normal = [[0.0; 4]; 4];
         let mut slope = [0.0; 4];
-        for (node, targets) in self.nodes.iter().zip(self.targets.chunks_exact(count)) {
-            let (density, gradient) = lobe.density_and_gradient(node.direction);
-            if density == 0.0 {
-                continue;
-            }
-            let (mut weight, mut weighted_residual) = (0.0, 0.0);
-            for (target, scale) in targets.iter().zip(&self.weights) {
-                let residual = density - target;
-                // The floor keeps a node that fits exactly from outweighing all others
-                let floor = 1e-4 * (density + target);
-                let w = node.weight * scale * residual.abs().max(floor).powf(self.exponent - 2.0);
-                weight += w;
-                weighted_residual += w * residual;
-            }
+        for (row, target) in self.probes() {
+            let residual = dot(row, &densities) - target;
+            let gradient: [f64; 4] =
+                std::array::from_fn(|k| if free[k] { dot(row, &derivatives[k]) } else { 0.0 });
             for i in 0..4 {
-                slope[i] += weighted_residual * gradient[i];
-                for j in 0..=i {
-                    normal[i][j] += weight * gradient[i] * gradient[j];
+                slope[i] += residual * gradient[i];
+                for j in 0..4 {
+                    normal[i][j] += gradient[i] * gradient[j];
                 }
             }
         }
         for i in 0..4 {
-            for j in i + 1..4 {
-                normal[i][j] = normal[j][i];
+            if free[i] {
+                normal[i][i] += self.anchor[i];
+                slope[i] += self.anchor[i] * (lobe.texel[i] - self.guess.texel[i]);
+            } else {
+                normal[i][i] = 1.0;
             }
         }
         (normal, slope)
     }
+
+    fn probes(&self) -> impl Iterator<Item = (&[f32], f64)> {
+        self.rows.chunks_exact(self.nodes.len()).zip(self.targets.iter().copied())
+    }
 }
 
-/// Solves `(N + damping diag N) step = slope` by Cholesky's decomposition, on the system scaled to a unit
-/// diagonal; `None` if the matrix is not positive definite.
+/// Solves `(N + damping diag N) step = slope` by Cholesky's decomposition of the system scaled to a unit
+/// diagonal; `None` if it is not positive definite.
 fn damped_step(normal: &[[f64; 4]; 4], slope: &[f64; 4], damping: f64) -> Option<[f64; 4]> {
     let scale: [f64; 4] = std::array::from_fn(|i| 1.0 / normal[i][i].max(f64::MIN_POSITIVE).sqrt());
     let mut lower = [[0.0; 4]; 4];
@@ -169,4 +161,19 @@ fn damped_step(normal: &[[f64; 4]; 4], slope: &[f64; 4], damping: f64) -> Option
         step[i] = (step[i] - sum) / lower[i][i];
     }
     Some(std::array::from_fn(|i| step[i] * scale[i]))
+}
+
+/// The dot product in eight lanes of float32, in an order that does not depend on the machine. Residuals are
+/// about 1e-2 of the integrals, so that its rounding, 1e-6, is far below them.
+fn dot(a: &[f32], b: &[f32]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0_f32; LANES];
+    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let tail: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for k in 0..LANES {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    f64::from(sums.iter().sum::<f32>() + tail)
 }

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use std::f64::consts::PI;
 
+use crate::random::Random;
+
 /// Where the lights of a family lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
@@ -34,7 +36,7 @@ pub struct Quad {
 
 /// Draws `count` quads, a third of each family. The same seed gives the same quads everywhere.
 pub fn random_quads(count: usize, seed: u64) -> Vec<Quad> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     (0..count).map(|i| random_quad(&mut random, Family::ALL[i % 3])).collect()
 }
 
@@ -74,28 +76,4 @@ fn random_quad(random: &mut Random, family: Family) -> Quad {
         vertices.reverse();
     }
     Quad { family, roughness, cos_view: theta.cos(), vertices }
-}
-
-/// SplitMix64 (Steele, Lea, Flood 2014): small, and the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = self.between(-1.0, 1.0);
-        let (sin_phi, cos_phi) = (2.0 * PI * self.unit()).sin_cos();
-        let radius = (1.0 - z * z).max(0.0).sqrt();
-        DVec3::new(radius * cos_phi, radius * sin_phi, z)
-    }
 }
