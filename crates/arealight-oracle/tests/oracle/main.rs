@@ -1,5 +1,6 @@
 //! Properties of the oracle, and its parts against each other and against the reference.
 
+mod article;
 mod common;
 mod ggx;
 mod ltsd;
