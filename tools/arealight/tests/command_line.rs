@@ -151,7 +151,7 @@ fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
     write(folder.path(), "empty.gltf", r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[]}]}"#);
     let output = run(folder.path(), &["render", "empty.gltf", "--size", "16x8"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
-    assert!(text(&output.stderr).contains("no light"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("no area lights"), "{}", text(&output.stderr));
     assert!(folder.path().join("out/empty.png").is_file());
 }
 
