@@ -1,11 +1,15 @@
 //! Adaptive cubature of any integrand over a polygon, in solid angle: the method that does not know of the
 //! closed forms, to check them with, and to integrate what has none.
 //!
-//! The polygon becomes a signed fan of triangles, so that concave outlines need no care. Triangles are
-//! bisected until they are small for their distance, and until the caller calls its integrand *resolved*
-//! on each: a narrow lobe cannot fall between the points of the rule. From there the triangle of the largest
-//! error is bisected until the sum of the errors is small. The error of a triangle is the difference between
-//! a rule of degree 8 and one of degree 5, an estimate of the latter's error: the value is far better.
+//! The polygon becomes a signed fan of triangles, so that concave outlines need no care. The caller says how
+//! long the edges of a triangle are in units of the integrand's own scale; triangles are bisected until they
+//! are small for their distance and no edge is longer than one such unit, so that a narrow lobe cannot fall
+//! between the points of the rule. From there the triangle of the largest error is bisected, across its
+//! longest edge in those units, until the sum of the errors is small.
+//!
+//! The error of a triangle is the difference between a rule of degree 8 and one of degree 5, an estimate of
+//! the latter's error: the value is far better, unless the integrand has a feature that the caller's units do
+//! not know of.
 
 use crate::polygon::power_of_two_near;
 use glam::DVec3;
@@ -41,6 +45,13 @@ pub struct Estimate<const N: usize> {
     pub error: [f64; N],
     /// How often the integrand was evaluated.
     pub evaluations: usize,
+}
+
+impl<const N: usize> Default for Estimate<N> {
+    /// The integral of nothing.
+    fn default() -> Self {
+        Self { value: [0.0; N], error: [0.0; N], evaluations: 0 }
+    }
 }
 
 /// Signed triangles in space, as the origin sees them.
@@ -91,22 +102,42 @@ impl Region {
         Self { triangles }
     }
 
+    /// The same region with every triangle cut along the plane `normal · p = 0`: a ridge of the integrand that
+    /// lies there then runs along edges, and a few long triangles follow it instead of many small ones.
+    #[must_use]
+    pub fn cut(&self, normal: DVec3) -> Self {
+        let [mut above, below] = [normal, -normal].map(|side| self.clipped(side));
+        above.triangles.extend(below.triangles);
+        above
+    }
+
     /// Integrates `integrand`, a function of unit directions, over this region's solid angle.
     ///
-    /// `resolved` says of a triangle, given its corners, whether the integrand is so smooth on it that the
-    /// rule's 22 points will see what there is: a triangle on which a lobe is narrower than the spacing of
-    /// the points must be refused. `|_| true` is right for integrands that vary slowly over the sphere.
+    /// `lengths` gives the edges ab, bc and ca of a triangle in units of the scale on which the integrand
+    /// varies there: [`angles`] for one that varies slowly over the sphere, `angles / width` for a lobe, and
+    /// best a measure that follows the lobe's shape.
     pub fn integrate<const N: usize>(
         &self,
         settings: &Settings,
-        resolved: impl Fn(&[DVec3; 3]) -> bool,
+        lengths: impl Fn(&[DVec3; 3]) -> [f64; 3],
         integrand: impl Fn(DVec3) -> [f64; N],
     ) -> Estimate<N> {
         let triangles =
-            split_until_resolved(&self.triangles, settings.max_evaluations / (2 * POINTS), &resolved);
+            split_until_resolved(&self.triangles, settings.max_evaluations / (2 * POINTS), &lengths);
         let pieces = triangles.into_iter().map(|triangle| Piece::new(triangle, &integrand)).collect();
-        refine(pieces, settings, &integrand)
+        refine(pieces, settings, &lengths, &integrand)
     }
+}
+
+/// The chords between the directions of a triangle's corners, of the edges ab, bc and ca: about the angles
+/// that they span.
+pub fn angles(triangle: &[DVec3; 3]) -> [f64; 3] {
+    edges(&triangle.map(DVec3::normalize_or_zero))
+}
+
+/// The lengths of the edges ab, bc and ca.
+pub(crate) fn edges([a, b, c]: &[DVec3; 3]) -> [f64; 3] {
+    [a.distance(*b), b.distance(*c), c.distance(*a)]
 }
 
 /// Evaluations a triangle: 16 and 7 points, the centroid is one of both.
@@ -115,27 +146,27 @@ const POINTS: usize = 22;
 /// Bisections after which a triangle is taken as it is: 2^-60 of the polygon's size.
 const MAX_DEPTH: usize = 120;
 
-/// Bisects triangles until each is not larger than half its distance from the origin, and resolved; or until
-/// there are `max_triangles`.
+/// Bisects triangles until each is not larger than half its distance from the origin, and no edge is longer
+/// than one by `lengths`; or until there are `max_triangles`.
 fn split_until_resolved(
     triangles: &[[DVec3; 3]],
     max_triangles: usize,
-    resolved: &impl Fn(&[DVec3; 3]) -> bool,
+    lengths: &impl Fn(&[DVec3; 3]) -> [f64; 3],
 ) -> Vec<[DVec3; 3]> {
     // A triangle whose plane holds the origin has no solid angle
     let seen = triangles.iter().filter(|triangle| volume(triangle) != 0.0);
     let mut queue: VecDeque<([DVec3; 3], usize)> = seen.map(|triangle| (*triangle, 0)).collect();
     let mut done = Vec::new();
     while let Some((triangle, depth)) = queue.pop_front() {
-        let small = longest_edge(&triangle) <= 0.5 * distance_to_origin(&triangle);
+        // As long as it is large, look at its size; then at what the integrand sees
+        let size = edges(&triangle);
+        let large = longest(size) > 0.5 * distance_to_origin(&triangle);
+        let measure = if large { size } else { lengths(&triangle) };
         let full = done.len() + queue.len() >= max_triangles;
-        if depth >= MAX_DEPTH || full || (small && resolved(&triangle)) {
+        if depth >= MAX_DEPTH || full || (!large && longest(measure) <= 1.0) {
             done.push(triangle);
         } else {
-            // As long as it is large, halve its length; then the angle that it spans
-            let halves =
-                if small { bisect(&triangle, angle_squared) } else { bisect(&triangle, length_squared) };
-            queue.extend(halves.map(|half| (half, depth + 1)));
+            queue.extend(bisect(&triangle, measure).map(|half| (half, depth + 1)));
         }
     }
     done
@@ -145,6 +176,7 @@ fn split_until_resolved(
 fn refine<const N: usize>(
     pieces: Vec<Piece<N>>,
     settings: &Settings,
+    lengths: &impl Fn(&[DVec3; 3]) -> [f64; 3],
     integrand: &impl Fn(DVec3) -> [f64; N],
 ) -> Estimate<N> {
     let mut evaluations = pieces.len() * POINTS;
@@ -164,7 +196,8 @@ fn refine<const N: usize>(
             heap.push(worst);
             break;
         }
-        let halves = bisect(&worst.piece.triangle, angle_squared).map(|half| Piece::new(half, integrand));
+        let triangle = &worst.piece.triangle;
+        let halves = bisect(triangle, lengths(triangle)).map(|half| Piece::new(half, integrand));
         for i in 0..N {
             value[i] += halves[0].value[i] + halves[1].value[i] - worst.piece.value[i];
             error[i] += halves[0].error[i] + halves[1].error[i] - worst.piece.error[i];
@@ -261,23 +294,13 @@ fn volume([a, b, c]: &[DVec3; 3]) -> f64 {
     -(*b - *a).cross(*c - *a).dot(*nearest)
 }
 
-fn length_squared(a: DVec3, b: DVec3) -> f64 {
-    a.distance_squared(b)
+fn longest(lengths: [f64; 3]) -> f64 {
+    lengths[0].max(lengths[1]).max(lengths[2])
 }
 
-/// The squared chord between two directions.
-fn angle_squared(a: DVec3, b: DVec3) -> f64 {
-    (a / a.length()).distance_squared(b / b.length())
-}
-
-fn longest_edge([a, b, c]: &[DVec3; 3]) -> f64 {
-    length_squared(*a, *b).max(length_squared(*b, *c)).max(length_squared(*c, *a)).sqrt()
-}
-
-/// Halves a triangle at the middle of the edge that `measure` calls the longest. Orientation is kept.
-fn bisect(triangle: &[DVec3; 3], measure: impl Fn(DVec3, DVec3) -> f64) -> [[DVec3; 3]; 2] {
-    let edge = |i: usize| measure(triangle[i], triangle[(i + 1) % 3]);
-    let longest = (1..3).fold(0, |best, i| if edge(i) > edge(best) { i } else { best });
+/// Halves a triangle at the middle of the edge of the largest measure. Orientation is kept.
+fn bisect(triangle: &[DVec3; 3], measure: [f64; 3]) -> [[DVec3; 3]; 2] {
+    let longest = (1..3).fold(0, |best, i| if measure[i] > measure[best] { i } else { best });
     let [a, b, c] = [0, 1, 2].map(|i| triangle[(longest + i) % 3]);
     let middle = (a + b) * 0.5;
     [[a, middle, c], [middle, b, c]]
@@ -325,7 +348,7 @@ mod tests {
     #[test]
     fn the_sphere_and_its_parts_have_their_solid_angles() {
         let settings = Settings::default();
-        let angle = |region: &Region| region.integrate(&settings, |_| true, |_| [1.0]).value[0];
+        let angle = |region: &Region| region.integrate(&settings, angles, |_| [1.0]).value[0];
         // errors are far below the estimates that the tolerance of 1e-6 is for
         assert!((angle(&Region::sphere()) - 4.0 * PI).abs() < 1e-8);
         let lune = Region::sphere().clipped(DVec3::X).clipped(DVec3::new(-1.0, 1.0, 0.0));
@@ -344,24 +367,24 @@ mod tests {
         let lobe = |w: DVec3| [(-(w - axis).length_squared() / (width * width)).exp() / (PI * width * width)];
         let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
         let region = Region::polygon(&square);
-        let resolved = |t: &[DVec3; 3]| {
+        let lengths = |t: &[DVec3; 3]| {
             let around = t.map(|p| p.normalize_or_zero() - axis);
-            longest_edge(&around) < width + distance_to_origin(&around)
+            edges(&around).map(|length| length / (width + distance_to_origin(&around)))
         };
-        let found = region.integrate(&Settings::default(), resolved, lobe).value[0];
+        let found = region.integrate(&Settings::default(), lengths, lobe).value[0];
         assert!((found - 1.0).abs() < 1e-7, "{found}");
-        assert_eq!(region.integrate(&Settings::default(), |_| true, lobe).value[0], 0.0, "the twin");
+        assert_eq!(region.integrate(&Settings::default(), angles, lobe).value[0], 0.0, "the twin");
     }
 
     #[test]
     fn the_limit_on_evaluations_holds_and_shows_in_the_error() {
         let settings = Settings { relative_tolerance: 1e-12, max_evaluations: 20_000 };
         let jump = |w: DVec3| [if w.x + 0.3 * w.y > 0.123 { 1.0 } else { 0.0 }];
-        let estimate = Region::sphere().integrate(&settings, |_| true, jump);
+        let estimate = Region::sphere().integrate(&settings, angles, jump);
         assert!(estimate.evaluations <= 20_000 + 2 * POINTS);
         assert!(estimate.error[0] > 1e-9 && (estimate.value[0] - 2.0 * PI).abs() < 1.0, "{estimate:?}");
         // An integrand that is resolved nowhere ends as well
-        let estimate = Region::sphere().integrate(&settings, |_| false, |_| [1.0]);
+        let estimate = Region::sphere().integrate(&settings, |_| [f64::INFINITY; 3], |_| [1.0]);
         assert!((estimate.value[0] - 4.0 * PI).abs() < 1e-4);
     }
 
@@ -388,8 +411,7 @@ mod tests {
         for exponent in [-300, -20, 0, 20, 300] {
             let scale = 10_f64.powi(exponent);
             let octant = [DVec3::X, DVec3::Z, DVec3::Y].map(|v| v * scale);
-            let angle =
-                Region::polygon(&octant).integrate(&Settings::default(), |_| true, |_| [1.0]).value[0];
+            let angle = Region::polygon(&octant).integrate(&Settings::default(), angles, |_| [1.0]).value[0];
             assert!((angle - PI / 2.0).abs() < 1e-8, "1e{exponent}: {angle}");
         }
         let bad = [DVec3::X, DVec3::NAN, DVec3::Y];

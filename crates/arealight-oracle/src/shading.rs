@@ -1,7 +1,7 @@
 //! A polygon light on a surface: the truth by cubature of the true BRDF, and the answer of the fitted table
 //! in float64, the twin of the GLSL.
 
-use crate::cubature::{Estimate, Region, Settings, distance_to_origin};
+use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
 use crate::polygon::{emitted, form_factor, transformed_form_factor};
@@ -61,27 +61,31 @@ pub fn truth(
         Region::default()
     };
     let (view, lobe) = (frame.view(), Ggx { alpha: surface.alpha });
-    // Integrate each lobe's weight of the light: cos / pi, f cos, and f cos (1 - cos theta_vh)^5
+    // Integrate each lobe over the light
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
-        Estimate { value: [0.0], error: [0.0], evaluations: 0 }
+        Estimate::default()
     } else {
-        region.integrate(settings, |_| true, |direction| [direction.z.max(0.0) / PI])
+        region.integrate(settings, angles, |direction| [direction.z.max(0.0) / PI])
     };
-    let grazing = DVec3::splat(surface.f90) - surface.f0;
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
-        Estimate { value: [0.0; 2], error: [0.0; 2], evaluations: 0 }
+        Estimate::default()
     } else {
-        lobe_integrals(lobe, view, &region, settings)
+        let grazing = DVec3::splat(surface.f90) - surface.f0;
+        integrate_lobe(lobe, view, &region, settings, |direction, value| {
+            let fresnel = surface.f0 + grazing * Ggx::schlick_weight(view, direction);
+            (fresnel * value).to_array()
+        })
     };
-    // Combine them, with the light's side
-    let sum = |d: f64, g: [f64; 2]| {
-        let lobes = surface.diffuse_albedo * d + surface.f0 * g[0] + grazing * g[1];
-        light.radiance * lobes
+    // Add them; a two-sided light seen from behind has a negative solid angle
+    let sum = |diffuse: [f64; 1], glossy: [f64; 3]| {
+        (surface.diffuse_albedo * diffuse[0] + DVec3::from_array(glossy)) * light.radiance
     };
-    let signed = sum(diffuse.value[0], glossy.value);
-    let error = sum(diffuse.error[0], glossy.error).abs();
-    let radiance = if light.two_sided { signed.abs() } else { signed.max(DVec3::ZERO) };
-    Truth { radiance, error, evaluations: diffuse.evaluations + glossy.evaluations }
+    let signed = sum(diffuse.value, glossy.value);
+    Truth {
+        radiance: if light.two_sided { signed.abs() } else { signed.max(DVec3::ZERO) },
+        error: sum(diffuse.error, glossy.error),
+        evaluations: diffuse.evaluations + glossy.evaluations,
+    }
 }
 
 /// Whether the front of a polygon is on the origin's side of its plane.
@@ -98,26 +102,48 @@ fn faces_origin(vertices: &[DVec3]) -> bool {
 /// `view` is a unit vector in the surface frame. The lobe is found however narrow it is, down to
 /// [`arealight::MIN_ALPHA`].
 pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settings) -> Estimate<2> {
-    let resolved = |triangle: &[DVec3; 3]| lobe_is_resolved(lobe, view, triangle);
-    region.integrate(settings, resolved, |direction| {
-        let value = lobe.evaluate(view, direction);
+    integrate_lobe(lobe, view, region, settings, |direction, value| {
         [value, value * Ggx::schlick_weight(view, direction)]
     })
 }
 
-/// Whether a triangle is so small that the GGX lobe varies slowly over it: its image under the half vector
-/// must not be larger than the scale on which D varies there, `alpha + sin theta_h`.
-fn lobe_is_resolved(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> bool {
-    // Project the half vectors onto the surface: D is a function of their distance from the normal
-    let halves = triangle.map(|p| (view + p.normalize_or_zero()).normalize_or_zero().with_z(0.0));
-    let [a, b, c] = halves;
-    let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
-    // Near grazing the lobe narrows to a fan: the error estimate sees to what is finer than this
-    let finest = 1e-2 * lobe.alpha * lobe.alpha;
-    let [p, q, r] = triangle.map(DVec3::normalize_or_zero);
-    let angle = p.distance(q).max(q.distance(r)).max(r.distance(p));
-    angle < 0.5 && (size <= lobe.alpha + distance_to_origin(&halves) || angle < finest)
+/// Integrates what `weigh` makes of a direction and of `f cos` there.
+fn integrate_lobe<const N: usize>(
+    lobe: Ggx,
+    view: DVec3,
+    region: &Region,
+    settings: &Settings,
+    weigh: impl Fn(DVec3, f64) -> [f64; N],
+) -> Estimate<N> {
+    let lengths = |triangle: &[DVec3; 3]| lengths_on_lobe(lobe, view, triangle);
+    // At grazing angles the lobe is a narrow ridge along the plane of incidence
+    region
+        .cut(DVec3::Y)
+        .integrate(settings, lengths, |direction| weigh(direction, lobe.evaluate(view, direction)))
 }
+
+/// The edges of a triangle in units of the scale on which the GGX lobe varies: that of D over the half
+/// vectors, `alpha + sin theta_h`; that of masking over the light's height, which goes from none to full
+/// within the smaller of alpha and `cos theta_view`; and half a radian.
+fn lengths_on_lobe(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
+    let directions = triangle.map(DVec3::normalize_or_zero);
+    // Project the half vectors onto the surface: D is a function of their distance from the normal
+    let halves = directions.map(|light| (view + light).normalize_or_zero().with_z(0.0));
+    let half_scale = lobe.alpha + distance_to_origin(&halves);
+    let lowest = directions[0].z.min(directions[1].z).min(directions[2].z).max(0.0);
+    let height_scale = lowest + view.z.min(lobe.alpha) + FINEST_HEIGHT;
+    let (steps, angles) = (edges(&halves), edges(&directions));
+    let finest = 1e-2 * lobe.alpha * lobe.alpha;
+    std::array::from_fn(|i| {
+        // Near grazing the lobe narrows to a fan: the error estimate sees to what is finer than this
+        let step = if angles[i] > finest { steps[i] / half_scale } else { 0.0 };
+        let rise = (directions[i].z - directions[(i + 1) % 3].z).abs() / height_scale;
+        step.max(rise).max(2.0 * angles[i])
+    })
+}
+
+/// Masking that changes over less height than this is left to the error estimate: its share is as small.
+const FINEST_HEIGHT: f64 = 1e-6;
 
 /// Outgoing radiance by the fitted table (Heitz et al. 2016), with Lambert's lobe exact: the float64 twin of
 /// `arealight_polygon_radiance`.

@@ -1,5 +1,6 @@
 //! What the tests draw their inputs from.
 
+use arealight_oracle::cubature::angles;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -92,11 +93,10 @@ pub fn square_points(count: usize) -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// Whether a triangle spans less than 0.3 as seen through a matrix: a lobe that is wide on the far side of the
-/// matrix is then resolved on this one.
-pub fn is_small_through(matrix: &DMat3, triangle: &[DVec3; 3]) -> bool {
-    let [a, b, c] = triangle.map(|p| (*matrix * p).normalize_or_zero());
-    a.distance(b).max(b.distance(c)).max(c.distance(a)) < 0.3
+/// The edges of a triangle as seen through a matrix, in units of 0.3: resolves a lobe that is wide on the far
+/// side of the matrix.
+pub fn lengths_through(matrix: &DMat3, triangle: &[DVec3; 3]) -> [f64; 3] {
+    angles(&triangle.map(|p| *matrix * p)).map(|angle| angle / 0.3)
 }
 
 /// A unit view direction in the surface frame, at `theta` from the normal.

@@ -1,7 +1,7 @@
 //! The GGX lobe against integrals of it.
 
 use crate::common::{direction, square_points, view_angle, view_at};
-use arealight_oracle::cubature::{Region, Settings};
+use arealight_oracle::cubature::{Region, Settings, angles};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::shading::lobe_integrals;
 use glam::DVec3;
@@ -62,11 +62,8 @@ fn the_density_and_the_samples_agree_on_a_region() {
         let (view, lobe) = (view_at(theta), Ggx { alpha });
         let density = |region: &Region| {
             // The density varies as the lobe does
-            let fine = |t: &[DVec3; 3]| {
-                let [a, b, c] = t.map(DVec3::normalize_or_zero);
-                a.distance(b).max(b.distance(c)).max(c.distance(a)) < alpha
-            };
-            region.integrate(&Settings::default(), fine, |light| [lobe.density(view, light)]).value[0]
+            let lengths = |t: &[DVec3; 3]| angles(t).map(|angle| angle / alpha);
+            region.integrate(&Settings::default(), lengths, |light| [lobe.density(view, light)]).value[0]
         };
         let count = 1 << 15;
         let share = |inside: &dyn Fn(DVec3) -> bool| {

@@ -1,6 +1,6 @@
 //! The six properties of linearly transformed spherical distributions (Heitz et al. 2016, section 3.1).
 
-use crate::common::{direction, is_small_through, matrix, rotation, square_points, star};
+use crate::common::{direction, lengths_through, matrix, rotation, square_points, star};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use glam::{DMat3, DVec3};
@@ -21,9 +21,9 @@ fn distribution(original: Original, matrix: DMat3) -> TransformedDistribution {
 /// original it may have a jump or a kink: cut there, it is smooth on both sides.
 fn integral(region: &Region, inverse: &DMat3, density: impl Fn(DVec3) -> f64) -> f64 {
     let side = |normal: DVec3| {
-        let resolved = |triangle: &[DVec3; 3]| is_small_through(inverse, triangle);
+        let lengths = |triangle: &[DVec3; 3]| lengths_through(inverse, triangle);
         let region = region.clipped(normal);
-        region.integrate(&Settings::default(), resolved, |direction| [density(direction)]).value[0]
+        region.integrate(&Settings::default(), lengths, |direction| [density(direction)]).value[0]
     };
     side(inverse.row(2)) + side(-inverse.row(2))
 }

@@ -1,7 +1,7 @@
 //! Properties of the closed form, and the closed form against cubature and against other closed forms.
 
-use crate::common::{Star, box_around, is_small_through, matrix, star};
-use arealight_oracle::cubature::{Region, Settings};
+use crate::common::{Star, box_around, lengths_through, matrix, star};
+use arealight_oracle::cubature::{Region, Settings, angles};
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use arealight_oracle::polygon::{emitted, form_factor, transformed_form_factor};
 use glam::{DMat3, DVec3};
@@ -119,11 +119,11 @@ proptest! {
         prop_assume!(star.relative_distance() > 1e-3);
         let settings = Settings { relative_tolerance: 1e-8, ..Settings::default() };
         let region = Region::polygon(&star.vertices).clipped(DVec3::Z);
-        let integral = region.integrate(&settings, |_| true, |w| [w.z / PI]).value[0];
+        let integral = region.integrate(&settings, angles, |w| [w.z / PI]).value[0];
         let closed = form_factor(&star.vertices);
         prop_assert!((integral - closed).abs() < 1e-9, "{integral} and {closed}");
         // the twin: without the horizon they differ, if the polygon reaches below it
-        let unclipped = Region::polygon(&star.vertices).integrate(&settings, |_| true, |w| [w.z / PI]).value[0];
+        let unclipped = Region::polygon(&star.vertices).integrate(&settings, angles, |w| [w.z / PI]).value[0];
         let below = star.vertices.iter().any(|v| v.z < -0.1);
         prop_assert!(!below || (unclipped - closed).abs() > 1e-8, "{unclipped} and {closed}");
     }
@@ -134,7 +134,7 @@ proptest! {
         let lobe = TransformedDistribution::from_inverse(Original::ClampedCosine, matrix).unwrap();
         // Cut at the horizon of cosine space, where the transformed cosine has a kink
         let region = Region::polygon(&star.vertices).clipped(matrix.row(2));
-        let integral = region.integrate(&Settings::default(), |t| is_small_through(&matrix, t), |w| [lobe.evaluate(w)]).value[0];
+        let integral = region.integrate(&Settings::default(), |t| lengths_through(&matrix, t), |w| [lobe.evaluate(w)]).value[0];
         let closed = transformed_form_factor(&matrix, &star.vertices);
         prop_assert!((integral - closed).abs() < 1e-7, "{integral} and {closed}");
     }
@@ -146,7 +146,7 @@ proptest! {
         let lobe = TransformedDistribution::from_inverse(Original::ClampedCosine, matrix).unwrap();
         let region = Region::polygon(&far).clipped(matrix.row(2));
         let settings = Settings { relative_tolerance: 1e-12, max_evaluations: 100_000 };
-        let integral = region.integrate(&settings, |_| true, |w| [lobe.evaluate(w)]).value[0];
+        let integral = region.integrate(&settings, angles, |w| [lobe.evaluate(w)]).value[0];
         let closed = transformed_form_factor(&matrix, &far) * matrix.determinant().signum();
         let mirrored = integral * matrix.determinant().signum();
         // 1e-12 of what a disk of the extent would send, which the transform enlarges at most sixfold

@@ -1,6 +1,6 @@
 //! The truth against sampling and closed forms, and the table's answer against cubature of its own lobe.
 
-use crate::common::{box_around, direction, is_small_through, square_points, star, view_angle, view_at};
+use crate::common::{box_around, direction, lengths_through, square_points, star, view_angle, view_at};
 use arealight::{LightTable, MIN_ALPHA, Surface, TableDescription};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::frame::SurfaceFrame;
@@ -115,8 +115,8 @@ proptest! {
         let lobe = TransformedDistribution::from_inverse(Original::ClampedCosine, sample.inverse).unwrap();
         let vertices: Vec<DVec3> = star.vertices.iter().map(|v| frame.to_surface(*v)).collect();
         let region = Region::polygon(&vertices).clipped(sample.inverse.row(2));
-        let resolved = |t: &[DVec3; 3]| is_small_through(&sample.inverse, t);
-        let share = region.integrate(&Settings::default(), resolved, |w| [lobe.evaluate(w)]).value[0].abs();
+        let lengths = |t: &[DVec3; 3]| lengths_through(&sample.inverse, t);
+        let share = region.integrate(&Settings::default(), lengths, |w| [lobe.evaluate(w)]).value[0].abs();
         let expected = (f0 * sample.albedo + (1.0 - f0) * sample.schlick) * share;
         prop_assert!((answer.x - expected).abs() < 1e-7, "{} and {expected}", answer.x);
     }
