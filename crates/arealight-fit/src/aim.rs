@@ -19,7 +19,7 @@ pub struct Aim {
 impl Default for Aim {
     /// Metals and common dielectrics.
     fn default() -> Self {
-        Self { reflectances: vec![(0.04, 4.2), (1.0, 1.0)] }
+        Self { reflectances: vec![(0.04, 4.3), (1.0, 1.0)] }
     }
 }
 

@@ -1,4 +1,25 @@
-//! Fits linearly transformed cosines to a BRDF, and makes a [`arealight::LightTable`].
+//! Fits linearly transformed cosines to a BRDF, and makes a [`arealight::LightTable`] of them.
+//!
+//! # How a texel is fitted
+//! A lobe has four degrees of freedom, the entries of a matrix texel (see [`arealight::table`]); its magnitude
+//! is the BRDF's true albedo ([`Brdf::magnitude`]).
+//! 1. *Nodes*: directions drawn half from the BRDF and half from a guess at the lobe, with the balance
+//!    heuristic. The BRDF is evaluated once at each.
+//! 2. *Probes*: 256 quads on the sphere, from half a lobe's width to large lights. The loss is the sum over
+//!    them of the squared error of the lobe's integral, because that is what shading asks of a table. A node
+//!    counts in every probe that it lies in.
+//! 3. *Steps*: damped Gauss-Newton with exact derivatives, some ten a texel.
+//!
+//! Each texel starts from its neighbour, and is held to it, weakly, in what the probes do not determine. So
+//! the table is smooth and may be interpolated.
+//!
+//! # What is fitted
+//! One matrix serves every Fresnel reflectance here; [`Aim`] says which lobe it aims at. [`report`] measures a
+//! table at reflectances from 0.02 to 1, beside the table published with Heitz et al. 2016.
+//!
+//! # The same everywhere
+//! The table does not depend on the number of threads, and all random numbers are fixed. Between machines only
+//! the last bits of the system's sines, logarithms and powers can differ.
 
 mod aim;
 pub mod brdf;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// The generator `SplitMix64` (Steele, Lea, Flood 2014).
 pub struct Random(u64);
 
 impl Random {

@@ -84,7 +84,7 @@ impl Problem {
         best
     }
 
-    /// JᵀJ and Jᵀr of the residuals; entries that are not free get a unit diagonal and no slope.
+    /// `JᵀJ` and `Jᵀr` of the residuals; entries that are not free get a unit diagonal and no slope.
     fn normal_equations(&self, lobe: &Lobe, free: [bool; 4]) -> ([[f64; 4]; 4], [f64; 4]) {
         // Evaluate the density and its derivatives at the nodes
         let mut densities = Vec::with_capacity(self.nodes.len());
@@ -133,13 +133,9 @@ fn damped_step(normal: &[[f64; 4]; 4], slope: &[f64; 4], damping: f64) -> Option
     let mut lower = [[0.0; 4]; 4];
     for i in 0..4 {
         for j in 0..=i {
-            let mut value = normal[i][j] * scale[i] * scale[j];
-            if i == j {
-                value += damping;
-            }
-            for k in 0..j {
-                value -= lower[i][k] * lower[j][k];
-            }
+            let damped = if i == j { damping } else { 0.0 };
+            let known: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
+            let value = normal[i][j] * scale[i] * scale[j] + damped - known;
             lower[i][j] = if i == j {
                 if value.is_nan() || value <= 1e-14 {
                     return None;

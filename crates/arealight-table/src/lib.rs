@@ -43,7 +43,6 @@ static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
 ///
 /// # Panics
 /// Never: a test reads the embedded file.
-#[expect(clippy::missing_panics_doc, reason = "the doc says why there is none")]
 pub fn ggx() -> LightTable {
     read(GGX).expect("the embedded table is valid, as a test shows")
 }

@@ -94,7 +94,7 @@ fn attribute<'a>(headers: &'a [Header], name: &'static str) -> Result<&'a Attrib
 
 fn expect_text(name: &'static str, value: &AttributeValue, expected: &str) -> Result<(), ReadError> {
     match value {
-        AttributeValue::Text(text) if text.to_string() == expected => Ok(()),
+        AttributeValue::Text(text) if text.as_slice() == expected.as_bytes() => Ok(()),
         other => Err(unexpected(name, other, expected)),
     }
 }
@@ -135,12 +135,11 @@ fn check_layer(header: &Header, layer: &Layer, size: Option<usize>) -> Result<us
         return storage("tiles".into());
     }
     if !matches!(header.compression, Compression::Uncompressed | Compression::ZIP1 | Compression::ZIP16) {
-        return storage(format!("compression {}", header.compression));
+        return storage(header.compression.to_string());
     }
     let list = &header.channels.list;
     let is_expected = |channel: &exr::meta::attribute::ChannelDescription| {
-        let name = channel.name.to_string();
-        layer.channels.contains(&name.as_str())
+        layer.channels.iter().any(|&name| channel.name.as_slice() == name.as_bytes())
             && channel.sample_type == SampleType::F32
             && channel.sampling == Vec2(1, 1)
     };
@@ -163,20 +162,21 @@ struct Texels<const N: usize> {
     size: usize,
     /// For each channel in the file's order, its place in a texel.
     places: Vec<usize>,
-    texels: Vec<[f32; N]>,
+    values: Vec<[f32; N]>,
     /// Which scan lines have come.
     lines: Vec<bool>,
 }
 
 impl<const N: usize> Texels<N> {
     fn new(layer: &Layer, header: &Header, size: usize) -> Self {
-        let place = |name: &Text| layer.channels.iter().position(|c| *c == name.to_string()).unwrap_or(0);
+        let place =
+            |name: &Text| layer.channels.iter().position(|&c| name.as_slice() == c.as_bytes()).unwrap_or(0);
         let places = header.channels.list.iter().map(|channel| place(&channel.name)).collect();
         Self {
             layer: layer.name,
             size,
             places,
-            texels: vec![[0.0; N]; size * size],
+            values: vec![[0.0; N]; size * size],
             lines: vec![false; size],
         }
     }
@@ -192,7 +192,7 @@ impl<const N: usize> Texels<N> {
         }
         for (y, line) in (top..self.size).zip(block.data.chunks_exact(line_bytes)) {
             for (&place, samples) in self.places.iter().zip(line.chunks_exact(self.size * 4)) {
-                let texels = &mut self.texels[y * self.size..(y + 1) * self.size];
+                let texels = &mut self.values[y * self.size..(y + 1) * self.size];
                 for (texel, sample) in texels.iter_mut().zip(samples.chunks_exact(4)) {
                     texel[place] = f32::from_ne_bytes([sample[0], sample[1], sample[2], sample[3]]);
                 }
@@ -206,6 +206,6 @@ impl<const N: usize> Texels<N> {
         if found != self.size {
             return Err(ReadError::Incomplete { layer: self.layer, found, expected: self.size });
         }
-        Ok(self.texels)
+        Ok(self.values)
     }
 }

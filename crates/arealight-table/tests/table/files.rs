@@ -1,0 +1,71 @@
+//! Tables to files and back.
+
+use arealight::{LightTable, TableDescription};
+use arealight_table::{FileError, ReadError, load, read, save, write};
+use exr::prelude::Compression;
+
+use crate::draft::{Draft, table};
+
+#[test]
+fn a_table_comes_back_bit_for_bit() {
+    for size in [2, 3, 17, 64] {
+        let table = table(size);
+        assert_eq!(read(&write(&table)).unwrap(), table, "size {size}");
+    }
+}
+
+#[test]
+fn equal_tables_make_equal_files() {
+    // The attributes lie in hash maps of random order: a few tries would show it
+    let table = table(4);
+    let first = write(&table);
+    assert!((0..20).all(|_| write(&table) == first));
+}
+
+#[test]
+fn a_different_table_makes_a_different_file() {
+    assert_ne!(write(&table(4)), write(&table(5)));
+}
+
+#[test]
+fn characters_that_exr_lacks_are_replaced() {
+    let description = TableDescription { brdf: "α".into(), made_by: String::new() };
+    let table = LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[1.0, 0.0]; 4]).unwrap();
+    assert_eq!(read(&write(&table)).unwrap().description().brdf, "?");
+}
+
+#[test]
+fn files_are_saved_and_loaded() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("table.exr");
+    save(&table(8), &path).unwrap();
+    assert_eq!(load(&path).unwrap(), table(8));
+    assert!(matches!(load(&folder.path().join("none.exr")), Err(FileError::File(_))));
+    std::fs::write(&path, "GIF89a").unwrap();
+    assert!(matches!(load(&path), Err(FileError::Read(ReadError::NotExr))));
+}
+
+#[test]
+fn a_file_larger_than_any_table_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("huge.exr");
+    // A sparse file: it takes no space
+    std::fs::File::create(&path).unwrap().set_len(1 << 40).unwrap();
+    assert!(matches!(load(&path), Err(FileError::TooLarge)));
+}
+
+#[test]
+fn an_uncompressed_file_reads_alike() {
+    let table = table(5);
+    let mut draft = Draft::of(&table);
+    draft.compression = Compression::Uncompressed;
+    assert_eq!(read(&draft.write()).unwrap(), table);
+}
+
+#[test]
+fn layers_may_come_in_any_order_and_with_attributes_of_their_own() {
+    let table = table(5);
+    let mut draft = Draft::of(&table);
+    draft.layers.reverse();
+    assert_eq!(read(&draft.write()).unwrap(), table);
+}

@@ -1,0 +1,7 @@
+//! Tables in files: those that are good, those that are not, and the one that is built in.
+
+mod built_in;
+mod draft;
+mod files;
+mod hostile;
+mod random_damage;
