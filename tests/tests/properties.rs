@@ -61,12 +61,13 @@ fn a_box_of_lights_around_the_point_sums_to_one() {
         }
     }
     let factors = form_factors(&engine, &points);
+    let table = arealight_table::ggx();
     let mut comparison = Comparison::new("box of lights");
     for (faces, points) in factors.chunks_exact(6).zip(points.chunks_exact(6)) {
         let expected = if points[0].surface.f90 == 0.0 {
             1.0
         } else {
-            arealight_table::ggx().lookup(points[0].surface.alpha.sqrt(), points[0].view.z).albedo
+            table.lookup(points[0].surface.alpha.sqrt(), points[0].view.z).albedo
         };
         comparison.add(faces.iter().sum(), expected, 6.0 * WALK, || format!("{:?}", points[0]));
     }

@@ -1,17 +1,20 @@
 //! The GPU against the float64 oracle: the same table, the same integral, in another precision.
 
-use arealight::{FormFactor, Quality};
+use arealight::{FormFactor, LightTable, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::shading::{RelativeLight, ltc};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use arealight_vk::TableFormat;
 use glam::DVec3;
+use std::sync::LazyLock;
 
 const COUNT: usize = 4000;
 
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
 fn expected(point: &EvalPoint) -> DVec3 {
     let light = RelativeLight::new(&point.light, point.position);
-    ltc(&arealight_table::ggx(), &point.surface, point.normal, point.view, &light)
+    ltc(&TABLE, &point.surface, point.normal, point.view, &light)
 }
 
 /// What float32 may lose of a form factor in the lobe of `alpha`. Vertices, frame and matrix are rounded about
