@@ -1,5 +1,8 @@
 //! The hierarchy of boxes around triangles that the visibility kernel walks, and a float64 twin of its walk.
 
+use ::bvh::aabb::{Aabb, Bounded};
+use ::bvh::bounding_hierarchy::BHShape;
+use ::bvh::bvh::{Bvh as Tree, BvhNode as TreeNode};
 use arealight::gpu::{GpuBvhNode, GpuMaterial, GpuTriangle};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -26,20 +29,27 @@ pub struct Bvh {
 pub type Box3 = [Vec3; 2];
 
 impl Bvh {
-    /// Builds a hierarchy from the top: each node is split where the surface area heuristic is least, among
-    /// a few places along each axis (Wald 2007). Where that would become too deep, because boxes grow
-    /// exponentially or are all the same, nodes are halved: time is `n log n` whatever the boxes are.
+    /// Builds a hierarchy from the top by the crate `bvh`: each node is split where the surface area heuristic
+    /// is least, among a few places (Wald 2007). Where that becomes too deep, because boxes grow
+    /// exponentially, nodes are halved.
     pub fn build(boxes: &[Box3]) -> Self {
         Self::no_deeper_than(MAX_DEPTH, boxes)
     }
 
     fn no_deeper_than(limit: u32, boxes: &[Box3]) -> Self {
-        let order = (0..boxes.len() as u32).collect();
-        let mut builder = Builder { limit, boxes, order, nodes: Vec::new() };
+        let mut shapes: Vec<Shape> = boxes.iter().map(|bounds| Shape { bounds: *bounds, node: 0 }).collect();
+        let tree = Tree::build(&mut shapes);
+        // The tree's nodes are in the order of a walk: the boxes under each are neighbours
+        let order = tree.nodes.iter().filter_map(|node| match node {
+            TreeNode::Leaf { shape_index, .. } => Some(*shape_index as u32),
+            TreeNode::Node { .. } => None,
+        });
+        let order = order.collect();
+        let mut flattener = Flattener { limit, boxes, tree, order, nodes: Vec::new() };
         if !boxes.is_empty() {
-            builder.build();
+            flattener.flatten();
         }
-        Self::measured(builder.nodes, builder.order)
+        Self::measured(flattener.nodes, flattener.order)
     }
 
     fn measured(nodes: Vec<GpuBvhNode>, order: Vec<u32>) -> Self {
@@ -56,16 +66,38 @@ impl Bvh {
     }
 }
 
-/// Places along an axis where a node may be split, and one.
-const BINS: usize = 16;
+/// A box as the crate `bvh` wants it.
+struct Shape {
+    bounds: Box3,
+    node: usize,
+}
 
-/// What a step down costs, in intersections of a triangle.
-const STEP_COST: f64 = 1.0;
+impl Bounded<f64, 3> for Shape {
+    /// In float64, where the squared size of no box overflows. The crate panics on infinity and NaN: zero
+    /// stands for them.
+    fn aabb(&self) -> Aabb<f64, 3> {
+        let finite = |x: f32| if x.is_finite() { f64::from(x) } else { 0.0 };
+        let [min, max] = self.bounds.map(|corner| corner.to_array().map(finite).into());
+        Aabb::with_bounds(min, max)
+    }
+}
 
-struct Builder<'a> {
+impl BHShape<f64, 3> for Shape {
+    fn set_bh_node_index(&mut self, index: usize) {
+        self.node = index;
+    }
+
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+/// Writes a tree as the kernel's nodes, of limited depth.
+struct Flattener<'a> {
     /// The greatest depth.
     limit: u32,
     boxes: &'a [Box3],
+    tree: Tree<f64, 3>,
     order: Vec<u32>,
     nodes: Vec<GpuBvhNode>,
 }
@@ -75,92 +107,50 @@ struct Task {
     node: usize,
     range: Range<usize>,
     depth: u32,
+    /// The tree's node with the same boxes; none where the tree is not followed.
+    branch: Option<usize>,
 }
 
-impl Builder<'_> {
-    fn build(&mut self) {
+impl Flattener<'_> {
+    fn flatten(&mut self) {
         let empty = GpuBvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 };
         self.nodes.push(empty);
-        let mut tasks = vec![Task { node: 0, range: 0..self.order.len(), depth: 1 }];
-        while let Some(Task { node, range, depth }) = tasks.pop() {
+        let mut tasks = vec![Task { node: 0, range: 0..self.order.len(), depth: 1, branch: Some(0) }];
+        while let Some(Task { node, range, depth, branch }) = tasks.pop() {
+            // Bound the range
             let [min, max] = self.bounds(&range);
             self.nodes[node] = GpuBvhNode { min: min.to_array(), max: max.to_array(), ..empty };
-            let Some(middle) = self.split(&range, [min, max], depth) else {
+            if range.len() <= MAX_LEAF {
                 self.nodes[node].first = range.start as u32;
                 self.nodes[node].count = range.len() as u32;
                 continue;
-            };
+            }
+            // Split it as the tree does, or halve it
+            let followed = branch.and_then(|branch| self.follow(branch, &range, depth));
+            let (middle, [left, right]) = followed.unwrap_or_else(|| {
+                let axis = (max - min).max_position();
+                (self.halve(&range, axis), [None; 2])
+            });
             let first = self.nodes.len();
             self.nodes[node].first = first as u32;
             self.nodes.extend([empty; 2]);
-            tasks.push(Task { node: first, range: range.start..middle, depth: depth + 1 });
-            tasks.push(Task { node: first + 1, range: middle..range.end, depth: depth + 1 });
+            let (depth, before, after) = (depth + 1, range.start..middle, middle..range.end);
+            tasks.push(Task { node: first, range: before, depth, branch: left });
+            tasks.push(Task { node: first + 1, range: after, depth, branch: right });
         }
     }
 
-    /// Orders a range in two parts and gives where the second begins; none for a leaf.
-    fn split(&mut self, range: &Range<usize>, bounds: Box3, depth: u32) -> Option<usize> {
-        if range.len() == 1 || depth >= self.limit {
+    /// Where the tree splits a range, and the branches of the parts. None if the larger part could not be
+    /// halved down to leaves in the depth that is left.
+    fn follow(&self, branch: usize, range: &Range<usize>, depth: u32) -> Option<(usize, [Option<usize>; 2])> {
+        let TreeNode::Node { child_l_index: left, child_r_index: right, .. } = self.tree.nodes[branch] else {
             return None;
-        }
-        let centers = self.order[range.clone()].iter().map(|i| self.center(*i));
-        let [low, high] =
-            centers.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |[low, high], c| [low.min(c), high.max(c)]);
-        // Take the cheapest split, if it is cheaper than a leaf or a leaf would be too large
-        let best = (0..3)
-            .filter_map(|axis| self.cheapest(range, axis, low[axis], high[axis]))
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let leaf_cost = range.len() as f64 * half_area(bounds);
-        let small = range.len() <= MAX_LEAF;
-        let Some((_, axis, bin)) =
-            best.filter(|(cost, ..)| !small || cost + STEP_COST * half_area(bounds) < leaf_cost)
-        else {
-            return if small { None } else { Some(self.halve(range, (high - low).max_position())) };
         };
-        let mut middle = range.start;
-        for i in range.clone() {
-            if bin_of(self.center(self.order[i])[axis], low[axis], high[axis]) <= bin {
-                self.order.swap(i, middle);
-                middle += 1;
-            }
-        }
-        // Halve instead if the larger part could not be halved down to leaves in the depth that is left
+        // The left branch lies before the right one and has a node less than two for each box
+        let middle = range.start + (right - left).div_ceil(2);
         let larger = (middle - range.start).max(range.end - middle);
         let fits = larger.div_ceil(MAX_LEAF).next_power_of_two().ilog2() < self.limit - depth;
-        Some(if fits { middle } else { self.halve(range, axis) })
-    }
-
-    /// The least cost of a split along an axis, with the axis and the last bin of the first part.
-    fn cheapest(
-        &self,
-        range: &Range<usize>,
-        axis: usize,
-        low: f32,
-        high: f32,
-    ) -> Option<(f64, usize, usize)> {
-        if low >= high {
-            return None;
-        }
-        let empty = ([Vec3::INFINITY, Vec3::NEG_INFINITY], 0_usize);
-        let join = |(a, n): (Box3, usize), (b, m): (Box3, usize)| ([a[0].min(b[0]), a[1].max(b[1])], n + m);
-        let mut bins = [empty; BINS];
-        for &i in &self.order[range.clone()] {
-            let bin = &mut bins[bin_of(self.center(i)[axis], low, high)];
-            *bin = join(*bin, (self.boxes[i as usize], 1));
-        }
-        // Sum from the end, then compare each place from the start
-        let mut after = [empty; BINS];
-        for bin in (0..BINS - 1).rev() {
-            after[bin] = join(after[bin + 1], bins[bin + 1]);
-        }
-        let cost = |(bounds, count): (Box3, usize)| count as f64 * half_area(bounds);
-        let mut before = empty;
-        let costs = (0..BINS - 1).filter_map(|bin| {
-            before = join(before, bins[bin]);
-            let both = before.1 > 0 && after[bin].1 > 0;
-            both.then(|| (cost(before) + cost(after[bin]), axis, bin))
-        });
-        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+        fits.then_some((middle, [Some(left), Some(right)]))
     }
 
     /// Orders a range so that its first half has the smaller centers along an axis.
@@ -171,26 +161,10 @@ impl Builder<'_> {
         range.start + middle
     }
 
-    fn center(&self, index: u32) -> Vec3 {
-        let [min, max] = self.boxes[index as usize];
-        (min + max) * 0.5
-    }
-
     fn bounds(&self, range: &Range<usize>) -> Box3 {
         let boxes = self.order[range.clone()].iter().map(|i| self.boxes[*i as usize]);
         boxes.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], |a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
-}
-
-/// The bin of a center between `low` and `high`.
-fn bin_of(center: f32, low: f32, high: f32) -> usize {
-    (((center - low) / (high - low) * BINS as f32) as usize).min(BINS - 1)
-}
-
-/// Half the surface of a box.
-fn half_area([min, max]: Box3) -> f64 {
-    let size = (max - min).as_dvec3();
-    size.x * size.y + size.y * size.z + size.z * size.x
 }
 
 /// Where a ray meets a triangle.
@@ -332,6 +306,16 @@ mod tests {
         check(&Bvh::build(&points), &points);
         let huge = vec![[Vec3::splat(-1e16), Vec3::splat(1e16)], [Vec3::ZERO; 2], [Vec3::X, Vec3::X * 1e15]];
         check(&Bvh::build(&huge), &huge);
+    }
+
+    #[test]
+    fn coordinates_that_are_not_numbers_do_not_panic() {
+        let odd = [0.0, 1.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN];
+        let corner = |i: usize| Vec3::new(odd[i % 7], odd[i / 7 % 7], odd[i / 49]);
+        let boxes: Vec<Box3> = (0..343).map(|i| [corner(i), corner((i * 5 + 3) % 343)]).collect();
+        let mut order = Bvh::build(&boxes).order;
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..343));
     }
 
     #[test]
