@@ -85,7 +85,7 @@ impl Brdf for GgxBrdf {
         let lobe = Ggx { alpha };
         let view = view_direction(cos_view);
         let mut sum = Magnitude { albedo: 0.0, schlick: 0.0 };
-        let radial: Vec<_> = crowded_at_zero::<RADIAL>(cos_view).collect();
+        let radial: Vec<_> = crowded_at_zero::<RADIAL>(cos_view.min(alpha)).collect();
         for (phi, weight_phi) in azimuths(cos_view) {
             let (sin_phi, cos_phi) = phi.sin_cos();
             // Bound the polar angle by the horizon; tan theta = alpha tan psi spreads D evenly

@@ -16,7 +16,32 @@ pub enum FitError {
         /// The values allowed.
         range: &'static str,
     },
-    /// The fitted texels make no table: the BRDF yields no lobe there.
-    #[error("the BRDF has no lobe at a node: {0}")]
+    /// The BRDF reflects nothing, or its albedo is no number.
+    #[error(
+        "the BRDF's albedo at alpha {alpha}, cos_view {cos_view} is {albedo}, of it by Schlick's weight \
+             {schlick}; both must be above 0"
+    )]
+    NoLobe {
+        /// The alpha of the node.
+        alpha: f64,
+        /// The cosine of its view angle.
+        cos_view: f64,
+        /// The albedo found.
+        albedo: f64,
+        /// The Schlick part found.
+        schlick: f64,
+    },
+    /// No direction has a usable value: densities or values are negative or not finite.
+    #[error(
+        "the BRDF at alpha {alpha}, cos_view {cos_view} has no usable value: each is negative or not finite"
+    )]
+    NoNodes {
+        /// The alpha of the node.
+        alpha: f64,
+        /// The cosine of its view angle.
+        cos_view: f64,
+    },
+    /// The fitted texels make no table.
+    #[error("the fitted table is not valid: {0}")]
     Table(#[from] TableError),
 }

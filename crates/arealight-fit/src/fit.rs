@@ -54,9 +54,11 @@ pub fn fit(
             let (alpha, cos_view) = node_of(settings.size, i);
             let magnitude = brdf.magnitude(alpha, cos_view);
             report();
-            magnitude
+            let Magnitude { albedo, schlick } = magnitude;
+            let is_lobe = albedo.is_finite() && albedo > 0.0 && schlick.is_finite() && schlick > 0.0;
+            is_lobe.then_some(magnitude).ok_or(FitError::NoLobe { alpha, cos_view, albedo, schlick })
         })
-        .collect();
+        .collect::<Result<_, _>>()?;
     let texel = |i: usize| {
         let (alpha, cos_view) = node_of(settings.size, i);
         Texel { brdf, alpha, cos_view, magnitude: magnitude[i] }
@@ -72,14 +74,14 @@ pub fn fit(
                 .map(|y| {
                     let texel = texel(y * size + x);
                     let guess = lobe.narrowed(cos_before, texel.cos_view);
-                    lobe = texel.fit(&settings.aim, guess, lobe);
+                    lobe = texel.fit(&settings.aim, guess, lobe)?;
                     cos_before = texel.cos_view;
                     report();
-                    lobe
+                    Ok(lobe)
                 })
                 .collect()
         })
-        .collect();
+        .collect::<Result<_, FitError>>()?;
     let lobes: Vec<Lobe> = (0..size * size).map(|i| columns[i % size][i / size]).collect();
 
     into_table(brdf, settings, &lobes, &magnitude)
@@ -87,13 +89,13 @@ pub fn fit(
 
 impl Texel<'_> {
     /// Fits from the better of two lobes, on nodes laid out by the first.
-    fn fit(&self, aim: &Aim, guess: Lobe, before: Lobe) -> Lobe {
-        let problem = Problem::new(aim, self, &guess);
+    fn fit(&self, aim: &Aim, guess: Lobe, before: Lobe) -> Result<Lobe, FitError> {
+        let problem = Problem::new(aim, self, &guess)?;
         let start = if problem.loss(&before) < problem.loss(&guess) { before } else { guess };
         // Seen from the normal, the lobe of an isotropic BRDF is round: there the tangent frame is arbitrary
         // and must not show
         let free = if self.cos_view == 1.0 { [false, false, false, true] } else { [true; 4] };
-        problem.minimise(start, free)
+        Ok(problem.minimise(start, free))
     }
 }
 

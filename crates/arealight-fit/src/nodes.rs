@@ -38,7 +38,7 @@ pub struct Texel<'a> {
 impl Texel<'_> {
     /// Lays nodes over the sphere: half of them drawn from the BRDF, half from `guess`, weighted by the balance
     /// heuristic, so that both a peak that the guess misses and energy that the guess puts where the BRDF
-    /// has none are seen.
+    /// has none are seen. Directions of no usable value are left out.
     pub fn nodes(&self, guess: &Lobe) -> Vec<Node> {
         let view = view_direction(self.cos_view);
         let to_surface = mirror_frame(self.cos_view);
@@ -63,7 +63,7 @@ impl Texel<'_> {
                     let density = self.brdf.density(self.alpha, view, light) + guess.density(direction);
                     let value = self.brdf.evaluate(self.alpha, view, light);
                     let weight = crowding / density;
-                    if weight.is_finite() {
+                    if weight.is_finite() && weight > 0.0 && value.is_finite() && value >= 0.0 {
                         let schlick = value * self.brdf.schlick_weight(view, light);
                         nodes.push(Node { direction, weight, value, schlick });
                     }

@@ -8,6 +8,7 @@ use arealight::table::mirror_frame;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
+use crate::lobe::Lobe;
 use crate::nodes::Node;
 use crate::random::Random;
 
@@ -22,12 +23,16 @@ struct Probe([DVec3; 4]);
 
 /// Lays out the probes of a texel and returns, for each, its part of every node's weight, sr: a matrix of as
 /// many columns as nodes.
-pub fn probe_rows(alpha: f64, cos_view: f64, nodes: &[Node]) -> Vec<f32> {
-    let to_mirror = mirror_frame(cos_view).transpose();
+pub fn probe_rows(guess: &Lobe, cos_view: f64, nodes: &[Node]) -> Vec<f32> {
+    let layout = Layout {
+        alpha: guess.alpha,
+        to_mirror: mirror_frame(cos_view).transpose(),
+        normals_from_lobe: guess.inverse().transpose(),
+    };
     let mut random = Random::new(SEED);
     let mut rows = Vec::with_capacity(COUNT * nodes.len());
     for i in 0..COUNT {
-        let probe = Probe::draw(&mut random, i, alpha, &to_mirror);
+        let probe = layout.probe(&mut random, i);
         rows.extend(nodes.iter().map(|node| {
             let is_inside = probe.0.iter().all(|plane| plane.dot(node.direction) >= 0.0);
             if is_inside { node.weight as f32 } else { 0.0 }
@@ -36,22 +41,42 @@ pub fn probe_rows(alpha: f64, cos_view: f64, nodes: &[Node]) -> Vec<f32> {
     rows
 }
 
-impl Probe {
-    /// Half of the probes lie about the mirror direction, a quarter anywhere above the surface, a quarter
-    /// across its horizon on the far side; from half a lobe's width to large lights.
-    fn draw(random: &mut Random, i: usize, alpha: f64, to_mirror: &DMat3) -> Self {
-        let smallest = 0.5 * alpha.min(0.2);
+/// What probes are laid out by.
+struct Layout {
+    alpha: f64,
+    /// From the surface frame to the mirror frame.
+    to_mirror: DMat3,
+    /// Takes the normals of planes from the guess's cosine space to the mirror frame.
+    normals_from_lobe: DMat3,
+}
+
+impl Layout {
+    /// Of eight probes three lie about the mirror direction, two anywhere above the surface and two across its
+    /// horizon on the far side, from half a lobe's width to large lights. One is laid out in the guess's
+    /// cosine space, because lobes are much narrower across the plane of incidence than alpha at grazing views.
+    fn probe(&self, random: &mut Random, i: usize) -> Probe {
+        let is_in_lobe = i % 8 == 2;
+        let smallest = if is_in_lobe { 0.1 } else { 0.5 * self.alpha.min(0.2) };
         let half_width = random.between(smallest.ln(), 1.5_f64.ln()).exp();
         let half_height = half_width * random.between(0.3, 1.0);
         let (direction, share, turn) = (random.direction(), random.unit(), TAU * random.unit());
         let centre = match i % 4 {
-            0 | 2 => DVec3::Z + direction * (2.0 * alpha.min(0.5) + 0.7 * half_width) * share,
-            1 => *to_mirror * direction.with_z(direction.z.abs()),
+            _ if is_in_lobe => DVec3::Z + direction * share,
+            0 | 2 => DVec3::Z + direction * (2.0 * self.alpha.min(0.5) + 0.7 * half_width) * share,
+            1 => self.to_mirror * direction.with_z(direction.z.abs()),
             _ => {
                 let phi = PI * (0.5 + share);
-                *to_mirror * DVec3::new(phi.cos(), phi.sin(), 0.5 * half_width * direction.z)
+                self.to_mirror * DVec3::new(phi.cos(), phi.sin(), 0.5 * half_width * direction.z)
             }
         };
+        let probe = Probe::about(centre, half_width, half_height, turn);
+        if is_in_lobe { Probe(probe.0.map(|plane| self.normals_from_lobe * plane)) } else { probe }
+    }
+}
+
+impl Probe {
+    /// A rectangle at distance 1 in the direction of `centre`, turned about it.
+    fn about(centre: DVec3, half_width: f64, half_height: f64, turn: f64) -> Self {
         let centre = centre.normalize_or(DVec3::Z);
         // Lay the corners around the centre
         let (first, second) = centre.any_orthonormal_pair();

@@ -1,6 +1,7 @@
 //! The fit of one texel: nonlinear least squares on the integrals over probes.
 
 use crate::aim::Aim;
+use crate::error::FitError;
 use crate::lobe::Lobe;
 use crate::nodes::{Node, Texel};
 use crate::probes::probe_rows;
@@ -30,9 +31,15 @@ pub struct Problem {
 
 impl Problem {
     /// Prepares the problem of a texel, on nodes laid out for a lobe like `guess`.
-    pub fn new(aim: &Aim, texel: &Texel, guess: &Lobe) -> Self {
+    ///
+    /// # Errors
+    /// [`FitError::NoNodes`] if the BRDF has no usable value.
+    pub fn new(aim: &Aim, texel: &Texel, guess: &Lobe) -> Result<Self, FitError> {
         let nodes = texel.nodes(guess);
-        let rows = probe_rows(texel.alpha, texel.cos_view, &nodes);
+        if nodes.is_empty() {
+            return Err(FitError::NoNodes { alpha: texel.alpha, cos_view: texel.cos_view });
+        }
+        let rows = probe_rows(guess, texel.cos_view, &nodes);
         let [of_lobe, of_schlick] = aim.shares(texel.magnitude);
         let target: Vec<f32> =
             nodes.iter().map(|node| (of_lobe * node.value + of_schlick * node.schlick) as f32).collect();
@@ -40,7 +47,7 @@ impl Problem {
         let mut problem = Self { nodes, rows, targets, guess: *guess, anchor: [0.0; 4] };
         let (normal, _) = problem.normal_equations(guess, [true; 4]);
         problem.anchor = std::array::from_fn(|i| ANCHOR * normal[i][i]);
-        problem
+        Ok(problem)
     }
 
     /// The loss of a lobe; infinite if it is not valid.

@@ -28,8 +28,8 @@ fn seen_from_the_normal_its_lobes_are_round() {
 
 #[test]
 fn neighbouring_nodes_differ_little() {
-    // The largest step of an entry between neighbours; entries are of order 1. The largest, 0.4, are those of
-    // q20 in the last row, where the lobe becomes a fan; above 84 degrees from the horizon steps are below 0.2
+    // Entries are of order 1. The largest step, 0.26, is one of q20 towards the last row, where lobes become
+    // fans; in all rows but the last five, up to 85 degrees, steps are below 0.17
     let table = ggx();
     let size = table.size() as usize;
     let step = |a: usize, b: usize| {
@@ -46,7 +46,7 @@ fn neighbouring_nodes_differ_little() {
             }
         }
     }
-    assert!(worst[0] < 0.2 && worst[1] < 0.5, "{worst:?}");
+    assert!(worst[0] < 0.2 && worst[1] < 0.3, "{worst:?}");
 }
 
 #[test]

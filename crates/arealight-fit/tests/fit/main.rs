@@ -1,0 +1,6 @@
+//! The fitter: its parts against independent methods, and its tables against bars.
+
+mod albedo;
+mod built_in;
+mod lobe;
+mod table;
