@@ -98,7 +98,7 @@ fn visibility_finds_what_a_float64_walk_finds() {
             ];
             let direction = view.camera.direction(plane, aspect);
             let hit = view.buffers.closest_hit(view.camera.position, direction);
-            let expected = hit.map(|hit| direction * f64::from(hit.distance));
+            let expected = hit.map(|hit| direction * hit.distance);
             let same = match expected {
                 None => found.w == 0.0,
                 // Positions come from float32 barycentrics: a few parts in 1e6 of the distance

@@ -5,7 +5,7 @@ use arealight_engine::EvalPoint;
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use glam::{DQuat, DVec3};
 
-/// What the walk may lose: see form_factor.glsl. Sums of several polygons may lose it several times.
+/// What the walk may lose: see `form_factor.glsl`. Sums of several polygons may lose it several times.
 const WALK: f64 = 1e-6;
 
 fn form_factors(engine: &TestEngine, points: &[EvalPoint]) -> Vec<f64> {

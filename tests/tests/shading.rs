@@ -134,7 +134,7 @@ fn the_comparison_notices_a_wrong_light() {
     let answers = engine.eval(&points[1..], Quality::default()).unwrap();
     let mut comparison = Comparison::new("shifted");
     for (given, answer) in points.iter().zip(&answers) {
-        comparison.add(answer.x.into(), expected(given).x, rounding(1.0), || String::new());
+        comparison.add(answer.x.into(), expected(given).x, rounding(1.0), String::new);
     }
     assert!(comparison.failures() > COUNT / 4, "{} noticed", comparison.failures());
 }

@@ -109,8 +109,7 @@ fn tone_map(color: Vec3) -> Vec3 {
 
 fn srgb_from_linear(linear: f32) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
-    let encoded =
-        if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0 + 0.5) as u8
 }
 

@@ -21,7 +21,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.json {
         println!("{:#}", Value::Array(found.iter().map(to_json).collect()));
     } else {
-        found.iter().for_each(|device| println!("{}", to_text(device)));
+        for device in &found {
+            println!("{}", to_text(device));
+        }
     }
     if found.iter().any(|device| device.lack.is_none()) {
         return Ok(ExitCode::SUCCESS);
