@@ -103,20 +103,26 @@ vec3 linear_from_srgb(vec3 encoded) {
     return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
 }
 
-int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
-    if (clamped) {
-        return clamp(texel, 0, size - 1);
-    }
+// The texel within the image, for texel coordinates from -1 to two repeats and one.
+int wrap_texel(int texel, int size, bool mirrored) {
     int period = mirrored ? 2 * size : size;
-    int wrapped = texel - period * int(floor(float(texel) / float(period)));
+    int wrapped = (texel + 2 * size) % period;
     return wrapped < size ? wrapped : period - 1 - wrapped;
 }
 
+// One axis of a texture coordinate, brought to where texel coordinates are exact: clamped to the image, or within
+// two repeats, which hold the period of a mirrored texture. NaN becomes zero.
+float wrap_coordinate(float coordinate, bool clamped) {
+    float wrapped = clamped ? clamp(coordinate, 0.0, 1.0) : coordinate - 2.0 * floor(0.5 * coordinate);
+    return wrapped > 0.0 ? min(wrapped, 2.0) : 0.0;
+}
+
 vec4 fetch_texel(ArealightGpuTexture image, ivec2 texel) {
-    int x = wrap_texel(texel.x, int(image.width), (image.flags & TEXTURE_CLAMP_U) != 0u,
-                       (image.flags & TEXTURE_MIRROR_U) != 0u);
-    int y = wrap_texel(texel.y, int(image.height), (image.flags & TEXTURE_CLAMP_V) != 0u,
-                       (image.flags & TEXTURE_MIRROR_V) != 0u);
+    ivec2 last = ivec2(image.width, image.height) - 1;
+    int x = (image.flags & TEXTURE_CLAMP_U) != 0u
+        ? clamp(texel.x, 0, last.x) : wrap_texel(texel.x, last.x + 1, (image.flags & TEXTURE_MIRROR_U) != 0u);
+    int y = (image.flags & TEXTURE_CLAMP_V) != 0u
+        ? clamp(texel.y, 0, last.y) : wrap_texel(texel.y, last.y + 1, (image.flags & TEXTURE_MIRROR_V) != 0u);
     vec4 color = unpackUnorm4x8(texels[image.first_texel + uint(y) * image.width + uint(x)]);
     return (image.flags & TEXTURE_SRGB) != 0u ? vec4(linear_from_srgb(color.rgb), color.a) : color;
 }
@@ -127,11 +133,12 @@ vec4 sample_texture(uint index, vec2 uv) {
         return vec4(1.0);
     }
     ArealightGpuTexture image = textures[index];
-    // Large coordinates would leave the range of int: a million repeats are enough
-    vec2 position = clamp(uv, -1e6, 1e6) * vec2(image.width, image.height) - 0.5;
+    vec2 wrapped = vec2(wrap_coordinate(uv.x, (image.flags & TEXTURE_CLAMP_U) != 0u),
+                        wrap_coordinate(uv.y, (image.flags & TEXTURE_CLAMP_V) != 0u));
+    vec2 position = wrapped * vec2(image.width, image.height) - 0.5;
     vec2 node = floor(position);
     vec2 weight = position - node;
-    ivec2 texel = ivec2(clamp(node, -2e9, 2e9));
+    ivec2 texel = ivec2(node);
     vec4 top = mix(fetch_texel(image, texel), fetch_texel(image, texel + ivec2(1, 0)), weight.x);
     vec4 bottom = mix(fetch_texel(image, texel + ivec2(0, 1)), fetch_texel(image, texel + ivec2(1, 1)), weight.x);
     return mix(top, bottom, weight.y);

@@ -27,7 +27,7 @@ layout(push_constant, std430) uniform VisibilityConstants {
     uint reserved3;
 } constants;
 
-// As deep as a hierarchy may be: arealight_scene refuses a deeper one.
+// arealight_scene builds no hierarchy deeper than 48.
 const uint STACK_SIZE = 64u;
 
 // The distance at which a ray enters a box before `nearest`, or -1.

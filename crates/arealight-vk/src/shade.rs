@@ -196,8 +196,8 @@ impl ShadePass {
             camera: frame.camera.to_array(),
             light_count: frame.light_count,
         };
-        let dispatch = plan::shade(self.options, frame.size[0], frame.size[1]);
+        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
         // SAFETY: the same contract.
-        unsafe { self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), dispatch.groups) }
+        unsafe { self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), groups) }
     }
 }

@@ -9,7 +9,7 @@ use ash::vk;
 /// The texel format of the table on the GPU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TableFormat {
-    /// Eight bytes a texel. A form factor changes by less than 3e-4 down to alpha 2.5e-4.
+    /// Eight bytes a texel. What that costs is tested: see `tests/tests/shading.rs`.
     Rgba16Float,
     /// Sixteen bytes a texel, the fit as it is.
     #[default]
@@ -118,7 +118,7 @@ impl TableImage {
     ///
     /// # Errors
     /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call fails
-    /// (then the memory was given back).
+    /// (then the memory was given back, and the table image is only good for dropping).
     #[cfg(feature = "gpu-allocator")]
     pub unsafe fn allocate(
         &mut self,
@@ -192,7 +192,8 @@ impl TableImage {
         unsafe {
             device.cmd_pipeline_barrier(
                 command_buffer,
-                vk::PipelineStageFlags::TOP_OF_PIPE,
+                // After whatever read an earlier table
+                vk::PipelineStageFlags::ALL_COMMANDS,
                 vk::PipelineStageFlags::TRANSFER,
                 vk::DependencyFlags::empty(),
                 &[],

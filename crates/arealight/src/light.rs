@@ -144,13 +144,21 @@ impl PackedLights {
 
     /// Adds the lights of `other`, which may be packed relative to another origin; their vertices come after
     /// those that are here.
-    pub fn append(&mut self, other: Self) {
+    ///
+    /// # Errors
+    /// [`LightError::TooMany`] where a 32-bit index does not reach; then nothing is added.
+    pub fn append(&mut self, other: Self) -> Result<(), LightError> {
+        let count = (self.vertices.len() + other.vertices.len()).max(self.lights.len() + other.lights.len());
+        if u32::try_from(count).is_err() {
+            return Err(LightError::TooMany { count });
+        }
         let shift = self.vertices.len() as u32;
         self.lights.extend(other.lights.into_iter().map(|mut light| {
             light.first_vertex += shift;
             light
         }));
         self.vertices.extend(other.vertices);
+        Ok(())
     }
 
     fn push(&mut self, light: &PolygonLight, origin: DVec3) -> Result<(), LightError> {

@@ -89,8 +89,8 @@ pub enum TableError {
         /// The determinant of its two by two block.
         determinant: f32,
     },
-    /// A magnitude is outside [0, 1], where every albedo lies.
-    #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); both must be in [0, 1]")]
+    /// A magnitude is outside [0, 1], where every albedo lies, or its Schlick part is above the whole.
+    #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); must be 0 <= Schlick part <= albedo <= 1")]
     Magnitude {
         /// The texel's column (roughness).
         x: u32,
@@ -142,7 +142,8 @@ impl LightTable {
             if determinant.is_nan() || determinant <= 0.0 {
                 return Err(TableError::Singular { x, y, determinant });
             }
-            if a.iter().any(|v| !(0.0..=1.0).contains(v)) {
+            // The Schlick part is a part: with more, a surface without F90 would reflect less than nothing
+            if a[0] > 1.0 || a[1] < 0.0 || a[1] > a[0] {
                 return Err(TableError::Magnitude { x, y, albedo: a[0], schlick: a[1] });
             }
         }
@@ -169,9 +170,10 @@ impl LightTable {
         &self.magnitude
     }
 
-    /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` stands for.
+    /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` (2 or more) stands
+    /// for.
     pub fn node(size: u32, x: u32, y: u32) -> (f64, f64) {
-        let step = f64::from(size - 1);
+        let step = f64::from(size.saturating_sub(1).max(1));
         let v = f64::from(y) / step;
         (f64::from(x) / step, 1.0 - v * v)
     }

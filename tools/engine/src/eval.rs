@@ -34,7 +34,7 @@ impl Engine {
         for point in points {
             let packed = PackedLights::new(std::slice::from_ref(&point.light), point.position)?;
             cases.push(case(point, lights.lights.len() as u32));
-            lights.append(packed);
+            lights.append(packed)?;
         }
 
         // Each dispatch takes as many cases as the device has groups for
@@ -69,13 +69,20 @@ impl Engine {
 fn case(point: &EvalPoint, light: u32) -> GpuCase {
     let surface = &point.surface;
     GpuCase {
-        normal: point.normal.as_vec3().to_array(),
+        normal: rounded(point.normal),
         roughness: surface.alpha.sqrt() as f32,
-        view: point.view.as_vec3().to_array(),
+        view: rounded(point.view),
         f90: surface.f90 as f32,
         diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
         light,
         f0: surface.f0.as_vec3().to_array(),
         reserved: 0,
     }
+}
+
+/// A direction of any length in float64, as a unit vector in float32, which has not the range for every length.
+fn rounded(direction: DVec3) -> [f32; 3] {
+    let largest = direction.abs().max_element();
+    let scaled = if largest > 0.0 && largest.is_finite() { direction / largest } else { direction };
+    scaled.normalize_or_zero().as_vec3().to_array()
 }

@@ -6,6 +6,7 @@
 
 mod eval;
 mod g_buffer;
+mod kept;
 mod render;
 mod table;
 
@@ -20,6 +21,7 @@ use arealight_host::{Buffer, DescriptorPool};
 use arealight_vk::{ComputePass, Context, HostDevice, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
+use kept::Kept;
 use table::UploadedTable;
 
 /// A failure of the engine.
@@ -114,9 +116,9 @@ impl Engine {
         specialization: &[(u32, u32)],
         resources: &[Resource],
     ) -> Result<BoundPass, EngineError> {
-        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped, and the device
-        // outlives it: the pool holds the host.
-        let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
+        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed out
+        // it is leaked. The host, which `Kept` holds, outlives it.
+        let pass = Kept::new(&self.host, unsafe { ComputePass::new(&self.context, kernel, specialization) }?);
         let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
@@ -128,7 +130,7 @@ impl Engine {
 
 /// A pass with the descriptor set of its only run.
 struct BoundPass {
-    pass: ComputePass,
+    pass: Kept<ComputePass>,
     set: vk::DescriptorSet,
     _pool: DescriptorPool,
 }

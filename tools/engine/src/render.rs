@@ -1,5 +1,6 @@
 //! What a camera sees of a scene, lit by its polygon lights.
 
+use crate::kept::Kept;
 use crate::{BoundPass, Engine, EngineError, GBuffer};
 use arealight::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight::kernels::{REFERENCE, VISIBILITY};
@@ -96,8 +97,9 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let options =
             ShadeOptions { effects, quality, position: PositionSource::Position, output: Output::Add };
-        // SAFETY: Submissions are waited for before the pass is dropped, and the engine outlives it.
+        // SAFETY: As in Engine::pass.
         let pass = unsafe { ShadePass::new(self.engine.context(), options) }?;
+        let pass = Kept::new(self.engine.host(), pass);
         pass.check_lights(self.lights)?;
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
@@ -187,8 +189,8 @@ impl<'a> SceneRenderer<'a> {
         })
     }
 
-    /// So many that a dispatch stays far below a second on a GPU, where a driver may reset the device, and
-    /// around a second on a CPU.
+    /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset the
+    /// device after two seconds; at least one for each pixel and light, however many there are.
     fn samples_a_dispatch(&self) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let light_samples = pixels * (self.lights.len() as u64).max(1);

@@ -1,6 +1,7 @@
 //! The light table on the device, with its memory.
 
 use crate::EngineError;
+use crate::kept::Kept;
 use arealight::LightTable;
 use arealight_host::{Host, Location};
 use arealight_vk::{Context, Resource, TableFormat, TableImage};
@@ -9,10 +10,28 @@ use gpu_allocator::vulkan::Allocation;
 
 /// A table image and the memory that it lies in.
 pub struct UploadedTable {
-    // Both are `Some` until dropped; the image goes before its memory
-    image: Option<TableImage>,
-    memory: Option<Allocation>,
+    allocated: Kept<Allocated>,
+}
+
+/// Dropped in this order: the image goes before its memory is given back.
+struct Allocated {
+    image: TableImage,
+    _memory: Memory,
+}
+
+/// Memory that goes back to the host's allocator.
+struct Memory {
+    allocation: Option<Allocation>,
     host: Host,
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        if let Some(allocation) = self.allocation.take() {
+            // Freeing fails only for a foreign allocation
+            let _ = self.host.with_allocator(|allocator| allocator.free(allocation));
+        }
+    }
 }
 
 impl UploadedTable {
@@ -25,8 +44,9 @@ impl UploadedTable {
         // SAFETY: Dropped with this value, which holds the host and waits for its submissions.
         let mut image = unsafe { TableImage::new(context, table, format) }?;
         // SAFETY: Called once, with an allocator of the same device.
-        let memory = host.with_allocator(|allocator| unsafe { image.allocate(allocator) })?;
-        let uploaded = Self { image: Some(image), memory: Some(memory), host: host.clone() };
+        let allocation = host.with_allocator(|allocator| unsafe { image.allocate(allocator) })?;
+        let memory = Memory { allocation: Some(allocation), host: host.clone() };
+        let uploaded = Self { allocated: Kept::new(host, Allocated { image, _memory: memory }) };
 
         let bytes = format.bytes(table);
         let staging = host.buffer(
@@ -36,28 +56,13 @@ impl UploadedTable {
             Location::Upload,
         )?;
         staging.upload(&bytes)?;
-        if let Some(image) = &uploaded.image {
-            // SAFETY: The staging buffer holds the table's bytes and lives until the submission was waited for.
-            host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
-        }
+        let image = &uploaded.allocated.image;
+        // SAFETY: The staging buffer holds the table's bytes and lives until the submission was waited for.
+        host.submit(|commands| unsafe { image.record_upload(commands, staging.handle(), 0) })?;
         Ok(uploaded)
     }
 
     pub fn resource(&self) -> Resource {
-        let image = self.image.as_ref();
-        image.map_or(
-            Resource::SampledImage { view: vk::ImageView::null(), layout: vk::ImageLayout::UNDEFINED },
-            TableImage::resource,
-        )
-    }
-}
-
-impl Drop for UploadedTable {
-    fn drop(&mut self) {
-        drop(self.image.take());
-        if let Some(memory) = self.memory.take() {
-            // Freeing fails only for a foreign allocation
-            let _ = self.host.with_allocator(|allocator| allocator.free(memory));
-        }
+        self.allocated.image.resource()
     }
 }

@@ -212,8 +212,8 @@ impl Host {
         self.inner.abandoned.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the GPU may still use anything, so that nothing may be destroyed.
-    pub(crate) fn is_abandoned(&self) -> bool {
+    /// Whether a submission timed out: the GPU may still use anything, so that nothing may be destroyed.
+    pub fn is_abandoned(&self) -> bool {
         self.inner.abandoned.load(Ordering::Relaxed)
     }
 }
