@@ -102,7 +102,8 @@ fn expect_text(name: &'static str, value: &AttributeValue, expected: &str) -> Re
 fn unexpected(attribute: &'static str, value: &AttributeValue, expected: &str) -> ReadError {
     const LONGEST: usize = 200;
     let mut found = match value {
-        AttributeValue::Text(text) => text.to_string(),
+        // Text of a file that may be anybody's must not steer the terminal
+        AttributeValue::Text(text) => text.to_string().escape_debug().to_string(),
         AttributeValue::I32(number) => number.to_string(),
         other => format!("{other:?}"),
     };

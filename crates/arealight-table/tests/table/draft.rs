@@ -104,7 +104,7 @@ pub fn table(size: u32) -> LightTable {
     let number = |i: usize, channel: usize| (i * 4 + channel) as f32 / (count * 8) as f32;
     let matrix =
         (0..count).map(|i| [1.0 + number(i, 0), number(i, 1), -number(i, 2), 1.0 + number(i, 3)]).collect();
-    let magnitude = (0..count).map(|i| [number(i, 0), 1.0 - number(i, 1)]).collect();
+    let magnitude = (0..count).map(|i| [1.0 - number(i, 0), number(i, 1)]).collect();
     let description = TableDescription { brdf: "a test".into(), made_by: "files.rs, François".into() };
     LightTable::new(description, size, matrix, magnitude).unwrap()
 }
