@@ -258,7 +258,7 @@ mod tests {
     fn lookup_returns_nodes_exactly_and_interpolates_between_them() {
         let table = table(|i, m, a| {
             m[0] = 1.0 + i as f32;
-            a[0] = i as f32 / 10.0;
+            *a = [i as f32 / 10.0, 0.0];
         })
         .unwrap();
         for y in 0..3 {
