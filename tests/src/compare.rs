@@ -1,5 +1,12 @@
 //! A comparison that cannot pass by comparing nothing.
 
+/// What float32 may lose of a form factor in the lobe of `alpha`; Lambert's is as wide as 1. Vertices, frame and
+/// matrix are rounded about sixteen times, each by 2^-24 of a direction, and the lobe turns a direction's error
+/// into 1/alpha of itself; beside that stands the walk's own 1e-6.
+pub fn rounding(alpha: f64) -> f64 {
+    1e-6 + 16.0 * 2.0_f64.powi(-24) / alpha
+}
+
 /// Differences against bounds. Call [`Comparison::assert_all`] at the end: it fails if nothing was compared.
 #[must_use = "compares nothing unless assert_all is called"]
 pub struct Comparison {
