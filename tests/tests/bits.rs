@@ -1,0 +1,168 @@
+//! Every bit pattern gives a finite answer: the eval kernel is given buffers that no host would write, without
+//! the checks of the CPU side in between.
+
+use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
+use arealight::kernels::EVAL;
+use arealight::{Quality, plan};
+use arealight_tests::{Random, TestEngine};
+use arealight_vk::{ComputePass, Resource};
+
+const COUNT: usize = 200_000;
+
+/// Lights with their vertices, and a case for each.
+struct Buffers {
+    lights: Vec<GpuLight>,
+    vertices: Vec<[f32; 4]>,
+    cases: Vec<GpuCase>,
+}
+
+/// How wild a case's numbers are.
+#[derive(Debug, Clone, Copy)]
+enum Numbers {
+    /// Any bits: mostly of extreme size, NaN or infinity one time in 256.
+    Any,
+    /// Of ordinary size, and any bits one time in eight.
+    SomeAny,
+    /// Of ordinary size times one power of two from 2^-149 to 2^127.
+    Scaled(f32),
+    /// Special numbers only: both zeros, the smallest and largest, infinities, NaN, one.
+    Special,
+}
+
+const SPECIAL: [f32; 12] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f32::MIN_POSITIVE,
+    -1e-45,
+    1e-45,
+    f32::MAX,
+    f32::MIN,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+];
+
+impl Numbers {
+    fn choose(random: &mut Random) -> Self {
+        match random.bits() % 4 {
+            0 => Self::Any,
+            1 => Self::SomeAny,
+            2 => Self::Scaled(random.between(-149.0, 128.0).exp2() as f32),
+            _ => Self::Special,
+        }
+    }
+
+    fn number(self, random: &mut Random) -> f32 {
+        match self {
+            Self::Any => f32::from_bits(random.bits()),
+            Self::SomeAny if random.bits() % 8 == 0 => f32::from_bits(random.bits()),
+            Self::SomeAny => random.between(-1.0, 1.0) as f32,
+            Self::Scaled(scale) => random.between(-1.0, 1.0) as f32 * scale,
+            Self::Special => SPECIAL[random.bits() as usize % SPECIAL.len()],
+        }
+    }
+
+    fn vector(self, random: &mut Random) -> [f32; 3] {
+        std::array::from_fn(|_| self.number(random))
+    }
+}
+
+/// Albedo and radiance are one, so that the answer is a form factor: Lambert's, or the lobe's times its albedo.
+fn buffers() -> Buffers {
+    let mut random = Random::new(21);
+    let mut buffers = Buffers { lights: Vec::new(), vertices: Vec::new(), cases: Vec::new() };
+    for index in 0..COUNT {
+        // Outline, bounding sphere and surface are wild in their own ways
+        let outline = Numbers::choose(&mut random);
+        let sphere = Numbers::choose(&mut random);
+        let surface = Numbers::choose(&mut random);
+        let vertex_count = 3 + random.bits() % 6;
+        buffers.lights.push(GpuLight {
+            radiance: [1.0; 3],
+            first_vertex: buffers.vertices.len() as u32,
+            center: sphere.vector(&mut random),
+            radius: sphere.number(&mut random),
+            vertex_count,
+            flags: random.bits() & GpuLight::TWO_SIDED,
+            reserved: [0; 2],
+        });
+        for _ in 0..vertex_count {
+            let [x, y, z] = outline.vector(&mut random);
+            buffers.vertices.push([x, y, z, outline.number(&mut random)]);
+        }
+        let glossy = (index % 2) as f32;
+        buffers.cases.push(GpuCase {
+            normal: surface.vector(&mut random),
+            roughness: Numbers::choose(&mut random).number(&mut random),
+            view: surface.vector(&mut random),
+            f90: glossy,
+            diffuse_albedo: [1.0 - glossy; 3],
+            light: index as u32,
+            f0: [glossy; 3],
+            reserved: 0,
+        });
+    }
+    buffers
+}
+
+/// The first three channels of each case's answer, as bits.
+fn answers(engine: &TestEngine, given: &Buffers) -> Vec<[u32; 4]> {
+    let host = engine.host();
+    let dispatch = plan::eval(Quality::default(), given.cases.len() as u32);
+    let lights = host.storage_buffer("lights", &given.lights).unwrap();
+    let vertices = host.storage_buffer("vertices", &given.vertices).unwrap();
+    let cases = host.storage_buffer("cases", &given.cases).unwrap();
+    // What is not written stays NaN
+    let results = host.storage_buffer("results", &vec![[u32::MAX; 4]; given.cases.len()]).unwrap();
+    let resources = [
+        engine.table(),
+        Resource::buffer(lights.handle()),
+        Resource::buffer(vertices.handle()),
+        Resource::buffer(cases.handle()),
+        Resource::buffer(results.handle()),
+    ];
+    let constants = EvalConstants { case_count: given.cases.len() as u32 };
+    // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+    unsafe {
+        let pass = ComputePass::new(engine.context(), &EVAL, &dispatch.specialization).unwrap();
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+        let set = pool.allocate(pass.set_layout()).unwrap();
+        pass.write_set(set, &resources).unwrap();
+        let bytes = bytemuck::bytes_of(&constants);
+        host.submit(|commands| pass.record(commands, set, bytes, dispatch.groups).unwrap()).unwrap();
+    }
+    results.download().unwrap()
+}
+
+#[test]
+fn every_bit_pattern_gives_a_form_factor() {
+    let Some(engine) = TestEngine::new() else { return };
+    let given = buffers();
+    let (mut wrong, mut dark, mut partial) = (Vec::new(), 0, 0);
+    for (index, answer) in answers(&engine, &given).iter().enumerate() {
+        let factors = [answer[0], answer[1], answer[2]].map(f32::from_bits);
+        let glossy = given.cases[index].f90 == 1.0;
+        // An albedo may be rounded up
+        let largest = if glossy { 1.0 + 1e-6 } else { 1.0 };
+        // A NaN is in no range
+        if !factors.iter().all(|factor| (0.0..=largest).contains(factor)) {
+            let light = &given.lights[index];
+            let first = light.first_vertex as usize;
+            let outline = &given.vertices[first..first + light.vertex_count as usize];
+            wrong.push(format!("{factors:?}: {:?} {light:?} {outline:?}", given.cases[index]));
+        }
+        dark += usize::from(factors[0] == 0.0);
+        partial += usize::from(factors[0] > 0.0 && factors[0] < 1.0);
+    }
+    println!("{COUNT} cases: {dark} dark, {partial} between 0 and 1, {} wrong", wrong.len());
+    assert!(
+        wrong.is_empty(),
+        "{} are no form factors:\n{}",
+        wrong.len(),
+        wrong[..wrong.len().min(5)].join("\n")
+    );
+    // The twin: it is not that every odd number makes a light dark
+    assert!(partial > COUNT / 10 && dark > COUNT / 10, "{partial} partial, {dark} dark");
+}
