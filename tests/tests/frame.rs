@@ -7,7 +7,7 @@ use arealight_host::{Image, ImageDescription, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::{Comparison, TestEngine};
+use arealight_tests::{Comparison, TestEngine, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::camera::rh::proj::vulkan;
@@ -134,6 +134,11 @@ fn the_shade_pass_equals_eval_at_every_pixel() {
                 }
             }
         }
+        let alphas: Vec<f64> = points(&view, &scene.lights[0])
+            .iter()
+            .map(|point| point.as_ref().map_or(1.0, |point| point.surface.alpha))
+            .collect();
+        let radiance = scene.lights.iter().map(|light| light.radiance.max_element()).fold(0.0, f32::max);
         let brightest = expected.iter().map(|e| e.max_element()).fold(0.0, f64::max);
         assert!(brightest > 0.1, "{name} is lit");
         let mut comparison = Comparison::new(format!("{name}: shade against eval"));
@@ -144,9 +149,9 @@ fn the_shade_pass_equals_eval_at_every_pixel() {
             }
             let reflected = (shaded[i] - emitted[i]).truncate().as_dvec3();
             for channel in 0..3 {
-                // Positions are rounded relative to the camera here and to the point there, and alpha is 0.0025
-                // or more: see rounding() in shading.rs, three times for as many roundings more
-                let bound = 1e-3 * brightest;
+                // Both lobes are rounded on both sides, and a light's position relative to the camera here, to
+                // the point there. In most scenes one light prevails: the brightest
+                let bound = 5.0 * rounding(alphas[i]) * f64::from(radiance);
                 comparison.add(reflected[channel], expected[channel], bound, || format!("pixel {i}"));
             }
         }
