@@ -3,6 +3,8 @@
 
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
+use arealight::plan::{Output, PositionSource};
+use arealight::{Effects, FormFactor};
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
 use std::collections::BTreeMap;
@@ -109,6 +111,16 @@ fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
     (BindingKind::StorageBuffer, access)
 }
 
+/// What the GLSL calls a binding: an image by its variable, a buffer by its block's only member.
+fn binding_name(module: &Module, variable: &Instruction) -> String {
+    let kind = pointee(module, variable);
+    if kind.class.opcode == Op::TypeImage {
+        return name(module, variable.result_id.expect("a variable has an id"));
+    }
+    assert_eq!(kind.operands.len(), 1, "a buffer's block has one member");
+    member_name(module, kind.result_id.expect("a type has an id"), 0)
+}
+
 /// Compares the manifest of a kernel with its module; the first difference in words.
 fn compare(kernel: &Kernel, module: &Module) -> Result<(), String> {
     let bound = bound_variables(module);
@@ -120,6 +132,10 @@ fn compare(kernel: &Kernel, module: &Module) -> Result<(), String> {
         let found = reflected(module, bound[&(number as u32)]);
         if found != (binding.kind, binding.access) {
             return Err(format!("{}: binding '{}' is {found:?}", kernel.name, binding.name));
+        }
+        let named = binding_name(module, bound[&(number as u32)]);
+        if named != binding.name {
+            return Err(format!("{}: binding '{}' is named '{named}'", kernel.name, binding.name));
         }
     }
 
@@ -180,6 +196,14 @@ fn the_comparison_can_fail() {
     let swapped =
         Kernel { bindings: Box::leak(Box::new([kernels::EVAL.bindings[1]; 5])), ..copy(&kernels::EVAL) };
     assert!(compare(&swapped, &module(&kernels::EVAL)).unwrap_err().contains("SampledImage"));
+    // Two bindings of one kind in each other's place: buffers, then images
+    for (kernel, one, other) in [(&kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
+        let mut bindings = kernel.bindings.to_vec();
+        bindings.swap(one, other);
+        let swapped = Kernel { bindings: Box::leak(bindings.into()), ..copy(kernel) };
+        let error = compare(&swapped, &module(kernel)).unwrap_err();
+        assert!(error.ends_with(&format!("is named '{}'", kernel.bindings[one].name)), "{error}");
+    }
     // Another group size, another constant
     let resized = Kernel { local_size: [32, 1, 1], ..copy(&kernels::EVAL) };
     assert!(compare(&resized, &module(&kernels::EVAL)).unwrap_err().contains("local size"));
@@ -341,16 +365,111 @@ fn push_constants_have_the_size_in_the_manifest() {
     }
 }
 
-#[test]
-fn effects_have_the_same_bits_in_glsl() {
-    let source = include_str!("../../shaders/include/arealight/effects.glsl");
+/// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
+/// are none of them.
+fn glsl_constants(source: &str, prefix: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     for line in source.lines() {
-        let Some(rest) = line.strip_prefix("const uint AREALIGHT_EFFECT_") else { continue };
-        let (name, value) = rest.trim_end_matches("u;").split_once(" = ").expect("NAME = VALUE");
-        found.insert(name.to_lowercase(), value.parse::<u32>().expect("a literal"));
+        let Some(declaration) = line.strip_prefix("const ") else { continue };
+        let (_kind, rest) = declaration.split_once(' ').expect("const TYPE NAME = VALUE;");
+        let (name, value) = rest.split_once(" = ").expect("NAME = VALUE;");
+        let value = value.split_once(';').expect("a statement").0.trim_end_matches('u');
+        if let Some(name) = name.strip_prefix(prefix) {
+            let number = match value.strip_prefix("0x") {
+                Some(digits) => f64::from(u32::from_str_radix(digits, 16).expect("hexadecimal digits")),
+                None => value.parse().expect("a literal"),
+            };
+            found.insert(name.to_owned(), number);
+        }
     }
-    let expected: BTreeMap<_, _> =
-        arealight::Effects::all().iter().map(|e| (e.names()[0].to_owned(), e.bits())).collect();
-    assert_eq!(found, expected);
+    found
+}
+
+fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
+    let expected: BTreeMap<_, _> = expected.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    assert_eq!(glsl_constants(source, prefix), expected, "{prefix}*");
+}
+
+const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
+const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
+const FORM_FACTOR_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor.glsl");
+const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
+const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
+const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
+
+#[test]
+fn effects_have_the_same_bits_in_glsl() {
+    let effects: Vec<_> =
+        Effects::all().iter().map(|e| (e.names()[0].to_uppercase(), f64::from(e.bits()))).collect();
+    let effects: Vec<_> = effects.iter().map(|(name, bits)| (name.as_str(), *bits)).collect();
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_EFFECT_", &effects);
+}
+
+#[test]
+fn flags_have_the_same_bits_in_glsl() {
+    use gpu::{GpuLight, GpuMaterial, GpuTexture};
+    assert_constants(BUFFERS_GLSL, "LIGHT_", &[("TWO_SIDED", GpuLight::TWO_SIDED.into())]);
+    let material =
+        [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
+    assert_constants(SCENE_GLSL, "MATERIAL_", &material);
+    assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
+    let texture = [
+        ("SRGB", GpuTexture::SRGB.into()),
+        ("CLAMP_U", GpuTexture::CLAMP_U.into()),
+        ("CLAMP_V", GpuTexture::CLAMP_V.into()),
+        ("MIRROR_U", GpuTexture::MIRROR_U.into()),
+        ("MIRROR_V", GpuTexture::MIRROR_V.into()),
+    ];
+    assert_constants(SCENE_GLSL, "TEXTURE_", &texture);
+}
+
+#[test]
+fn choices_have_the_same_numbers_in_glsl() {
+    let number = |value: u32| f64::from(value);
+    let rungs = [("EXACT", number(FormFactor::Exact as u32)), ("FAST", number(FormFactor::Fast as u32))];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_FORM_FACTOR_", &rungs);
+    let depth = [("DEPTH", number(PositionSource::Depth as u32))];
+    assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
+    assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
+    assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
+}
+
+/// The coefficients of the two polynomials in `arealight_arc_excess`, lowest first: the fast one, the exact one.
+fn arc_polynomials() -> [Vec<f64>; 2] {
+    let (_, body) = FORM_FACTOR_GLSL.split_once("float arealight_arc_excess(").expect("the function");
+    let (body, _) = body.split_once("\n}").expect("its end");
+    let polynomials: Vec<Vec<f64>> = body
+        .split("return ")
+        .skip(1)
+        .map(|statement| statement.split_once(';').expect("a statement").0)
+        .map(|horner| {
+            horner.split(|c: char| !"-.0123456789".contains(c)).filter_map(|n| n.parse().ok()).collect()
+        })
+        .collect();
+    polynomials.try_into().expect("two polynomials")
+}
+
+/// The largest error of 1 + u (c0 + u (c1 + ...)) relative to theta / sin(theta), u = 1 - cos(theta) in [0, 1].
+fn largest_error(coefficients: &[f64]) -> f64 {
+    let error = |u: f64| {
+        let polynomial = 1.0 + coefficients.iter().rfold(0.0, |sum, c| (sum + c) * u);
+        // Without cancellation: sin(theta / 2)^2 = u / 2
+        let exact = if u == 0.0 { 1.0 } else { 2.0 * (0.5 * u).sqrt().asin() / (u * (2.0 - u)).sqrt() };
+        ((polynomial - exact) / exact).abs()
+    };
+    (0..=100_000).map(|i| error(f64::from(i) / 100_000.0)).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_arc_polynomials_have_the_errors_that_they_state() {
+    let [fast, exact] = arc_polynomials();
+    // Degrees 4 and 7, as FormFactor says
+    assert_eq!([fast.len(), exact.len()], [4, 7]);
+    let errors = [&fast, &exact].map(|coefficients| largest_error(coefficients));
+    println!("theta / sin(theta): fast {:.3e}, exact {:.3e}", errors[0], errors[1]);
+    assert!(errors[0] <= 1.2e-4 && errors[1] <= 5e-7, "{errors:?}");
+    // The twin: one part in a thousand of one coefficient shows
+    let mut wrong = exact;
+    wrong[0] *= 1.001;
+    assert!(largest_error(&wrong) > 5e-7);
 }
