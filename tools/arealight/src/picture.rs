@@ -93,7 +93,8 @@ impl Picture {
 fn tone_map(color: Vec3) -> Vec3 {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
-    let color = color.max(Vec3::ZERO);
+    // What has overflowed is white, not NaN
+    let color = color.clamp(Vec3::ZERO, Vec3::splat(1e30));
     let low = color.min_element();
     let toe = if low < 0.08 { low - 6.25 * low * low } else { 0.04 };
     let color = color - toe;
@@ -127,15 +128,28 @@ mod tests {
         }
         assert_eq!(tone_map(Vec3::splat(65504.0)).max_element().round(), 1.0);
         assert_eq!(tone_map(Vec3::splat(-1.0)), Vec3::ZERO);
+        assert!(tone_map(Vec3::splat(f32::INFINITY)).min_element() > 0.99);
     }
 
     #[test]
     fn samples_are_averaged_and_exr_keeps_radiance() {
-        let pixels = (0..8).map(|i| Vec3::splat(i as f32)).collect();
+        // Beyond what a screen shows, and another in each channel
+        let pixels = (0..8).map(|i| Vec3::new(i as f32, 1000.0 * i as f32, -0.25 * i as f32)).collect();
         let picture = Picture { width: 4, height: 2, pixels };
-        let resolved = picture.resolve(2, |p| p);
-        assert_eq!((resolved.width, resolved.height), (2, 1));
-        assert_eq!(resolved.pixels, [Vec3::splat(2.5), Vec3::splat(4.5)]);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("picture.exr");
+        picture.save(&path, 2, Exposure { ev: 3.0 }).unwrap();
+
+        let layer = exr::prelude::read_first_flat_layer_from_file(&path).unwrap().layer_data;
+        assert_eq!((layer.size.width(), layer.size.height()), (2, 1));
+        let channel = |wanted: &str| -> Vec<f32> {
+            let mut channels = layer.channel_data.list.iter();
+            channels.find(|c| c.name.eq(wanted)).unwrap().sample_data.values_as_f32().collect()
+        };
+        assert_eq!(
+            [channel("R"), channel("G"), channel("B")],
+            [[2.5, 4.5], [2500.0, 4500.0], [-0.625, -1.125]]
+        );
     }
 
     #[test]
