@@ -3,6 +3,7 @@
 mod commands;
 mod failure;
 mod gpu;
+mod output;
 mod picture;
 mod progress;
 
@@ -20,8 +21,8 @@ struct CommandLine {
 const AFTER_HELP: &str = "\
 Without a command, the demo scene is rendered.
 
-Exit codes: 0 success, 1 a comparison failed, 2 wrong arguments, 3 a bad input file, 4 no usable Vulkan \
-device, 5 an output file cannot be written.";
+Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, 2 wrong arguments, \
+3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written.";
 
 #[derive(Subcommand)]
 enum Command {

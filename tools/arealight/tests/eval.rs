@@ -1,4 +1,4 @@
-//! `arealight eval` as a user runs it, without a device.
+//! `arealight eval` as a user runs it.
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -24,13 +24,26 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Whether there is a device; without one, the test is skipped unless one is required.
+fn device() -> bool {
+    arealight_host::testing::device_with(arealight_host::Validation::Off).is_some()
+}
+
+fn json(path: impl AsRef<Path>) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn write(file: &str, text: &str) -> String {
+    std::fs::write(temporary(file), text).unwrap();
+    temporary(file).to_str().unwrap().to_owned()
+}
+
 #[test]
 fn answers_come_in_the_cases_order_with_reasons_for_those_that_are_missing() {
     let output = eval(&[&reference("cases.json"), "--on", "truth"]);
     assert!(output.status.success(), "{}", text(&output.stderr));
     let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let cases: Value =
-        serde_json::from_str(&std::fs::read_to_string(reference("cases.json")).unwrap()).unwrap();
+    let cases = json(reference("cases.json"));
     let names =
         |values: &Value| values.as_array().unwrap().iter().map(|v| v["name"].clone()).collect::<Vec<_>>();
     assert_eq!(names(&answers["results"]), names(&cases["cases"]));
@@ -73,10 +86,6 @@ fn each_method_meets_its_measure() {
 
 #[test]
 fn failures_say_what_and_where_and_have_their_exit_codes() {
-    let write = |file: &str, text: &str| {
-        std::fs::write(temporary(file), text).unwrap();
-        temporary(file).to_str().unwrap().to_owned()
-    };
     let cases = reference("cases.json");
     let nan = write("nan.json", "{\"cases\": [{\"name\": \"a\", \"alpha\": NaN}]}");
     let missing = write("missing.json", "{\"cases\": [{\"name\": \"a\"}]}");
@@ -93,11 +102,133 @@ fn failures_say_what_and_where_and_have_their_exit_codes() {
         (vec![&cases, "--on", "truth", "-o", "no/such/folder.json"], 5, "no/such/folder.json: cannot write"),
         (vec![&cases, "--on", "truth", "--device", "x"], 2, "--device: only --on gpu uses a device"),
         (vec![&cases, "--on", "abacus"], 2, "invalid value 'abacus'"),
+        (vec![&cases, "--on", "oracle", "--tolerance", "0.1"], 2, "--against <TRUTH.json>"),
+        (vec![&cases, "--against", &empty_truth, "--tolerance", "-1"], 2, "a number from 0 on"),
+        (vec![&cases, "--against", &empty_truth, "--tolerance", "NaN"], 2, "a number from 0 on"),
     ] {
         let output = eval(&arguments);
         let error = text(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {error}");
         assert!(error.contains(message), "{arguments:?}: {error}");
         assert!(!error.contains("panicked"), "{error}");
+    }
+}
+
+#[test]
+fn truth_that_lacks_a_case_is_found_before_anything_is_answered() {
+    // One name is missing; the rest of the file is sound
+    let mut known = json(reference("truth.json"));
+    let results = known.as_array_mut().unwrap();
+    let place = results.iter().position(|result| result["name"] == "000_rect").unwrap();
+    results.remove(place);
+    let lacking = write("lacking.json", &known.to_string());
+    let out = temporary("never-written.json");
+    let _ = std::fs::remove_file(&out);
+    let arguments = ["--on", "oracle", "--against", &lacking, "-o", out.to_str().unwrap()];
+    let output = eval(&[&[reference("cases.json").as_str()], &arguments[..]].concat());
+    assert_eq!(output.status.code(), Some(3));
+    assert!(text(&output.stderr).contains("lacking.json: case '000_rect' has no known radiance"));
+    assert!(!out.exists(), "no answer was asked for");
+}
+
+#[test]
+fn a_tolerance_is_a_gate() {
+    let (cases, truth) = (reference("cases.json"), reference("truth.json"));
+    let gate = |method: &str, tolerance: &str| {
+        eval(&[&cases, "--on", method, "--against", &truth, "--tolerance", tolerance])
+    };
+    // The cubature agrees with the known radiance of the same integral; a fitted lobe does not
+    let passed = gate("truth", "1e-3");
+    assert_eq!(passed.status.code(), Some(0), "{}", text(&passed.stderr));
+    let failed = gate("oracle", "1e-3");
+    assert_eq!(failed.status.code(), Some(1), "{}", text(&failed.stderr));
+    let said = text(&failed.stderr);
+    assert!(said.contains("error: case '") && said.contains("is above --tolerance 1e-3"), "{said}");
+    assert!(text(&failed.stdout).contains("polygon, ggx"), "the measures are printed all the same");
+}
+
+#[test]
+fn the_gpu_meets_its_measure() {
+    if !device() {
+        return;
+    }
+    let output = eval(&[&reference("cases.json"), "--against", &reference("truth.json"), "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let measure = |material: &str, measure: &str| {
+        let mut families = summary["families"].as_array().unwrap().iter();
+        let family = families
+            .find(|f| f["shape"] == "polygon" && f["textured"] == false && f["material"] == material)
+            .unwrap();
+        assert_eq!(family["unanswered"], 0, "{family}");
+        family[measure].as_f64().unwrap()
+    };
+    // The closed form in float32, each case by itself: 1e-5 is less than two hundred roundings
+    assert!(measure("diffuse", "worst") <= 1e-5, "{summary:#}");
+    // No worse than the published table of Heitz et al. 2016
+    assert!(measure("ggx", "rmse_over_mean") <= 0.245, "{summary:#}");
+}
+
+#[test]
+fn a_light_that_float32_cannot_hold_costs_only_its_own_answer() {
+    if !device() {
+        return;
+    }
+    let case = |name: &str, size: &str, radiance: &str| {
+        format!(
+            r#"{{"name": "{name}", "position": [0, 0, 0], "normal": [0, 0, 1], "view": [0, 0, 1], "alpha": 0.5,
+             "light": {{"type": "polygon", "radiance": [{radiance}, 1, 1], "two_sided": true,
+             "vertices": [[0, 0, 1], [{size}, 0, 1], [0, {size}, 1]]}}}}"#
+        )
+    };
+    let all = [
+        case("before", "1", "1"),
+        case("far", "1e39", "1"),
+        case("bright", "1", "1e39"),
+        case("after", "1", "1"),
+    ];
+    let cases = write("far.json", &format!(r#"{{"cases": [{}]}}"#, all.join(",")));
+    let output = eval(&[&cases]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let answers = answers["results"].as_array().unwrap();
+    assert_eq!(answers.len(), 4);
+    assert!(answers[0]["radiance"].is_array(), "{}", answers[0]);
+    assert_eq!(answers[0]["radiance"], answers[3]["radiance"]);
+    for (answer, reason) in [(&answers[1], "vertices[1]"), (&answers[2], "radiance")] {
+        assert!(answer["radiance"].is_null(), "{answer}");
+        assert!(answer["reason"].as_str().unwrap().contains(reason), "{answer}");
+    }
+}
+
+#[test]
+fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
+    if !device() {
+        return;
+    }
+    // Those that are answered, under new names until there are enough
+    let answers = |cases: &str| -> Vec<Value> {
+        let output = eval(&[cases]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let answers: Value = serde_json::from_slice(&output.stdout).unwrap();
+        answers["results"].as_array().unwrap().clone()
+    };
+    let once = answers(&reference("cases.json"));
+    let cases = json(reference("cases.json"));
+    let answered = cases["cases"].as_array().unwrap().iter().zip(&once);
+    let answered: Vec<_> = answered.filter(|(_, answer)| answer["radiance"].is_array()).collect();
+    let repeated = answered.iter().cycle().take(5_000).enumerate();
+    let renamed: Vec<Value> = repeated
+        .map(|(index, (case, _))| {
+            let mut case = (*case).clone();
+            case["name"] = format!("{index}").into();
+            case
+        })
+        .collect();
+    let many = answers(&write("many.json", &serde_json::json!({ "cases": renamed }).to_string()));
+    assert_eq!(many.len(), 5_000);
+    for (index, (answer, (_, first))) in many.iter().zip(answered.iter().cycle()).enumerate() {
+        assert_eq!(answer["name"], format!("{index}"));
+        assert_eq!(answer["radiance"], first["radiance"], "{}", first["name"]);
     }
 }

@@ -1,18 +1,18 @@
 //! `arealight eval`
 
 use crate::failure::Failure;
+use crate::output::print;
 use crate::{gpu, progress};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::measure::{Measure, measure};
+use arealight_oracle::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::shading::{ltc, truth};
-use glam::DVec3;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use serde_json::json;
+use std::collections::HashSet;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -31,6 +31,10 @@ pub struct Arguments {
     /// Known radiance: prints how far the answers lie from it, a family of cases a line.
     #[arg(long, value_name = "TRUTH.json")]
     against: Option<PathBuf>,
+    /// The largest relative error of an answered case, max |answer - truth| / max truth over its channels: where
+    /// one is larger, or none is answered, the worst case is named and the exit code is 1.
+    #[arg(long, value_name = "T", requires = "against", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
     /// The Vulkan device, by a part of its name.
     #[arg(long)]
     device: Option<String>,
@@ -50,33 +54,58 @@ enum Method {
     Truth,
 }
 
+/// Reads the value of `--tolerance`.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: Option<f64> = text.parse().ok();
+    value
+        .filter(|value| value.is_finite() && *value >= 0.0)
+        .ok_or_else(|| "a tolerance is a number from 0 on, for example 1e-3".to_owned())
+}
+
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if arguments.device.is_some() && arguments.on != Method::Gpu {
         let message = "only --on gpu uses a device".into();
         return Err(Failure::Argument { argument: "--device", message });
     }
-    // Read both files first: answers may take longer than finding that one is bad
+    // Read and check both files first: answers may take longer than finding that one is bad
     let cases = read(&arguments.cases, read_cases)?;
-    let known = arguments.against.as_deref().map(|path| read(path, read_answers)).transpose()?;
+    let known = match &arguments.against {
+        Some(path) => {
+            let known = read(path, read_answers)?;
+            check_known(&cases, &known).map_err(|error| Failure::input(path, error))?;
+            Some((path, known))
+        }
+        None => None,
+    };
 
     let start = Instant::now();
-    let answers = answer_all(&cases, arguments.on, arguments.device.as_deref())?;
+    let answers = answer_all(&cases, arguments)?;
     let seconds = start.elapsed().as_secs_f64();
 
-    let measures = match (&arguments.against, &known) {
-        (Some(path), Some(known)) => {
-            Some(measure(&cases, &answers, known).map_err(|error| Failure::input(path, error))?)
-        }
-        _ => None,
-    };
+    // Write before measuring, so that no answer is lost
     let text = write_answers(&answers);
     match &arguments.output {
         Some(path) => std::fs::write(path, text).map_err(|error| Failure::output(path, error))?,
-        None if measures.is_none() => return print(&text),
+        None if known.is_none() => return print(&text),
         None => {}
     }
+    let measures = match &known {
+        Some((path, known)) => {
+            Some(measure(&cases, &answers, known).map_err(|error| Failure::input(*path, error))?)
+        }
+        None => None,
+    };
     let summary = Summary { method: arguments.on, answers: &answers, seconds, measures: measures.as_deref() };
-    print(&if arguments.json { summary.to_json() } else { summary.to_text() })
+    print(&if arguments.json { summary.to_json() } else { summary.to_text() })?;
+
+    // Compare
+    match arguments.tolerance.and_then(|tolerance| complaint(measures.as_deref()?, tolerance)) {
+        Some(complaint) => {
+            eprintln!("error: {complaint}");
+            Ok(ExitCode::from(1))
+        }
+        None => Ok(ExitCode::SUCCESS),
+    }
 }
 
 fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<T, Failure> {
@@ -84,42 +113,50 @@ fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<
     parse(&text).map_err(|error| Failure::input(path, error))
 }
 
-/// Prints to standard output, which may be a pipe that closes early.
-fn print(text: &str) -> Result<ExitCode, Failure> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::output("standard output", error))
-        }
-        _ => Ok(ExitCode::SUCCESS),
+/// Checks that `known` holds the radiance of every case that can be answered.
+fn check_known(cases: &[Case], known: &[Answer]) -> Result<(), UnknownTruth> {
+    let known = known.iter().filter(|answer| answer.radiance.is_some());
+    let names: HashSet<&str> = known.map(|answer| answer.name.as_str()).collect();
+    let unknown = |case: &&Case| !names.contains(case.name.as_str()) && case.supported().is_ok();
+    match cases.iter().find(unknown) {
+        Some(case) => Err(UnknownTruth { case: case.name.clone() }),
+        None => Ok(()),
     }
 }
 
+/// What is wrong with the answers if a relative error is above `tolerance`, or if there is none to compare: a
+/// comparison of nothing shows nothing.
+fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
+    let answered = measures.iter().filter(|measure| measure.answered > 0);
+    let Some(worst) = answered.max_by(|a, b| a.worst.total_cmp(&b.worst)) else {
+        return Some("--tolerance: no case was answered, so nothing was compared".into());
+    };
+    (worst.worst > tolerance).then(|| {
+        let (case, error) = (&worst.worst_case, worst.worst);
+        format!(
+            "case '{case}' ({}): relative error {error:e} is above --tolerance {tolerance:e}",
+            worst.family
+        )
+    })
+}
+
 /// One answer a case, in their order: the radiance, or why there is none.
-fn answer_all(cases: &[Case], method: Method, device: Option<&str>) -> Result<Vec<Answer>, Failure> {
+fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported
     let supported: Vec<_> = cases.iter().map(Case::supported).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
-    let answered = match method {
-        // Without work no device is needed
-        Method::Gpu if answerable.is_empty() => Vec::new(),
-        Method::Gpu => answer_on_gpu(&answerable, device)?,
+    let answered = match arguments.on {
+        Method::Gpu => gpu::eval::answer(&answerable, arguments.device.as_deref(), &arguments.cases)?,
         Method::Oracle => answer_by_table(&answerable),
         Method::Truth => answer_in_parallel(&answerable, answer_by_cubature),
     };
     // Put the answers in between
     let mut answered = answered.into_iter();
     let answer = |(case, supported): (&Case, &Result<_, _>)| match supported {
-        Ok(_) => answered.next().unwrap_or_else(|| Answer::none(&case.name, "the device gave no answer")),
+        Ok(_) => answered.next().unwrap_or_else(|| Answer::none(&case.name, "no answer was given")),
         Err(unsupported) => Answer::none(&case.name, format!("{unsupported}")),
     };
     Ok(cases.iter().zip(&supported).map(answer).collect())
-}
-
-fn answer_on_gpu(cases: &[SupportedCase], device: Option<&str>) -> Result<Vec<Answer>, Failure> {
-    let radiance = gpu::eval::answer(cases, device)?;
-    let answers = cases.iter().zip(radiance);
-    Ok(answers.map(|(case, radiance)| Answer::new(&case.name, DVec3::from_array(radiance))).collect())
 }
 
 fn answer_by_table(cases: &[SupportedCase]) -> Vec<Answer> {
@@ -236,6 +273,7 @@ fn number(value: f64) -> String {
 mod tests {
     use super::*;
     use arealight_oracle::measure::Family;
+    use glam::DVec3;
 
     #[test]
     fn the_table_is_aligned_and_leaves_out_what_is_not_known() {
@@ -257,6 +295,26 @@ polygon, ggx                 50          0     0.2451     0.0000     1.5e-7     
 polygon, anisotropic ggx      7          7
 ";
         assert_eq!(text, expected);
+    }
+
+    #[test]
+    fn a_tolerance_is_held_against_the_worst_answered_case() {
+        let one = |answered, worst, worst_case: &str| Measure {
+            family: Family { shape: "polygon", textured: false, material: "ggx" },
+            answered,
+            unanswered: 1,
+            rmse_over_mean: 0.0,
+            median: 0.0,
+            quantile_95: 0.0,
+            worst,
+            worst_case: worst_case.into(),
+        };
+        let measures = [one(2, 0.25, "a"), one(3, 0.5, "b"), one(0, 0.0, "")];
+        assert_eq!(complaint(&measures, 0.5), None);
+        let expected = "case 'b' (polygon, ggx): relative error 5e-1 is above --tolerance 4e-1";
+        assert_eq!(complaint(&measures, 0.4).as_deref(), Some(expected));
+        assert!(complaint(&[one(1, f64::INFINITY, "a")], 1e300).is_some());
+        assert!(complaint(&measures[2..], 0.5).is_some(), "nothing was compared");
     }
 
     #[test]

@@ -4,17 +4,36 @@ use super::{engine, failure};
 use crate::failure::Failure;
 use arealight::{PolygonLight, Quality};
 use arealight_engine::EvalPoint;
+use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
 use glam::DVec3;
 use std::path::Path;
 
-/// The radiance of each case, by the GLSL of the shade pass.
-pub fn answer(cases: &[SupportedCase], device: Option<&str>) -> Result<Vec<[f64; 3]>, Failure> {
+/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason;
+/// the others are answered all the same. `input` is the file of the cases, for errors.
+pub fn answer(cases: &[SupportedCase], device: Option<&str>, input: &Path) -> Result<Vec<Answer>, Failure> {
+    // Set aside the lights that cannot be shaded
     let points: Vec<_> = cases.iter().map(point).collect();
-    let engine = engine(device, &arealight_table::ggx())?;
-    let radiance =
-        engine.eval(&points, Quality::default()).map_err(|error| failure(error, Path::new("cases")))?;
-    Ok(radiance.into_iter().map(|r| r.as_dvec3().to_array()).collect())
+    let checked: Vec<_> = points.iter().map(|point| point.light.validate()).collect();
+    let shaded = points.into_iter().zip(&checked).filter(|(_, checked)| checked.is_ok());
+    let shaded: Vec<EvalPoint> = shaded.map(|(point, _)| point).collect();
+    // Without work no device is needed
+    let radiance = if shaded.is_empty() {
+        Vec::new()
+    } else {
+        let engine = engine(device, &arealight_table::ggx())?;
+        engine.eval(&shaded, Quality::default()).map_err(|error| failure(error, input))?
+    };
+    // Put the reasons in between
+    let mut radiance = radiance.into_iter();
+    let answer = |(case, checked): (&SupportedCase, &Result<_, _>)| match checked {
+        Err(error) => Answer::none(&case.name, format!("{error}")),
+        Ok(()) => match radiance.next() {
+            Some(radiance) => Answer::new(&case.name, radiance.as_dvec3()),
+            None => Answer::none(&case.name, "the device gave no answer"),
+        },
+    };
+    Ok(cases.iter().zip(&checked).map(answer).collect())
 }
 
 /// A case's light is relative to its shading point already.
