@@ -57,7 +57,7 @@ impl Numbers {
     fn number(self, random: &mut Random) -> f32 {
         match self {
             Self::Any => f32::from_bits(random.bits()),
-            Self::SomeAny if random.bits() % 8 == 0 => f32::from_bits(random.bits()),
+            Self::SomeAny if random.bits().is_multiple_of(8) => f32::from_bits(random.bits()),
             Self::SomeAny => random.between(-1.0, 1.0) as f32,
             Self::Scaled(scale) => random.between(-1.0, 1.0) as f32 * scale,
             Self::Special => SPECIAL[random.bits() as usize % SPECIAL.len()],

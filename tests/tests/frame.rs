@@ -7,7 +7,7 @@ use arealight_host::{Image, ImageDescription, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::{Comparison, TestEngine, rounding};
+use arealight_tests::{Comparison, TestEngine, from_half, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::camera::rh::proj::vulkan;
@@ -48,12 +48,6 @@ fn texels(image: &Image) -> Vec<Vec4> {
 fn half_texels(image: &Image) -> Vec<Vec4> {
     let texels: Vec<[u16; 4]> = image.download(Usage::COMPUTE_READ).unwrap();
     texels.into_iter().map(|t| Vec4::from_array(t.map(from_half))).collect()
-}
-
-/// A finite binary16 number.
-fn from_half(bits: u16) -> f32 {
-    let magnitude = f32::from_bits(u32::from(bits & 0x7fff) << 13) * 2.0_f32.powi(112);
-    if bits & 0x8000 == 0 { magnitude } else { -magnitude }
 }
 
 /// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.
