@@ -1,6 +1,7 @@
 //! `arealight devices`
 
 use crate::failure::Failure;
+use crate::output::print;
 use arealight::kernels::{self, BindingKind};
 use arealight_host::{DeviceSummary, HostError, devices};
 use ash::vk::PhysicalDeviceLimits;
@@ -18,15 +19,14 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let found = devices().map_err(|error| Failure::Device(error.to_string()))?;
-    if arguments.json {
-        println!("{:#}", Value::Array(found.iter().map(to_json).collect()));
+    let text = if arguments.json {
+        format!("{:#}\n", Value::Array(found.iter().map(to_json).collect()))
     } else {
-        for device in &found {
-            println!("{}", to_text(device));
-        }
-    }
+        found.iter().map(|device| to_text(device) + "\n").collect()
+    };
+    let printed = print(&text)?;
     if found.iter().any(|device| device.lack.is_none()) {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(printed);
     }
     let describe =
         |one: &DeviceSummary| format!("{} ({})", one.name, one.lack.as_deref().unwrap_or_default());

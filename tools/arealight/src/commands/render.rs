@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::gpu;
+use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use arealight::{Effects, FormFactor, Quality};
@@ -37,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
     /// Exposure of a .png in stops: radiance is multiplied by 2^EV
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
     exposure: f32,
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
@@ -84,6 +85,16 @@ impl Arguments {
         Quality { form_factor }
     }
 
+    /// A pixel's reference samples are spread evenly over its subpixels, each having one at least.
+    fn samples_a_subpixel(&self, samples: u32) -> u32 {
+        samples.div_ceil(self.supersample * self.supersample)
+    }
+
+    /// The reference samples that a pixel really has.
+    fn reference_samples(&self) -> Option<u32> {
+        self.reference.map(|samples| self.samples_a_subpixel(samples) * self.supersample * self.supersample)
+    }
+
     fn scene_name(&self) -> PathBuf {
         self.scene.clone().unwrap_or_else(|| "demo (built in)".into())
     }
@@ -116,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
-    make_folder(&output)?;
+    prepare(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
     let camera = choose_camera(&scene, arguments)?;
 
@@ -127,12 +138,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
-    if arguments.json {
-        print_json(arguments, &scene, &camera, &engine, &outcome, &output);
-    } else {
-        print_summary(arguments, &scene, &camera, &engine, &outcome, &output);
-    }
-    Ok(ExitCode::SUCCESS)
+    let summarise = if arguments.json { json_summary } else { text_summary };
+    print(&summarise(arguments, &scene, &camera, &engine, &outcome, &output))
 }
 
 fn render(
@@ -151,8 +158,7 @@ fn render(
     let shading = match arguments.reference {
         None => renderer.shade(effects, arguments.quality())?,
         Some(samples) => {
-            // The samples of a pixel are spread over its subpixels
-            let samples = samples.div_ceil(arguments.supersample * arguments.supersample);
+            let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
             let took = renderer.reference(samples, 0, |done| bar.set_position(u64::from(done)))?;
             bar.finish_and_clear();
@@ -162,6 +168,12 @@ fn render(
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
     Ok(Outcome { visibility, shading, picture })
+}
+
+/// Stops within what float32 radiance bears.
+fn parse_exposure(text: &str) -> Result<f32, String> {
+    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 64.0);
+    stops.ok_or_else(|| "must be a number of stops from -64 to 64".to_owned())
 }
 
 /// A width and a height such as `1280x720`.
@@ -185,52 +197,62 @@ fn choose_camera(scene: &Scene, arguments: &Arguments) -> Result<Camera, Failure
     })
 }
 
-fn make_folder(output: &Path) -> Result<(), Failure> {
-    match output.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => {
-            std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))
-        }
-        _ => Ok(()),
+/// Makes the output's folder and opens the file: what cannot be written shows before long work.
+fn prepare(output: &Path) -> Result<(), Failure> {
+    if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
     }
+    let existed = output.exists();
+    std::fs::OpenOptions::new()
+        .append(true)
+        .create(true)
+        .open(output)
+        .map_err(|error| Failure::output(output, error))?;
+    if !existed {
+        // Leave nothing behind where the work fails
+        std::fs::remove_file(output).map_err(|error| Failure::output(output, error))?;
+    }
+    Ok(())
 }
 
-fn print_summary(
+fn text_summary(
     arguments: &Arguments,
     scene: &Scene,
     camera: &Camera,
     engine: &Engine,
     outcome: &Outcome,
     output: &Path,
-) {
+) -> String {
     let (width, height) = (arguments.size[0], arguments.size[1]);
     let vertices: usize = scene.lights.iter().map(|light| light.vertices.len()).sum();
-    println!(
+    let mut lines = vec![format!(
         "scene    {}: {} triangles, {} lights ({vertices} vertices), camera '{}'",
         arguments.scene_name().display(),
         scene.triangles.len(),
         scene.lights.len(),
         camera.name
-    );
+    )];
     for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
-        println!("{} {call}", if index == 0 { "effects " } else { "        " });
+        lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
     }
-    println!("device   {}", engine.host().device_name());
-    let method = match arguments.reference {
+    lines.push(format!("device   {}", engine.host().device_name()));
+    let method = match arguments.reference_samples() {
         None => "shading".to_owned(),
         Some(samples) => format!("reference ({samples} samples a pixel)"),
     };
-    println!(
+    lines.push(format!(
         "GPU time visibility {}, {method} {}",
         milliseconds(outcome.visibility),
         milliseconds(outcome.shading)
-    );
+    ));
     let per_pixel = arguments.supersample * arguments.supersample;
-    println!(
-        "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)",
+    lines.push(format!(
+        "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)\n",
         output.display(),
         if per_pixel == 1 { "" } else { "s" },
         arguments.exposure
-    );
+    ));
+    lines.join("\n")
 }
 
 fn milliseconds(time: Option<Duration>) -> String {
@@ -240,14 +262,14 @@ fn milliseconds(time: Option<Duration>) -> String {
     )
 }
 
-fn print_json(
+fn json_summary(
     arguments: &Arguments,
     scene: &Scene,
     camera: &Camera,
     engine: &Engine,
     outcome: &Outcome,
     output: &Path,
-) {
+) -> String {
     let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
     let calls = arealight_scene::required_effects(scene);
     let effects: Vec<_> = calls
@@ -262,13 +284,13 @@ fn print_json(
         "effects": effects,
         "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "device": engine.host().device_name(),
-        "reference_samples": arguments.reference,
+        "reference_samples": arguments.reference_samples(),
         "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
         "picture": output,
         "size": arguments.size,
         "samples_per_pixel": arguments.supersample * arguments.supersample,
     });
-    println!("{summary:#}");
+    format!("{summary:#}\n")
 }
 
 #[cfg(test)]
@@ -278,6 +300,8 @@ mod tests {
     #[test]
     fn sizes_are_two_numbers_within_limits() {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
+        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
+        assert!(["nan", "inf", "200", ""].iter().all(|bad| parse_exposure(bad).is_err()));
         for bad in ["", "640", "640x", "0x480", "640x9000", "-1x2", "1x2x3", "axb"] {
             assert!(parse_size(bad).is_err(), "{bad}");
         }
