@@ -454,7 +454,8 @@ fn largest_error(coefficients: &[f64]) -> f64 {
     let error = |u: f64| {
         let polynomial = 1.0 + coefficients.iter().rfold(0.0, |sum, c| (sum + c) * u);
         // Without cancellation: sin(theta / 2)^2 = u / 2
-        let exact = if u == 0.0 { 1.0 } else { 2.0 * (0.5 * u).sqrt().asin() / (u * (2.0 - u)).sqrt() };
+        let half = (0.5 * u).sqrt().atan2((1.0 - 0.5 * u).sqrt());
+        let exact = if u == 0.0 { 1.0 } else { 2.0 * half / (u * (2.0 - u)).sqrt() };
         ((polynomial - exact) / exact).abs()
     };
     (0..=100_000).map(|i| error(f64::from(i) / 100_000.0)).fold(0.0, f64::max)
