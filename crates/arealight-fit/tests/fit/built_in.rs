@@ -3,7 +3,7 @@
 use arealight::LightTable;
 use arealight_fit::brdf::view_direction;
 use arealight_fit::report::{COUNT, Case, PUBLISHED, REFLECTANCES, SEED, cases, measure, measure_lookup};
-use arealight_fit::{Brdf, GgxBrdf};
+use arealight_fit::{Brdf, GgxBrdf, Settings as FitSettings, fit};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::polygon::transformed_form_factor;
@@ -82,5 +82,20 @@ fn its_lobes_integrate_to_one() {
             .map(|face| transformed_form_factor(&sample.inverse, &face))
             .sum();
         assert!((sum.abs() - 1.0).abs() < 1e-9, "{roughness} {cos_view}: {sum}");
+    }
+}
+
+#[test]
+fn it_is_what_the_fitter_makes() {
+    let (checked_in, fitted) = (ggx(), fit(&GgxBrdf, &FitSettings::default(), &|_, _| {}).unwrap());
+    assert_eq!(checked_in.description(), fitted.description());
+    let texels = checked_in.matrix().iter().zip(fitted.matrix());
+    let difference =
+        texels.flat_map(|(a, b)| a.iter().zip(b)).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+    // Bit for bit on the machine that made it; another one's sines and powers may differ in their last bits,
+    // which stops some texel's descent a step earlier
+    assert!(difference < 1e-3, "{difference}");
+    for (a, b) in checked_in.magnitude().iter().zip(fitted.magnitude()) {
+        assert!((a[0] - b[0]).abs().max((a[1] - b[1]).abs()) < 1e-6, "{a:?} {b:?}");
     }
 }
