@@ -56,7 +56,8 @@ fn fields_that_break_rules_are_named() {
         (|r| r["scenes"][0]["nodes"] = json!([0, 0]), "nodes[0]: is reached twice"),
         (|r| r["nodes"][0]["rotation"] = json!([0, 0, 0, 0]), "nodes[0]: rotation: [0.0, 0.0, 0.0, 0.0]"),
         (|r| r["nodes"][0]["translation"] = json!([1e20, 0, 0]), "nodes[0]: its world transform"),
-        (|r| r["nodes"][0]["scale"] = json!([1e38, 1e39, 0]), "nodes[0]: its world transform"),
+        (|r| r["nodes"][0]["scale"] = json!([1e38, 1e38, 0]), "nodes[0]: its world transform"),
+        (|r| r["nodes"][0]["scale"] = json!([1, 1e39, 0]), "not a glTF 2.0 file: number out of range"),
         (
             |r| r["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99),
             "meshes[0].primitives[0].attributes: an accessor does not exist",

@@ -66,8 +66,8 @@ fn what_is_out_of_range_or_unknown_is_said() {
             "KHR_materials_ior: 0.5 is below 1: 1.5 is used",
         ),
         (
-            json!({ "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 1e39 } } }),
-            "emissiveStrength inf must be finite and not negative: 0 is used",
+            json!({ "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": -1 } } }),
+            "emissiveStrength -1 must be finite and not negative: 0 is used",
         ),
         (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
         (
