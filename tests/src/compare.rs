@@ -7,12 +7,6 @@ pub fn rounding(alpha: f64) -> f64 {
     1e-6 + 16.0 * 2.0_f64.powi(-24) / alpha
 }
 
-/// A finite binary16 number.
-pub fn from_half(bits: u16) -> f32 {
-    let magnitude = f32::from_bits(u32::from(bits & 0x7fff) << 13) * 2.0_f32.powi(112);
-    if bits & 0x8000 == 0 { magnitude } else { -magnitude }
-}
-
 /// Differences against bounds. Call [`Comparison::assert_all`] at the end: it fails if nothing was compared.
 #[must_use = "compares nothing unless assert_all is called"]
 pub struct Comparison {

@@ -4,7 +4,7 @@
 mod compare;
 mod points;
 
-pub use compare::{Comparison, from_half, rounding};
+pub use compare::{Comparison, rounding};
 pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
 
 use arealight_engine::Engine;

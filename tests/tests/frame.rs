@@ -7,11 +7,12 @@ use arealight_host::{Image, ImageDescription, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
-use arealight_tests::{Comparison, TestEngine, from_half, rounding};
+use arealight_tests::{Comparison, TestEngine, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::camera::rh::proj::vulkan;
 use glam::{DVec3, Mat4, Vec3, Vec4};
+use half::f16;
 use std::path::Path;
 
 const SIZE: [u32; 2] = [64, 40];
@@ -47,7 +48,7 @@ fn texels(image: &Image) -> Vec<Vec4> {
 
 fn half_texels(image: &Image) -> Vec<Vec4> {
     let texels: Vec<[u16; 4]> = image.download(Usage::COMPUTE_READ).unwrap();
-    texels.into_iter().map(|t| Vec4::from_array(t.map(from_half))).collect()
+    texels.into_iter().map(|t| Vec4::from_array(t.map(|bits| f16::from_bits(bits).to_f32()))).collect()
 }
 
 /// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.

@@ -3,9 +3,7 @@
 use arealight::{FormFactor, LightTable, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::shading::{RelativeLight, ltc};
-use arealight_tests::{
-    Comparison, Random, TestEngine, from_half, glossy_surface, lambert_surface, point, rounding,
-};
+use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point, rounding};
 use arealight_vk::TableFormat;
 use glam::DVec3;
 use std::sync::LazyLock;
@@ -146,7 +144,7 @@ fn the_fast_rung_is_within_its_error_and_no_better_than_it_says() {
 fn table_in_float16() -> LightTable {
     let bytes = TableFormat::Rgba16Float.bytes(&TABLE);
     let values: Vec<f32> =
-        bytes.chunks_exact(2).map(|b| from_half(u16::from_le_bytes([b[0], b[1]]))).collect();
+        bytes.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
     let (matrix, magnitude) = values.split_at(values.len() / 2);
     let matrix = matrix.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
     let magnitude = magnitude.chunks_exact(4).map(|t| [t[0], t[1]]).collect();

@@ -138,8 +138,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
-    let summarise = if arguments.json { json_summary } else { text_summary };
-    print(&summarise(arguments, &scene, &camera, &engine, &outcome, &output))
+    let device = engine.host().device_name();
+    let summary =
+        Summary { arguments, scene: &scene, camera: &camera, device, outcome: &outcome, output: &output };
+    print(&if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
 fn render(
@@ -215,44 +217,75 @@ fn prepare(output: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-fn text_summary(
-    arguments: &Arguments,
-    scene: &Scene,
-    camera: &Camera,
-    engine: &Engine,
-    outcome: &Outcome,
-    output: &Path,
-) -> String {
-    let (width, height) = (arguments.size[0], arguments.size[1]);
-    let vertices: usize = scene.lights.iter().map(|light| light.vertices.len()).sum();
-    let mut lines = vec![format!(
-        "scene    {}: {} triangles, {} lights ({vertices} vertices), camera '{}'",
-        arguments.scene_name().display(),
-        scene.triangles.len(),
-        scene.lights.len(),
-        camera.name
-    )];
-    for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
-        lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
+/// What there is to say of a render.
+struct Summary<'a> {
+    arguments: &'a Arguments,
+    scene: &'a Scene,
+    camera: &'a Camera,
+    device: String,
+    outcome: &'a Outcome,
+    output: &'a Path,
+}
+
+impl Summary<'_> {
+    fn to_text(&self) -> String {
+        let Self { arguments, scene, camera, device, outcome, output } = self;
+        let (width, height) = (arguments.size[0], arguments.size[1]);
+        let vertices: usize = scene.lights.iter().map(|light| light.vertices.len()).sum();
+        let mut lines = vec![format!(
+            "scene    {}: {} triangles, {} lights ({vertices} vertices), camera '{}'",
+            arguments.scene_name().display(),
+            scene.triangles.len(),
+            scene.lights.len(),
+            camera.name
+        )];
+        for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
+            lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
+        }
+        lines.push(format!("device   {device}"));
+        let method = match arguments.reference_samples() {
+            None => "shading".to_owned(),
+            Some(samples) => format!("reference ({samples} samples a pixel)"),
+        };
+        lines.push(format!(
+            "GPU time visibility {}, {method} {}",
+            milliseconds(outcome.visibility),
+            milliseconds(outcome.shading)
+        ));
+        let per_pixel = arguments.supersample * arguments.supersample;
+        lines.push(format!(
+            "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)\n",
+            output.display(),
+            if per_pixel == 1 { "" } else { "s" },
+            arguments.exposure
+        ));
+        lines.join("\n")
     }
-    lines.push(format!("device   {}", engine.host().device_name()));
-    let method = match arguments.reference_samples() {
-        None => "shading".to_owned(),
-        Some(samples) => format!("reference ({samples} samples a pixel)"),
-    };
-    lines.push(format!(
-        "GPU time visibility {}, {method} {}",
-        milliseconds(outcome.visibility),
-        milliseconds(outcome.shading)
-    ));
-    let per_pixel = arguments.supersample * arguments.supersample;
-    lines.push(format!(
-        "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)\n",
-        output.display(),
-        if per_pixel == 1 { "" } else { "s" },
-        arguments.exposure
-    ));
-    lines.join("\n")
+
+    fn to_json(&self) -> String {
+        let Self { arguments, scene, camera, device, outcome, output } = self;
+        let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
+        let calls = arealight_scene::required_effects(scene);
+        let effects: Vec<_> = calls
+            .iter()
+            .map(|call| json!({ "effect": call.effect.to_string(), "reason": call.reason }))
+            .collect();
+        let summary = json!({
+            "scene": arguments.scene_name(),
+            "triangles": scene.triangles.len(),
+            "lights": scene.lights.len(),
+            "camera": camera.name,
+            "effects": effects,
+            "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "device": device,
+            "reference_samples": arguments.reference_samples(),
+            "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
+            "picture": output,
+            "size": arguments.size,
+            "samples_per_pixel": arguments.supersample * arguments.supersample,
+        });
+        format!("{summary:#}\n")
+    }
 }
 
 fn milliseconds(time: Option<Duration>) -> String {
@@ -260,37 +293,6 @@ fn milliseconds(time: Option<Duration>) -> String {
         || "not known (no timestamps)".to_owned(),
         |time| format!("{:.1} ms", time.as_secs_f64() * 1e3),
     )
-}
-
-fn json_summary(
-    arguments: &Arguments,
-    scene: &Scene,
-    camera: &Camera,
-    engine: &Engine,
-    outcome: &Outcome,
-    output: &Path,
-) -> String {
-    let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
-    let calls = arealight_scene::required_effects(scene);
-    let effects: Vec<_> = calls
-        .iter()
-        .map(|call| json!({ "effect": call.effect.to_string(), "reason": call.reason }))
-        .collect();
-    let summary = json!({
-        "scene": arguments.scene_name(),
-        "triangles": scene.triangles.len(),
-        "lights": scene.lights.len(),
-        "camera": camera.name,
-        "effects": effects,
-        "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "device": engine.host().device_name(),
-        "reference_samples": arguments.reference_samples(),
-        "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
-        "picture": output,
-        "size": arguments.size,
-        "samples_per_pixel": arguments.supersample * arguments.supersample,
-    });
-    format!("{summary:#}\n")
 }
 
 #[cfg(test)]
