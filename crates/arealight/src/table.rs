@@ -21,6 +21,12 @@
 //! The magnitude texel is `(albedo, schlick)`: the integrals over the hemisphere of `f cos` and of
 //! `f cos (1 - cos theta_vh)^5`, for a BRDF `f` without Fresnel term, so that the specular albedo is
 //! `f0 * albedo + (f90 - f0) * schlick`.
+//!
+//! # Two matrices
+//! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves what
+//! is grazing. A second matrix layer holds the lobe of `f cos (1 - cos theta_vh)^5`, and a material of any
+//! reflectance is a sum of the two, or one lobe between them: see [`Fresnel`]. A table without it uses the one
+//! matrix for both.
 
 use glam::{DMat3, DVec3};
 
@@ -43,6 +49,19 @@ pub struct LightTable {
     size: u32,
     matrix: Vec<[f32; 4]>,
     magnitude: Vec<[f32; 2]>,
+    schlick_matrix: Option<Vec<[f32; 4]>>,
+}
+
+/// How Schlick's Fresnel term enters the integral of a lobe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Fresnel {
+    /// One integral, of the lobe between the table's two that the reflectance calls for. A colour counts by the
+    /// mean of its channels; the specular albedo stays exact in each.
+    #[default]
+    ByF0 = 0,
+    /// Two integrals, one of each lobe: exact in the reflectance and its colour.
+    Split = 1,
 }
 
 /// Why texels do not make a table.
@@ -80,8 +99,10 @@ pub enum TableError {
         value: f32,
     },
     /// A transform cannot be inverted, so it is no lobe.
-    #[error("matrix: texel ({x}, {y}) is singular or mirrored: determinant {determinant}, must be above 0")]
+    #[error("{layer}: texel ({x}, {y}) is singular or mirrored: determinant {determinant}, must be above 0")]
     Singular {
+        /// The layer.
+        layer: &'static str,
         /// The texel's column (roughness).
         x: u32,
         /// The texel's row (view angle).
@@ -103,19 +124,42 @@ pub enum TableError {
     },
 }
 
-/// One lookup: the lobe of a roughness and a view angle.
+/// One lookup: the lobes of a roughness and a view angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableSample {
-    /// M⁻¹: directions of the surface frame (view in the xz plane, x not negative) into cosine space.
+    /// M⁻¹ of the lobe without Fresnel term: directions of the surface frame (view in the xz plane, x not
+    /// negative) into cosine space.
     pub inverse: DMat3,
+    /// M⁻¹ of the lobe of Schlick's weight; the same as `inverse` in a table of one matrix.
+    pub schlick_inverse: DMat3,
     /// Integral of `f cos` over the hemisphere, in [0, 1].
     pub albedo: f64,
     /// Integral of `f cos (1 - cos theta_vh)^5` over the hemisphere, in [0, 1].
     pub schlick: f64,
 }
 
+impl TableSample {
+    /// The specular albedo at a reflectance of `f0` at normal and `f90` at grazing incidence.
+    pub fn specular_albedo(&self, f0: f64, f90: f64) -> f64 {
+        f0 * self.albedo + (f90 - f0) * self.schlick
+    }
+
+    /// M⁻¹ of one lobe for a reflectance, [`Fresnel::ByF0`]: between the two by their shares of the specular
+    /// albedo. Since M⁻¹ is linear in the texel, texels may be interpolated instead.
+    pub fn inverse_by_f0(&self, f0: f64, f90: f64) -> DMat3 {
+        self.inverse + (self.schlick_inverse - self.inverse) * self.schlick_share(f0, f90)
+    }
+
+    /// The part of the specular albedo that is due to Schlick's weight, in [0, 1]; 0 where nothing is reflected
+    /// or `f90` is below `f0`.
+    pub fn schlick_share(&self, f0: f64, f90: f64) -> f64 {
+        let (lobe, schlick) = (f0 * self.albedo, (f90 - f0) * self.schlick);
+        if schlick > 0.0 && lobe >= 0.0 { schlick / (lobe + schlick) } else { 0.0 }
+    }
+}
+
 impl LightTable {
-    /// Makes a table from its texels.
+    /// Makes a table of one matrix from its texels.
     ///
     /// # Errors
     /// [`TableError`] says which layer, texel and channel is wrong.
@@ -138,16 +182,30 @@ impl LightTable {
             let (x, y) = (index as u32 % size, index as u32 / size);
             finite("matrix", x, y, m)?;
             finite("magnitude", x, y, a)?;
-            let determinant = m[0] * m[3] - m[1] * m[2];
-            if determinant.is_nan() || determinant <= 0.0 {
-                return Err(TableError::Singular { x, y, determinant });
-            }
+            invertible("matrix", x, y, m)?;
             // The Schlick part is a part: with more, a surface without F90 would reflect less than nothing
             if a[0] > 1.0 || a[1] < 0.0 || a[1] > a[0] {
                 return Err(TableError::Magnitude { x, y, albedo: a[0], schlick: a[1] });
             }
         }
-        Ok(Self { description, size, matrix, magnitude })
+        Ok(Self { description, size, matrix, magnitude, schlick_matrix: None })
+    }
+
+    /// This table with a second matrix: the lobe of Schlick's weight.
+    ///
+    /// # Errors
+    /// [`TableError`] says which texel and channel is wrong.
+    pub fn with_schlick_matrix(self, matrix: Vec<[f32; 4]>) -> Result<Self, TableError> {
+        const LAYER: &str = "schlick matrix";
+        if matrix.len() != self.matrix.len() {
+            return Err(TableError::TexelCount { layer: LAYER, count: matrix.len(), size: self.size });
+        }
+        for (index, texel) in matrix.iter().enumerate() {
+            let (x, y) = (index as u32 % self.size, index as u32 / self.size);
+            finite(LAYER, x, y, texel)?;
+            invertible(LAYER, x, y, texel)?;
+        }
+        Ok(Self { schlick_matrix: Some(matrix), ..self })
     }
 
     /// What the table says of itself.
@@ -165,6 +223,11 @@ impl LightTable {
         &self.matrix
     }
 
+    /// The matrix layer of Schlick's weight, if there is one.
+    pub fn schlick_matrix(&self) -> Option<&[[f32; 4]]> {
+        self.schlick_matrix.as_deref()
+    }
+
     /// The magnitude layer, `(albedo, schlick)` a texel.
     pub fn magnitude(&self) -> &[[f32; 2]] {
         &self.magnitude
@@ -178,14 +241,15 @@ impl LightTable {
         (f64::from(x) / step, 1.0 - v * v)
     }
 
-    /// Both layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
-    /// channels; four `f32` a texel.
+    /// The layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
+    /// channels, layer 2 the matrix of Schlick's weight if there is one; four `f32` a texel.
     pub fn texels(&self) -> Vec<[f32; 4]> {
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], 0.0, 0.0]);
-        self.matrix.iter().copied().chain(magnitude).collect()
+        let schlick = self.schlick_matrix.iter().flatten().copied();
+        self.matrix.iter().copied().chain(magnitude).chain(schlick).collect()
     }
 
-    /// Looks up a lobe, in float64: the twin of `arealight_table_lookup`.
+    /// Looks up the lobes, in float64: the twin of `arealight_table_lookup`.
     ///
     /// `roughness` is perceptual and clamped to [0, 1] (its alpha to [`crate::MIN_ALPHA`]); `cos_view` is
     /// clamped to [0, 1]. NaN counts as 0.
@@ -205,16 +269,19 @@ impl LightTable {
             (at(1, 1), s * t),
         ];
         // Interpolate
-        let matrix = |c: usize| weights.iter().map(|&(i, w)| w * f64::from(self.matrix[i][c])).sum::<f64>();
-        let magnitude =
-            |c: usize| weights.iter().map(|&(i, w)| w * f64::from(self.magnitude[i][c])).sum::<f64>();
-        let texel = [matrix(0), matrix(1), matrix(2), matrix(3)];
-        TableSample {
-            inverse: inverse_from_texel(texel, roughness * roughness, cos_view),
-            albedo: magnitude(0),
-            schlick: magnitude(1),
-        }
+        let alpha = roughness * roughness;
+        let inverse =
+            |texels: &[[f32; 4]]| inverse_from_texel(interpolated(texels, &weights), alpha, cos_view);
+        let [albedo, schlick] = interpolated(&self.magnitude, &weights);
+        let lobe = inverse(&self.matrix);
+        let schlick_inverse = self.schlick_matrix.as_deref().map_or(lobe, inverse);
+        TableSample { inverse: lobe, schlick_inverse, albedo, schlick }
     }
+}
+
+/// The weighted sum of the texels at four indices.
+fn interpolated<const N: usize>(texels: &[[f32; N]], weights: &[(usize, f64); 4]) -> [f64; N] {
+    std::array::from_fn(|c| weights.iter().map(|&(i, weight)| weight * f64::from(texels[i][c])).sum())
 }
 
 /// M⁻¹ in the surface frame from a matrix texel, see the module's text.
@@ -231,6 +298,25 @@ pub fn inverse_from_texel(texel: [f64; 4], alpha: f64, cos_view: f64) -> DMat3 {
 pub fn mirror_frame(cos_view: f64) -> DMat3 {
     let sin_view = ((1.0 - cos_view) * (1.0 + cos_view)).max(0.0).sqrt();
     DMat3::from_cols(DVec3::new(cos_view, 0.0, sin_view), DVec3::Y, DVec3::new(-sin_view, 0.0, cos_view))
+}
+
+/// The part of a lobe's energy that lies above the surface, in (0, 1], for M⁻¹ of the surface frame.
+///
+/// A lobe that is clipped at the surface's horizon as well as at that of cosine space loses the rest; divided by
+/// this, it keeps the albedo. The half space above the surface is one in cosine space too, and the lune between
+/// it and the upper one at an angle `a` between their normals holds `(1 + cos a) / 2` of a cosine.
+pub fn share_above_surface(inverse: &DMat3) -> f64 {
+    let x = inverse.x_axis;
+    let length = x.x.hypot(x.z);
+    if length > 0.0 { (0.5 + 0.5 * x.x / length).max(f64::EPSILON) } else { 1.0 }
+}
+
+fn invertible(layer: &'static str, x: u32, y: u32, texel: &[f32; 4]) -> Result<(), TableError> {
+    let determinant = texel[0] * texel[3] - texel[1] * texel[2];
+    if determinant.is_nan() || determinant <= 0.0 {
+        return Err(TableError::Singular { layer, x, y, determinant });
+    }
+    Ok(())
 }
 
 fn finite(layer: &'static str, x: u32, y: u32, texel: &[f32]) -> Result<(), TableError> {
@@ -294,6 +380,61 @@ mod tests {
     fn an_identity_texel_is_a_cosine_about_the_mirror_direction() {
         let inverse = inverse_from_texel([1.0, 0.0, 0.0, 1.0], 1.0, 0.6);
         assert!((inverse * DVec3::new(-0.8, 0.0, 0.6) - DVec3::Z).length() < 1e-12);
+    }
+
+    fn two_matrices() -> LightTable {
+        let lobe = table(|_, m, a| (*m, *a) = ([0.8, -0.1, 0.3, 1.5], [0.6, 0.2])).unwrap();
+        lobe.with_schlick_matrix(vec![[0.4, 0.1, -0.2, 0.7]; 9]).unwrap()
+    }
+
+    #[test]
+    fn the_lobe_of_a_reflectance_lies_between_the_two_by_their_albedos() {
+        let sample = two_matrices().lookup(0.7, 0.6);
+        assert_eq!(sample.inverse_by_f0(1.0, 1.0), sample.inverse);
+        assert_eq!(sample.inverse_by_f0(0.0, 1.0), sample.schlick_inverse);
+        // 0.5 * 0.6 of the one, 0.5 * 0.2 of the other: a quarter
+        assert!((sample.schlick_share(0.5, 1.0) - 0.25).abs() < 1e-7, "{sample:?}");
+        let between = inverse_from_texel([0.7, -0.05, 0.175, 1.3], 0.49, 0.6);
+        assert!(sample.inverse_by_f0(0.5, 1.0).abs_diff_eq(between, 1e-7));
+        // Nothing is reflected, or less at grazing incidence: no reason to turn to Schlick's lobe
+        assert_eq!([sample.schlick_share(0.0, 0.0), sample.schlick_share(0.5, 0.1)], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn one_matrix_serves_both_lobes() {
+        let sample = table(|_, m, _| m[1] = 0.2).unwrap().lookup(0.7, 0.6);
+        assert_eq!(sample.inverse, sample.schlick_inverse);
+    }
+
+    #[test]
+    fn layers_come_in_the_order_of_the_image() {
+        let texels = two_matrices().texels();
+        assert_eq!(texels.len(), 27);
+        assert_eq!(
+            [texels[0], texels[9], texels[18]],
+            [[0.8, -0.1, 0.3, 1.5], [0.6, 0.2, 0.0, 0.0], [0.4, 0.1, -0.2, 0.7]]
+        );
+        assert_eq!(table(|_, _, _| {}).unwrap().texels().len(), 18);
+    }
+
+    #[test]
+    fn a_tilted_cosine_has_a_share_above_the_surface() {
+        // A cosine about the normal lies above, one about the horizon half above
+        for (cos_view, share) in [(1.0, 1.0), (0.0, 0.5), (0.5, 0.75)] {
+            let inverse = inverse_from_texel([1.0, 0.0, 0.0, 1.0], 1.0, cos_view);
+            assert!((share_above_surface(&inverse) - share).abs() < 1e-12, "{cos_view}");
+        }
+        assert_eq!(share_above_surface(&DMat3::ZERO), 1.0);
+    }
+
+    #[test]
+    fn a_bad_second_matrix_is_refused_with_its_place() {
+        let with = |matrix| table(|_, _, _| {}).unwrap().with_schlick_matrix(matrix).unwrap_err().to_string();
+        let mut matrix = vec![[1.0, 0.0, 0.0, 1.0]; 9];
+        matrix[5][2] = f32::INFINITY;
+        assert_eq!(with(matrix), "schlick matrix: texel (2, 1) channel 2 is inf, not a finite number");
+        assert!(with(vec![[1.0, 0.0, 0.0, -1.0]; 9]).starts_with("schlick matrix: texel (0, 0) is singular"));
+        assert!(with(vec![]).starts_with("schlick matrix: 0 texels"));
     }
 
     #[test]
