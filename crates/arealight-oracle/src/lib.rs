@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`frame`] | the surface frame of a normal and a view |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
+//! | [`hard`] | polygons that break form factors in float32, with their truth in 106 bits |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
@@ -21,6 +22,7 @@ pub mod cases;
 pub mod cubature;
 pub mod frame;
 pub mod ggx;
+pub mod hard;
 pub mod ltsd;
 pub mod measure;
 pub mod polygon;

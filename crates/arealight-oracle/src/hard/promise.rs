@@ -1,0 +1,104 @@
+//! What is promised of a computed form factor, as numbers that a result is held against.
+
+use super::reference::Reference;
+use serde::Serialize;
+
+/// How far each vertex may be moved, as a part of its distance, for a result to count as that of a polygon
+/// nearby: four units in float32's last place.
+pub const MOVE: f64 = 4.0 / (1 << 24) as f64;
+
+/// The largest offset from the anchor, as a part of the farthest vertex's distance, below which the difference
+/// form holds its relative promise: its own switch stands at the square, 0.04.
+pub const SMALL: f64 = 0.2;
+
+/// What a way to compute form factors promises. All promise a finite number in [0, 1] for any bits, and 0
+/// where a vertex is NaN or infinite.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Promises {
+    /// The largest distance to the values that the polygons within [`MOVE`] have.
+    pub backward: f64,
+    /// The largest error far from contact.
+    pub forward: f64,
+    /// What is added to it, over the distance to the polygon as a part of the farthest vertex's distance.
+    pub contact: f64,
+    /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if it
+    /// stood upright at the zenith. `None` promises nothing more for them.
+    pub small_light: Option<f64>,
+    /// What a short series adds, as a part of each edge's share.
+    pub of_share: f64,
+    /// What a short series adds, as a part of each edge's share times its angle in radians.
+    pub of_share_by_angle: f64,
+    /// What a form without edges adds, as a part of the form factor.
+    pub of_form_factor: f64,
+}
+
+impl Promises {
+    /// The exact rung.
+    pub const EXACT: Self = Self {
+        backward: 6e-7,
+        forward: 1e-6,
+        contact: 1e-7,
+        small_light: None,
+        of_share: 0.0,
+        of_share_by_angle: 0.0,
+        of_form_factor: 0.0,
+    };
+    /// The fast rung: a short series for the arcs.
+    pub const FAST: Self = Self { of_share: 2.7e-5, ..Self::EXACT };
+    /// The exact rung that takes small lights in difference form.
+    pub const EXACT_DIFFERENCE: Self = Self { small_light: Some(1e-6), ..Self::EXACT };
+    /// The fast rung that takes small lights in difference form: only what an arc is longer than its chord has the
+    /// short series' error.
+    pub const FAST_DIFFERENCE: Self = Self { of_share_by_angle: 7e-5, ..Self::EXACT_DIFFERENCE };
+
+    /// What short series and forms without edges may add.
+    fn allowance(&self, reference: &Reference) -> f64 {
+        self.of_share * reference.share
+            + self.of_share_by_angle * reference.share_by_angle
+            + self.of_form_factor * reference.form_factor
+    }
+
+    /// The largest backward error.
+    pub fn backward_bound(&self, reference: &Reference) -> f64 {
+        self.backward + self.allowance(reference)
+    }
+
+    /// The largest error; infinite in contact.
+    pub fn forward_bound(&self, reference: &Reference) -> f64 {
+        self.forward + self.contact / reference.rho + self.allowance(reference)
+    }
+
+    /// The largest error of a small light, where there is a promise for this one.
+    pub fn small_light_bound(&self, reference: &Reference) -> Option<f64> {
+        let unit = reference.small_light_unit?;
+        Some(self.small_light? * unit + self.allowance(reference))
+    }
+}
+
+/// One of the promises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Promise {
+    /// The bits are those of a number from 0 to 1.
+    Range,
+    /// 0 for a vertex that is NaN or infinite.
+    Zero,
+    /// The value of a polygon nearby.
+    Backward,
+    /// Close to the given polygon's value.
+    Forward,
+    /// Close for its size.
+    SmallLight,
+}
+
+impl std::fmt::Display for Promise {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Range => "range",
+            Self::Zero => "zero",
+            Self::Backward => "backward",
+            Self::Forward => "forward",
+            Self::SmallLight => "small light",
+        })
+    }
+}

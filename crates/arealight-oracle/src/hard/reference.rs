@@ -1,0 +1,107 @@
+//! The truth about one hard case, and how near to contact it is.
+
+use super::HardCase;
+use super::double::Double;
+use super::promise::SMALL;
+use super::walk::walk;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A case's form factor in 106 bits, and what bounds are made of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// What the polygon sends from either side, in [0, 1].
+    pub form_factor: f64,
+    /// The distance to the polygon as a part of that to its farthest vertex, in [0, 1].
+    pub rho: f64,
+    /// The distance to the polygon.
+    pub distance: f64,
+    /// The polygon's area.
+    pub area: f64,
+    /// The edge terms' absolute values, summed.
+    pub share: f64,
+    /// The same, each times its edge's angle in radians.
+    pub share_by_angle: f64,
+    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`].
+    pub small_light_unit: Option<f64>,
+}
+
+impl Reference {
+    /// Walks around the polygon in 106 bits. Vertices must be finite.
+    pub fn new(case: &HardCase) -> Self {
+        let (anchor, offsets) = (case.anchor.map(f64::from), case.offsets_exactly());
+        let walked = walk::<Double>(anchor, &offsets);
+        let offsets: Vec<DVec3> = offsets.iter().map(|offset| DVec3::from_array(*offset)).collect();
+        let anchor = DVec3::from_array(anchor);
+
+        // Newell's normal: its length is twice the area
+        let next = |i: usize| offsets[(i + 1) % offsets.len()];
+        let pivot = offsets.first().copied().unwrap_or_default();
+        let doubled: DVec3 = (0..offsets.len()).map(|i| (offsets[i] - pivot).cross(next(i) - pivot)).sum();
+
+        // The nearest point is inside of the outline, on it, or where it was clipped
+        let mut distance = f64::INFINITY;
+        for (i, offset) in offsets.iter().enumerate() {
+            distance = distance.min(distance_to_segment(anchor + *offset, next(i) - *offset));
+        }
+        if let Some(normal) = doubled.try_normalize()
+            && winds_around(&offsets, anchor, normal)
+        {
+            let plane = offsets.iter().map(|o| normal.dot(anchor + *o).abs()).fold(f64::INFINITY, f64::min);
+            distance = distance.min(plane);
+        }
+        if !case.flat {
+            distance = distance.min(walked.nearest_edge);
+        }
+
+        let farthest = offsets.iter().map(|o| (anchor + *o).length()).fold(0.0, f64::max);
+        let extent = offsets.iter().map(|o| o.length()).fold(0.0, f64::max);
+        let area = 0.5 * doubled.length();
+        Self {
+            form_factor: walked.signed_form_factor().abs().min(1.0),
+            rho: if farthest > 0.0 { distance / farthest } else { 0.0 },
+            distance,
+            area,
+            share: walked.share,
+            share_by_angle: walked.share_by_angle,
+            small_light_unit: (extent < SMALL * farthest).then(|| area / (PI * distance * distance)),
+        }
+    }
+}
+
+/// The distance from the origin to the segment from `start` along `edge`.
+fn distance_to_segment(start: DVec3, edge: DVec3) -> f64 {
+    let square = edge.length_squared();
+    if square == 0.0 {
+        return start.length();
+    }
+    let part = (-start.dot(edge) / square).clamp(0.0, 1.0);
+    if part > 0.0 && part < 1.0 {
+        // The height of the triangle: its error is relative to the nearer end
+        let end = start + edge;
+        let near = if start.length_squared() < end.length_squared() { start } else { end };
+        near.cross(edge).length() / square.sqrt()
+    } else if part == 0.0 {
+        start.length()
+    } else {
+        (start + edge).length()
+    }
+}
+
+/// Whether the outline winds around the origin's projection along `normal`.
+fn winds_around(offsets: &[DVec3], anchor: DVec3, normal: DVec3) -> bool {
+    let (x, y) = normal.any_orthonormal_pair();
+    let flat: Vec<[f64; 2]> = offsets.iter().map(|o| [x.dot(anchor + *o), y.dot(anchor + *o)]).collect();
+    // Count the crossings of a ray along x, up and down
+    let mut winding = 0;
+    for (i, a) in flat.iter().enumerate() {
+        let b = flat[(i + 1) % flat.len()];
+        let side = a[0] * b[1] - a[1] * b[0];
+        if a[1] <= 0.0 && b[1] > 0.0 && side > 0.0 {
+            winding += 1;
+        } else if a[1] > 0.0 && b[1] <= 0.0 && side < 0.0 {
+            winding -= 1;
+        }
+    }
+    winding != 0
+}
