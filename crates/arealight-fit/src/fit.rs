@@ -16,7 +16,7 @@ use crate::solve::Problem;
 pub struct Settings {
     /// Nodes a side, 2 to [`arealight::table::MAX_SIZE`].
     pub size: u32,
-    /// The lobe that is fitted at each node.
+    /// The lobes that are fitted at each node.
     pub aim: Aim,
 }
 
@@ -28,11 +28,11 @@ impl Default for Settings {
 
 /// Fits a table to a BRDF.
 ///
-/// Each column (a roughness) runs from the normal to the horizon, each texel starting from the one before, so
+/// Each column (a roughness) of each matrix runs from the normal to the horizon, each texel starting from the one before, so
 /// that neighbours settle alike. Columns do not depend on each other: the result is the same on any number of
 /// threads.
 ///
-/// `progress` is called from any thread with the number of steps done and the number to do: two a texel.
+/// `progress` is called from any thread with the number of steps done and the number to do, [`Settings::steps`].
 ///
 /// # Errors
 /// [`FitError`] if the settings are out of range, or the BRDF yields no lobe at some texel.
@@ -44,7 +44,7 @@ pub fn fit(
     settings.check()?;
     let size = settings.size as usize;
     let done = AtomicU64::new(0);
-    let total = 2 * (size * size) as u64;
+    let total = settings.steps();
     let report = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
 
     // Integrate the albedos
@@ -61,20 +61,22 @@ pub fn fit(
         .collect::<Result<_, _>>()?;
     let texel = |i: usize| {
         let (alpha, cos_view) = node_of(settings.size, i);
-        Texel { brdf, alpha, cos_view, magnitude: magnitude[i] }
+        Texel { brdf, alpha, cos_view }
     };
 
-    // Fit each column from the normal to the horizon
-    let columns: Vec<Vec<Lobe>> = (0..size)
+    // Fit each column of each matrix from the normal to the horizon
+    let shares: Vec<Vec<[f64; 2]>> = magnitude.iter().map(|m| settings.aim.shares(*m)).collect();
+    let columns: Vec<Vec<Lobe>> = (0..settings.aim.matrices() * size)
         .into_par_iter()
-        .map(|x| {
+        .map(|column| {
+            let (layer, x) = (column / size, column % size);
             let mut lobe = start_at_normal(texel(x).alpha);
             let mut cos_before = 1.0;
             (0..size)
                 .map(|y| {
                     let texel = texel(y * size + x);
                     let guess = lobe.narrowed(cos_before, texel.cos_view);
-                    lobe = texel.fit(&settings.aim, guess, lobe)?;
+                    lobe = texel.fit(shares[y * size + x][layer], guess, lobe)?;
                     cos_before = texel.cos_view;
                     report();
                     Ok(lobe)
@@ -82,15 +84,17 @@ pub fn fit(
                 .collect()
         })
         .collect::<Result<_, FitError>>()?;
-    let lobes: Vec<Lobe> = (0..size * size).map(|i| columns[i % size][i / size]).collect();
+    let layers = columns.chunks_exact(size).map(|columns| {
+        (0..size * size).map(|i| columns[i % size][i / size].texel.map(|q| q as f32)).collect()
+    });
 
-    into_table(brdf, settings, &lobes, &magnitude)
+    into_table(brdf, settings, layers.collect(), &magnitude)
 }
 
 impl Texel<'_> {
     /// Fits from the better of two lobes, on nodes laid out by the first.
-    fn fit(&self, aim: &Aim, guess: Lobe, before: Lobe) -> Result<Lobe, FitError> {
-        let problem = Problem::new(aim, self, &guess)?;
+    fn fit(&self, shares: [f64; 2], guess: Lobe, before: Lobe) -> Result<Lobe, FitError> {
+        let problem = Problem::new(shares, self, &guess)?;
         let start = if problem.loss(&before) < problem.loss(&guess) { before } else { guess };
         // Seen from the normal, the lobe of an isotropic BRDF is round: there the tangent frame is arbitrary
         // and must not show
@@ -117,33 +121,49 @@ fn start_at_normal(alpha: f64) -> Lobe {
     Lobe { texel: [1.0, 0.0, 0.0, 2.0 / (1.0 + alpha)], alpha }
 }
 
+/// Makes a table of one or two matrix layers.
 fn into_table(
     brdf: &dyn Brdf,
     settings: &Settings,
-    lobes: &[Lobe],
+    layers: Vec<Vec<[f32; 4]>>,
     magnitude: &[Magnitude],
 ) -> Result<LightTable, FitError> {
-    let aim: Vec<String> =
-        settings.aim.reflectances.iter().map(|(f0, weight)| format!("f0 {f0} by {weight}")).collect();
+    let aim = match &settings.aim {
+        Aim::Split => "split".to_owned(),
+        Aim::Blend(reflectances) => {
+            let part = |(f0, weight): &(f64, f64)| format!("f0 {f0} by {weight}");
+            format!("aimed at {}", reflectances.iter().map(part).collect::<Vec<_>>().join(", "))
+        }
+    };
     let description = TableDescription {
         brdf: brdf.name().to_owned(),
-        made_by: format!("arealight-fit {}, aimed at {}", env!("CARGO_PKG_VERSION"), aim.join(", ")),
+        made_by: format!("arealight-fit {}, {aim}", env!("CARGO_PKG_VERSION")),
     };
-    let matrix = lobes.iter().map(|lobe| lobe.texel.map(|q| q as f32)).collect();
     let magnitude = magnitude.iter().map(|m| [m.albedo as f32, m.schlick as f32]).collect();
-    Ok(LightTable::new(description, settings.size, matrix, magnitude)?)
+    let mut layers = layers.into_iter();
+    let table = LightTable::new(description, settings.size, layers.next().unwrap_or_default(), magnitude)?;
+    Ok(match layers.next() {
+        Some(schlick) => table.with_schlick_matrix(schlick)?,
+        None => table,
+    })
 }
 
 impl Settings {
+    /// How many steps a fit takes: the magnitude and each matrix of every texel.
+    pub fn steps(&self) -> u64 {
+        (1 + self.aim.matrices() as u64) * u64::from(self.size).pow(2)
+    }
+
     fn check(&self) -> Result<(), FitError> {
         let out_of = |setting, value, range| Err(FitError::Setting { setting, value, range });
         if !(2..=arealight::table::MAX_SIZE).contains(&self.size) {
             return out_of("size", f64::from(self.size), "2 to 1024");
         }
-        if self.aim.reflectances.is_empty() {
+        let Aim::Blend(reflectances) = &self.aim else { return Ok(()) };
+        if reflectances.is_empty() {
             return out_of("number of reflectances", 0.0, "at least 1");
         }
-        for &(f0, weight) in &self.aim.reflectances {
+        for &(f0, weight) in reflectances {
             if !(0.0..=1.0).contains(&f0) {
                 return out_of("f0", f0, "0 to 1");
             }

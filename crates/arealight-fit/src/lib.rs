@@ -7,14 +7,15 @@
 //!    heuristic. The BRDF is evaluated once at each.
 //! 2. *Probes*: 256 quads on the sphere, from half a lobe's width to large lights. The loss is the sum over
 //!    them of the squared error of the lobe's integral, because that is what shading asks of a table. A node
-//!    counts in every probe that it lies in.
+//!    counts in every probe that it lies in. Each probe counts twice: with the lobe clipped at its own horizon,
+//!    and at the surface's too, for both are used.
 //! 3. *Steps*: damped Gauss-Newton with exact derivatives, some ten a texel.
 //!
 //! Each texel starts from its neighbour, and is held to it, weakly, in what the probes do not determine. So
 //! the table is smooth and may be interpolated.
 //!
 //! # What is fitted
-//! One matrix serves every Fresnel reflectance here; [`Aim`] says which lobe it aims at. [`report`] measures a
+//! Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`]. [`report`] measures a
 //! table at reflectances from 0.02 to 1, beside the table published with Heitz et al. 2016.
 //!
 //! # The same everywhere

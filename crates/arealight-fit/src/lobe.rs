@@ -81,6 +81,22 @@ impl Lobe {
         (density, gradient)
     }
 
+    /// The part of the lobe's energy above the surface, and its derivatives by the four entries; `normal` is the
+    /// surface's, in the mirror frame. The twin of [`arealight::table::share_above_surface`].
+    ///
+    /// In cosine space the surface's normal is `n = M^T normal`, and the share `(1 + n.z / |n|) / 2`.
+    pub fn share_above(&self, normal: DVec3) -> (f64, [f64; 4]) {
+        let [q00, q02, q20, q22] = self.texel;
+        let a = self.alpha;
+        let x = a * (q22 * normal.x - q20 * normal.z);
+        let z = q00 * normal.z - q02 * normal.x;
+        let length = x.hypot(z);
+        // d (z / length) = x (x dz - z dx) / length³
+        let slope = 0.5 * x / length.powi(3);
+        let gradient = [x * normal.z, -x * normal.x, a * z * normal.z, -a * z * normal.x];
+        (0.5 + 0.5 * z / length, gradient.map(|part| slope * part))
+    }
+
     /// A direction of the mirror frame drawn from the lobe, for `u` in [0, 1)².
     pub fn sample(&self, u: [f64; 2]) -> DVec3 {
         let radius = u[0].sqrt();

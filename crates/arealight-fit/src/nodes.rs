@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::brdf::{Brdf, Magnitude, view_direction};
+use crate::brdf::{Brdf, view_direction};
 use crate::lobe::Lobe;
 use arealight::table::mirror_frame;
 
@@ -23,6 +23,14 @@ pub struct Node {
     pub schlick: f64,
 }
 
+/// The nodes of a texel: those above the surface, then those below.
+pub struct Nodes {
+    /// All of them.
+    pub all: Vec<Node>,
+    /// How many of them lie above the surface.
+    pub above: usize,
+}
+
 /// What is fitted at one node of the table.
 pub struct Texel<'a> {
     /// The BRDF.
@@ -31,19 +39,18 @@ pub struct Texel<'a> {
     pub alpha: f64,
     /// The view.
     pub cos_view: f64,
-    /// The lobe's albedos.
-    pub magnitude: Magnitude,
 }
 
 impl Texel<'_> {
     /// Lays nodes over the sphere: half of them drawn from the BRDF, half from `guess`, weighted by the balance
     /// heuristic, so that both a peak that the guess misses and energy that the guess puts where the BRDF
     /// has none are seen. Directions of no usable value are left out.
-    pub fn nodes(&self, guess: &Lobe) -> Vec<Node> {
+    pub fn nodes(&self, guess: &Lobe) -> Nodes {
         let view = view_direction(self.cos_view);
         let to_surface = mirror_frame(self.cos_view);
         let to_mirror = to_surface.transpose();
-        let mut nodes = Vec::with_capacity(2 * RADIAL * AZIMUTH);
+        let mut all = Vec::with_capacity(2 * RADIAL * AZIMUTH);
+        let mut below = Vec::new();
         for i in 0..RADIAL {
             // Crowd nodes at the centre and at the rim of the unit square's first axis
             let t = (i as f64 + 0.5) / RADIAL as f64;
@@ -65,11 +72,14 @@ impl Texel<'_> {
                     let weight = crowding / density;
                     if weight.is_finite() && weight > 0.0 && value.is_finite() && value >= 0.0 {
                         let schlick = value * self.brdf.schlick_weight(view, light);
-                        nodes.push(Node { direction, weight, value, schlick });
+                        let half_space = if light.z > 0.0 { &mut all } else { &mut below };
+                        half_space.push(Node { direction, weight, value, schlick });
                     }
                 }
             }
         }
-        nodes
+        let above = all.len();
+        all.append(&mut below);
+        Nodes { all, above }
     }
 }

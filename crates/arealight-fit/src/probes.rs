@@ -15,6 +15,9 @@ use crate::random::Random;
 /// How many quads a texel is probed with. Twice as many lower the error by 1 %.
 const COUNT: usize = 256;
 
+/// The largest half width, of a quad at distance 1.
+const LARGEST: f64 = 3.0;
+
 /// All texels are probed alike, so that neighbours differ by the BRDF alone.
 const SEED: u64 = 7;
 
@@ -57,7 +60,7 @@ impl Layout {
     fn probe(&self, random: &mut Random, i: usize) -> Probe {
         let is_in_lobe = i % 8 == 2;
         let smallest = if is_in_lobe { 0.1 } else { 0.5 * self.alpha.min(0.2) };
-        let half_width = random.between(smallest.ln(), 1.5_f64.ln()).exp();
+        let half_width = random.between(smallest.ln(), LARGEST.ln()).exp();
         let half_height = half_width * random.between(0.3, 1.0);
         let (direction, share, turn) = (random.direction(), random.unit(), TAU * random.unit());
         let centre = match i % 4 {

@@ -1,21 +1,46 @@
 //! How well a table does: its polygon integrals against the true BRDF's on random quads.
 
+use arealight::table::{Fresnel, share_above_surface};
 use arealight::{LightTable, TableSample};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::polygon::transformed_form_factor;
 use arealight_oracle::shading::lobe_integrals;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use crate::brdf::view_direction;
 
 mod quads;
 
-pub use quads::{Family, Quad, random_quads};
+pub use quads::{Family, Quad, near_mirror_quads, random_quads};
+
+/// Which horizons clip a light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Horizon {
+    /// That of cosine space alone: light leaks from just below the surface.
+    #[default]
+    CosineSpace,
+    /// The surface's too; what is left of the lobe is scaled to keep its energy
+    /// ([`arealight::table::share_above_surface`]).
+    Both,
+}
+
+/// How a table is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Rung {
+    /// One integral or two.
+    pub fresnel: Fresnel,
+    /// What is clipped.
+    pub horizon: Horizon,
+}
 
 /// The reflectances at normal incidence at which a table is judged: dielectrics to metals.
 pub const REFLECTANCES: [f64; 7] = [0.02, 0.04, 0.1, 0.2, 0.4, 0.7, 1.0];
+
+/// Metals whose reflectance has a colour.
+pub const METALS: [(&str, DVec3); 2] =
+    [("gold", DVec3::new(1.0, 0.766, 0.336)), ("copper", DVec3::new(0.955, 0.638, 0.538))];
 
 /// How many quads a report is drawn up on, and the seed that draws them.
 pub const COUNT: usize = 3000;
@@ -60,9 +85,14 @@ pub struct Errors {
 
 /// Draws quads and integrates GGX over them. `progress` is called from any thread after each.
 pub fn cases(count: usize, seed: u64, progress: &(dyn Fn() + Sync)) -> Vec<Case> {
+    integrate(random_quads(count, seed), progress)
+}
+
+/// Integrates GGX over quads. `progress` is called from any thread after each.
+pub fn integrate(quads: Vec<Quad>, progress: &(dyn Fn() + Sync)) -> Vec<Case> {
     // An estimate of 1e-4 stands for an error of about 1e-6, a thousandth of what is measured
     let settings = Settings { relative_tolerance: 1e-4, max_evaluations: 1_000_000 };
-    random_quads(count, seed)
+    quads
         .into_par_iter()
         .map(|quad| {
             let lobe = Ggx { alpha: quad.roughness * quad.roughness };
@@ -76,31 +106,85 @@ pub fn cases(count: usize, seed: u64, progress: &(dyn Fn() + Sync)) -> Vec<Case>
 }
 
 /// Measures a table at each of [`REFLECTANCES`].
-pub fn measure(table: &LightTable, cases: &[Case]) -> Vec<Errors> {
-    measure_lookup(|roughness, cos_view| table.lookup(roughness, cos_view), cases)
+pub fn measure(table: &LightTable, rung: Rung, cases: &[Case]) -> Vec<Errors> {
+    measure_lookup(|roughness, cos_view| table.lookup(roughness, cos_view), rung, cases)
 }
 
 /// Measures anything that answers a roughness and a view's cosine with a lobe: tables stored in other ways,
 /// or formulas.
-pub fn measure_lookup(lookup: impl Fn(f64, f64) -> TableSample, cases: &[Case]) -> Vec<Errors> {
-    let answers: Vec<(TableSample, f64)> = cases
-        .iter()
-        .map(|case| {
-            let sample = lookup(case.quad.roughness, case.quad.cos_view);
-            (sample, transformed_form_factor(&sample.inverse, &case.quad.vertices).max(0.0))
-        })
-        .collect();
+pub fn measure_lookup(
+    lookup: impl Fn(f64, f64) -> TableSample + Sync,
+    rung: Rung,
+    cases: &[Case],
+) -> Vec<Errors> {
     REFLECTANCES
         .iter()
-        .map(|&f0| {
-            let errors = cases.iter().zip(&answers).map(|(case, (sample, form_factor))| {
-                let scale = f0 * sample.albedo + (1.0 - f0) * sample.schlick;
-                let truth = f0 * case.lobe + (1.0 - f0) * case.schlick;
-                (scale * form_factor - truth).abs()
-            });
-            summarise(f0, errors.collect())
-        })
+        .map(|&f0| Errors { f0, ..measure_f0(&lookup, rung, DVec3::splat(f0), cases) })
         .collect()
+}
+
+/// Measures a table for a reflectance that has a colour. The errors of all channels count alike; `f0` of the
+/// result is their mean.
+pub fn measure_colour(table: &LightTable, rung: Rung, f0: DVec3, cases: &[Case]) -> Errors {
+    measure_f0(&|roughness, cos_view| table.lookup(roughness, cos_view), rung, f0, cases)
+}
+
+fn measure_f0(
+    lookup: &(impl Fn(f64, f64) -> TableSample + Sync),
+    rung: Rung,
+    f0: DVec3,
+    cases: &[Case],
+) -> Errors {
+    let errors: Vec<[f64; 3]> = cases
+        .par_iter()
+        .map(|case| {
+            let sample = lookup(case.quad.roughness, case.quad.cos_view);
+            let truth = f0 * case.lobe + (1.0 - f0) * case.schlick;
+            (radiance(&sample, rung, f0, &case.quad.vertices) - truth).abs().to_array()
+        })
+        .collect();
+    summarise(f0.element_sum() / 3.0, errors.into_flattened())
+}
+
+/// What a table makes of a quad of unit radiance, with F90 = 1.
+fn radiance(sample: &TableSample, rung: Rung, f0: DVec3, quad: &[DVec3; 4]) -> DVec3 {
+    let integral = |inverse: &DMat3| integral(inverse, rung.horizon, quad);
+    match rung.fresnel {
+        Fresnel::ByF0 => {
+            let inverse = sample.inverse_by_f0(f0.element_sum() / 3.0, 1.0);
+            (f0 * sample.albedo + (1.0 - f0) * sample.schlick) * integral(&inverse)
+        }
+        Fresnel::Split => {
+            f0 * sample.albedo * integral(&sample.inverse)
+                + (1.0 - f0) * sample.schlick * integral(&sample.schlick_inverse)
+        }
+    }
+}
+
+/// The integral of a lobe over a quad, seen from its front.
+fn integral(inverse: &DMat3, horizon: Horizon, quad: &[DVec3; 4]) -> f64 {
+    match horizon {
+        Horizon::CosineSpace => transformed_form_factor(inverse, quad).max(0.0),
+        Horizon::Both => {
+            let form_factor = transformed_form_factor(inverse, &clipped(quad)).max(0.0);
+            form_factor / share_above_surface(inverse)
+        }
+    }
+}
+
+/// The part of a quad above the surface.
+fn clipped(quad: &[DVec3; 4]) -> Vec<DVec3> {
+    let mut above = Vec::with_capacity(5);
+    for (i, &a) in quad.iter().enumerate() {
+        let b = quad[(i + 1) % 4];
+        if a.z >= 0.0 {
+            above.push(a);
+        }
+        if a.z * b.z < 0.0 {
+            above.push((a + (b - a) * (a.z / (a.z - b.z))).with_z(0.0));
+        }
+    }
+    above
 }
 
 /// Mean, 95th percentile and maximum; zero for no errors at all.

@@ -1,10 +1,12 @@
 //! The fit of one texel: nonlinear least squares on the integrals over probes.
 
-use crate::aim::Aim;
+use glam::DVec3;
+
 use crate::error::FitError;
 use crate::lobe::Lobe;
-use crate::nodes::{Node, Texel};
+use crate::nodes::{Node, Nodes, Texel};
 use crate::probes::probe_rows;
+use arealight::table::mirror_frame;
 
 /// Most steps that were ever of use are 20.
 const MAX_STEPS: usize = 40;
@@ -16,13 +18,20 @@ const SMALLEST_GAIN: f64 = 1e-6;
 /// what they do not, so that the table is smooth; too little to move what they do.
 const ANCHOR: f64 = 1e-3;
 
-/// The least squares of one texel: the sum over probes of (integral of the lobe - integral aimed at)².
+/// The least squares of one texel: the sum over probes of (integral of the lobe - integral aimed at)², once with
+/// the lobe clipped by its own horizon only, once by the surface's as well and scaled to keep its energy. Both
+/// ways are used for shading, and a table that is fitted for one of them alone does badly in the other.
 pub struct Problem {
+    /// Those above the surface come first.
     nodes: Vec<Node>,
+    above: usize,
+    /// The surface's normal, in the mirror frame.
+    normal: DVec3,
     /// Probes by nodes: the solid angle of each node that lies in each probe.
     rows: Vec<f32>,
-    /// The integral aimed at, a probe.
-    targets: Vec<f64>,
+    /// The integrals aimed at, a probe: of the lobe, and of its part above the surface scaled to the same energy.
+    /// A BRDF that reflects nothing below the surface has one and the same for both.
+    targets: Vec<[f64; 2]>,
     /// The lobe that the nodes were laid out for.
     guess: Lobe,
     /// The weights of the squared distances of the texel's entries from the guess's.
@@ -30,23 +39,36 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Prepares the problem of a texel, on nodes laid out for a lobe like `guess`.
+    /// Prepares the problem of a texel, on nodes laid out for a lobe like `guess`. The lobe aimed at is
+    /// `f * (shares[0] + shares[1] * schlick)`.
     ///
     /// # Errors
     /// [`FitError::NoNodes`] if the BRDF has no usable value.
-    pub fn new(aim: &Aim, texel: &Texel, guess: &Lobe) -> Result<Self, FitError> {
-        let nodes = texel.nodes(guess);
+    pub fn new(shares: [f64; 2], texel: &Texel, guess: &Lobe) -> Result<Self, FitError> {
+        let Nodes { all: nodes, above } = texel.nodes(guess);
         if nodes.is_empty() {
             return Err(FitError::NoNodes { alpha: texel.alpha, cos_view: texel.cos_view });
         }
         let rows = probe_rows(guess, texel.cos_view, &nodes);
-        let [of_lobe, of_schlick] = aim.shares(texel.magnitude);
+        let [of_lobe, of_schlick] = shares;
         let target: Vec<f32> =
             nodes.iter().map(|node| (of_lobe * node.value + of_schlick * node.schlick) as f32).collect();
-        let targets = rows.chunks_exact(nodes.len()).map(|row| dot(row, &target)).collect();
-        let mut problem = Self { nodes, rows, targets, guess: *guess, anchor: [0.0; 4] };
-        let (normal, _) = problem.normal_equations(guess, [true; 4]);
-        problem.anchor = std::array::from_fn(|i| ANCHOR * normal[i][i]);
+        let normal = mirror_frame(texel.cos_view).transpose() * DVec3::Z;
+        let mut problem =
+            Self { nodes, above, normal, rows, targets: Vec::new(), guess: *guess, anchor: [0.0; 4] };
+        let weights: Vec<f32> = problem.nodes.iter().map(|node| node.weight as f32).collect();
+        let [all_above, all_below] = problem.sums(&weights, &target);
+        let scale = if all_above > 0.0 { (all_above + all_below) / all_above } else { 1.0 };
+        problem.targets = problem
+            .rows
+            .chunks_exact(target.len())
+            .map(|row| {
+                let [above, below] = problem.sums(row, &target);
+                [above + below, scale * above]
+            })
+            .collect();
+        let (matrix, _) = problem.normal_equations(guess, [true; 4]);
+        problem.anchor = std::array::from_fn(|i| ANCHOR * matrix[i][i]);
         Ok(problem)
     }
 
@@ -56,7 +78,14 @@ impl Problem {
             return f64::INFINITY;
         }
         let densities: Vec<f32> = self.nodes.iter().map(|node| lobe.density(node.direction) as f32).collect();
-        let misfit: f64 = self.probes().map(|(row, target)| (dot(row, &densities) - target).powi(2)).sum();
+        let (share, _) = lobe.share_above(self.normal);
+        let misfit: f64 = self
+            .probes()
+            .map(|(row, target)| {
+                let [above, below] = self.sums(row, &densities);
+                (above + below - target[0]).powi(2) + (above / share - target[1]).powi(2)
+            })
+            .sum();
         let distance: f64 =
             (0..4).map(|i| self.anchor[i] * (lobe.texel[i] - self.guess.texel[i]).powi(2)).sum();
         misfit + distance
@@ -103,19 +132,27 @@ impl Problem {
                 column.push(derivative as f32);
             }
         }
-        // Sum them over each probe, and accumulate
+        // Sum them over each probe, and accumulate both residuals
+        let (share, share_gradient) = lobe.share_above(self.normal);
         let mut normal = [[0.0; 4]; 4];
         let mut slope = [0.0; 4];
-        for (row, target) in self.probes() {
-            let residual = dot(row, &densities) - target;
-            let gradient: [f64; 4] =
-                std::array::from_fn(|k| if free[k] { dot(row, &derivatives[k]) } else { 0.0 });
+        let mut accumulate = |residual: f64, gradient: [f64; 4]| {
             for i in 0..4 {
                 slope[i] += residual * gradient[i];
                 for j in 0..4 {
                     normal[i][j] += gradient[i] * gradient[j];
                 }
             }
+        };
+        for (row, target) in self.probes() {
+            let [above, below] = self.sums(row, &densities);
+            let by_entry: [[f64; 2]; 4] =
+                std::array::from_fn(|k| if free[k] { self.sums(row, &derivatives[k]) } else { [0.0; 2] });
+            accumulate(above + below - target[0], by_entry.map(|[above, below]| above + below));
+            let scaled = above / share;
+            let by_share = |k: usize| if free[k] { scaled * share_gradient[k] } else { 0.0 };
+            let gradient = std::array::from_fn(|k| (by_entry[k][0] - by_share(k)) / share);
+            accumulate(scaled - target[1], gradient);
         }
         for i in 0..4 {
             if free[i] {
@@ -128,8 +165,15 @@ impl Problem {
         (normal, slope)
     }
 
-    fn probes(&self) -> impl Iterator<Item = (&[f32], f64)> {
+    fn probes(&self) -> impl Iterator<Item = (&[f32], [f64; 2])> {
         self.rows.chunks_exact(self.nodes.len()).zip(self.targets.iter().copied())
+    }
+
+    /// The integral over a probe of what has `values` at the nodes: its parts above and below the surface.
+    fn sums(&self, row: &[f32], values: &[f32]) -> [f64; 2] {
+        let (row_above, row_below) = row.split_at(self.above);
+        let (above, below) = values.split_at(self.above);
+        [dot(row_above, above), dot(row_below, below)]
     }
 }
 

@@ -26,7 +26,7 @@ impl Family {
 pub struct Quad {
     /// Its family.
     pub family: Family,
-    /// In [0.1, 1].
+    /// Of a report [0.1, 1], near a mirror [0.01, 0.15].
     pub roughness: f64,
     /// Of an angle in [0°, 89°].
     pub cos_view: f64,
@@ -38,6 +38,27 @@ pub struct Quad {
 pub fn random_quads(count: usize, seed: u64) -> Vec<Quad> {
     let mut random = Random::new(seed);
     (0..count).map(|i| random_quad(&mut random, Family::ALL[i % 3])).collect()
+}
+
+/// Draws `count` quads for lobes that are nearly a mirror's: roughness 0.01 to 0.15, 1 to 30 lobe widths (alpha)
+/// wide, near the mirror direction. The same seed gives the same quads everywhere.
+pub fn near_mirror_quads(count: usize, seed: u64) -> Vec<Quad> {
+    let mut random = Random::new(seed);
+    (0..count).map(|_| near_mirror_quad(&mut random)).collect()
+}
+
+fn near_mirror_quad(random: &mut Random) -> Quad {
+    let roughness = random.between(0.01_f64.ln(), 0.15_f64.ln()).exp();
+    let theta = random.between(0.0, 89.0_f64.to_radians());
+    let alpha = roughness * roughness;
+    let half_width = 0.5 * alpha * random.between(0.0, 30.0_f64.ln()).exp();
+    let half_height = half_width * random.between(0.3, 1.0);
+    let mirror = DVec3::new(-theta.sin(), 0.0, theta.cos());
+    let jitter = random.direction() * (half_width + alpha) * random.unit();
+    let centre = (mirror + jitter).normalize_or(DVec3::Z);
+    let tangent = centre.cross(random.direction()).normalize_or(centre.any_orthonormal_vector());
+    let vertices = rectangle(centre, tangent * half_width, tangent.cross(centre) * half_height);
+    Quad { family: Family::Mirror, roughness, cos_view: theta.cos(), vertices }
 }
 
 fn random_quad(random: &mut Random, family: Family) -> Quad {
@@ -69,11 +90,16 @@ fn random_quad(random: &mut Random, family: Family) -> Quad {
     let normal = (-direction + 0.9 * random.direction() * random.unit()).normalize_or(DVec3::Z);
     let tangent = normal.cross(random.direction()).normalize_or(normal.any_orthonormal_vector());
     let (u, v) = (tangent * half_width, normal.cross(tangent) * half_height);
-    let centre = direction * distance;
+    let vertices = rectangle(direction * distance, u, v);
+    Quad { family, roughness, cos_view: theta.cos(), vertices }
+}
+
+/// A rectangle from its centre and half axes, its front towards the shading point.
+fn rectangle(centre: DVec3, u: DVec3, v: DVec3) -> [DVec3; 4] {
     let mut vertices = [centre - u - v, centre + u - v, centre + u + v, centre - u + v];
-    // The front is the right-hand side of the vertex order: turn it to the shading point
-    if normal.dot(centre) > 0.0 {
+    // The front is the right-hand side of the vertex order
+    if u.cross(v).dot(centre) > 0.0 {
         vertices.reverse();
     }
-    Quad { family, roughness, cos_view: theta.cos(), vertices }
+    vertices
 }

@@ -1,8 +1,10 @@
 //! The transformed cosine and its derivatives.
 
+use arealight::table::{mirror_frame, share_above_surface};
 use arealight_fit::lobe::Lobe;
 use arealight_oracle::cubature::{Region, Settings, angles};
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
+use glam::DVec3;
 use proptest::prelude::*;
 use std::array::from_fn;
 
@@ -44,6 +46,43 @@ proptest! {
             let scale = density + gradient[i].abs();
             prop_assert!((difference - gradient[i]).abs() < 1e-5 * scale, "{} {} {:?}", i, difference, gradient);
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+
+    #[test]
+    fn its_share_above_the_surface_is_the_table_s_and_has_derivatives(lobe in lobes(), cos_view in 0.01..1.0) {
+        let frame = mirror_frame(cos_view);
+        let normal = frame.transpose() * DVec3::Z;
+        let (share, gradient) = lobe.share_above(normal);
+        let inverse = lobe.inverse() * frame.transpose();
+        prop_assert!((share - share_above_surface(&inverse)).abs() < 1e-12);
+        for i in 0..4 {
+            const STEP: f64 = 1e-5;
+            let moved = |by: f64| {
+                let texel = from_fn(|k| lobe.texel[k] + if k == i { by } else { 0.0 });
+                Lobe { texel, ..lobe }.share_above(normal).0
+            };
+            let difference = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
+            // Central differences of a function whose third derivatives are below 100
+            prop_assert!((difference - gradient[i]).abs() < 1e-7, "{} {} {:?}", i, difference, gradient);
+        }
+    }
+}
+
+#[test]
+fn its_share_above_the_surface_is_its_integral_there() {
+    for (texel, cos_view) in [([0.5, 0.2, 0.1, 1.0], 0.3), ([0.3, -0.1, 0.4, 0.8], 0.1)] {
+        let lobe = Lobe { texel, alpha: 0.5 };
+        let to_mirror = mirror_frame(cos_view).transpose();
+        let settings = Settings { relative_tolerance: 1e-6, ..Settings::default() };
+        let above = Region::sphere().clipped(DVec3::Z);
+        let integral = above.integrate(&settings, angles, |light| [lobe.density(to_mirror * light)]).value[0];
+        let (share, _) = lobe.share_above(to_mirror * DVec3::Z);
+        // The kink at the lobe's own horizon limits the cubature
+        assert!((share - integral).abs() < 1e-5 && share < 0.99, "{share} {integral}");
     }
 }
 

@@ -1,12 +1,25 @@
 //! Whole tables, coarse ones.
 
+use arealight::table::Fresnel;
 use arealight::{LightTable, TableError};
 use arealight_fit::brdf::view_direction;
 use arealight_fit::lobe::{Lobe, to_mirror_frame};
-use arealight_fit::report::{PUBLISHED, SEED, cases, measure};
+use arealight_fit::report::{
+    Case, Horizon, METALS, PUBLISHED, Rung, SEED, cases, integrate, measure, measure_colour,
+    near_mirror_quads,
+};
 use arealight_fit::{Aim, Brdf, FitError, GgxBrdf, Magnitude, Settings, fit};
 use glam::DVec3;
-use std::sync::Mutex;
+use half::f16;
+use std::sync::{LazyLock, Mutex};
+
+/// Other quads than those of the report.
+static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(1500, SEED + 1, &|| {}));
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(|| fitted(&GgxBrdf, &settings(32)));
+
+const BY_F0: Rung = Rung { fresnel: Fresnel::ByF0, horizon: Horizon::CosineSpace };
+const SPLIT: Rung = Rung { fresnel: Fresnel::Split, horizon: Horizon::CosineSpace };
 
 fn settings(size: u32) -> Settings {
     Settings { size, ..Settings::default() }
@@ -54,7 +67,9 @@ impl Brdf for Cosine {
 fn a_transformed_cosine_is_found_again() {
     let size = 16;
     let table = fitted(&Cosine, &settings(size));
-    for (i, texel) in table.matrix().iter().enumerate() {
+    // Schlick's weight is the same everywhere, so that both lobes are this one
+    let texels = table.matrix().iter().enumerate().chain(table.schlick_matrix().unwrap().iter().enumerate());
+    for (i, texel) in texels {
         let (roughness, cos_view) = LightTable::node(size, i as u32 % size, i as u32 / size);
         if roughness == 0.0 || cos_view == 0.0 {
             continue; // These nodes stand for one a little off
@@ -64,34 +79,111 @@ fn a_transformed_cosine_is_found_again() {
         for u in [[0.1, 0.1], [0.5, 0.4], [0.5, 0.9], [0.9, 0.6]] {
             let direction = expected.sample(u);
             let ratio = found.density(direction) / expected.density(direction);
-            // What the probes hardly determine is held to the guess from the row before
-            assert!((ratio - 1.0).abs() < 0.01, "{roughness} {cos_view} {u:?}: {found:?} {expected:?}");
+            // What the probes hardly determine is held to the guess from the row before. And this lobe reflects
+            // below the surface, as no BRDF does: which part, the nodes know to 1e-2 only
+            assert!((ratio - 1.0).abs() < 0.02, "{roughness} {cos_view} {u:?}: {found:?} {expected:?}");
         }
     }
 }
 
 #[test]
-fn a_coarse_table_is_near_the_fine_published_one() {
-    let table = fitted(&GgxBrdf, &settings(16));
-    let cases = cases(900, SEED + 1, &|| {});
-    for (ours, published) in measure(&table, &cases).iter().zip(&PUBLISHED) {
-        // 16² nodes against 64², on fewer quads and others: 1.1 was the most
-        assert!(ours.mean < 1.2 * published.mean, "{ours:?} {published:?}");
+fn two_matrices_meet_their_bars_at_every_reflectance() {
+    // Half of the nodes a side that a table has by default: the bars hold with room there
+    for horizon in [Horizon::CosineSpace, Horizon::Both] {
+        let split = measure(&TABLE, Rung { horizon, ..SPLIT }, &CASES);
+        let by_f0 = measure(&TABLE, Rung { horizon, ..BY_F0 }, &CASES);
+        let [at_4_percent, at_1] = [1, 6];
+        assert!(split[at_4_percent].mean < 4e-4 && split[at_1].mean < 2.2e-3, "{split:?}");
+        assert!(by_f0[at_4_percent].mean < 7e-4 && by_f0[at_1].mean < 2.2e-3, "{by_f0:?}");
+        for ((split, by_f0), published) in split.iter().zip(&by_f0).zip(&PUBLISHED) {
+            assert!(by_f0.mean < 0.65 * published.mean, "{by_f0:?} {published:?}");
+            assert!(split.mean < 0.4 * published.mean, "{split:?} {published:?}");
+            // The largest error of a dielectric is at its grazing, narrow lobes
+            assert!(split.max < 0.5 * published.max, "{split:?} {published:?}");
+        }
     }
 }
 
 #[test]
-fn a_table_for_one_reflectance_is_better_there_and_worse_elsewhere() {
-    let aim = |f0| Settings { size: 16, aim: Aim { reflectances: vec![(f0, 1.0)] } };
-    let cases = cases(900, SEED + 1, &|| {});
-    let errors = |table| {
-        let errors = measure(&table, &cases);
+fn the_measure_tells_the_rungs_apart() {
+    let mean = |rung| measure(&TABLE, rung, &CASES)[1].mean;
+    assert!(mean(SPLIT) < 0.7 * mean(BY_F0));
+    let swapped = {
+        let schlick = TABLE.schlick_matrix().unwrap().to_vec();
+        let matrix = TABLE.matrix().to_vec();
+        LightTable::new(TABLE.description().clone(), TABLE.size(), schlick, TABLE.magnitude().to_vec())
+            .and_then(|table| table.with_schlick_matrix(matrix))
+            .unwrap()
+    };
+    let swapped = measure(&swapped, SPLIT, &CASES);
+    assert!(swapped.iter().zip(&PUBLISHED).all(|(ours, published)| ours.mean > published.mean));
+}
+
+#[test]
+fn coloured_metals_lose_little_by_one_integral() {
+    for (name, f0) in METALS {
+        let [by_f0, split] = [BY_F0, SPLIT].map(|rung| measure_colour(&TABLE, rung, f0, &CASES).mean);
+        // Gold is the more coloured: 1.23 times
+        assert!(split < by_f0 && by_f0 < 1.4 * split && by_f0 < 2.2e-3, "{name}: {by_f0} {split}");
+    }
+}
+
+#[test]
+fn a_small_table_is_nearly_as_good() {
+    let small = measure(&fitted(&GgxBrdf, &settings(16)), SPLIT, &CASES);
+    for (small, published) in small.iter().zip(&PUBLISHED) {
+        // A sixteenth of the nodes of the published table
+        assert!(small.mean < 0.5 * published.mean, "{small:?} {published:?}");
+    }
+}
+
+#[test]
+fn float16_costs_nothing() {
+    let half = |texels: &[[f32; 4]]| -> Vec<[f32; 4]> {
+        texels.iter().map(|texel| texel.map(|q| f16::from_f32(q).to_f32())).collect()
+    };
+    let largest = |texels: &[[f32; 4]]| texels.iter().flatten().fold(0.0_f32, |m, q| m.max(q.abs()));
+    let (matrix, schlick) = (TABLE.matrix(), TABLE.schlick_matrix().unwrap());
+    assert!(largest(matrix) < 10.0 && largest(schlick) < 10.0, "{} {}", largest(matrix), largest(schlick));
+    let magnitude = TABLE.magnitude().iter().map(|m| m.map(|a| f16::from_f32(a).to_f32())).collect();
+    let rounded = LightTable::new(TABLE.description().clone(), TABLE.size(), half(matrix), magnitude)
+        .and_then(|table| table.with_schlick_matrix(half(schlick)))
+        .unwrap();
+    for (full, rounded) in measure(&TABLE, SPLIT, &CASES).iter().zip(&measure(&rounded, SPLIT, &CASES)) {
+        // Eleven bits are 5e-4 of an entry, and errors of either sign cancel in the mean
+        assert!((full.mean - rounded.mean).abs() < 1e-5, "{full:?} {rounded:?}");
+    }
+}
+
+#[test]
+fn near_mirrors_are_no_exception() {
+    let cases = integrate(near_mirror_quads(1000, SEED), &|| {});
+    let below = |degrees: f64| -> Vec<Case> {
+        let smallest = degrees.to_radians().cos();
+        cases.iter().filter(|case| case.quad.cos_view > smallest).cloned().collect()
+    };
+    for fresnel in [Fresnel::ByF0, Fresnel::Split] {
+        let rung = Rung { fresnel, horizon: Horizon::CosineSpace };
+        for (degrees, mean, max) in [(60.0, 2e-4, 5e-3), (85.0, 6e-4, 0.02)] {
+            for errors in measure(&TABLE, rung, &below(degrees)) {
+                // The chord of a narrow lobe's width between nodes, which grows towards grazing views
+                assert!(errors.mean < mean && errors.max < max, "{degrees}: {errors:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_matrix_for_one_reflectance_is_better_there_and_worse_elsewhere() {
+    let blend = |reflectances| Settings { size: 16, aim: Aim::Blend(reflectances) };
+    let errors = |settings| {
+        let errors = measure(&fitted(&GgxBrdf, &settings), BY_F0, &CASES);
         (errors[1].mean, errors[6].mean)
     };
     let (all, dielectric, metal) = (
-        errors(fitted(&GgxBrdf, &settings(16))),
-        errors(fitted(&GgxBrdf, &aim(0.04))),
-        errors(fitted(&GgxBrdf, &aim(1.0))),
+        errors(Settings { size: 16, aim: Aim::one_for_all() }),
+        errors(blend(vec![(0.04, 1.0)])),
+        errors(blend(vec![(1.0, 1.0)])),
     );
     assert!(dielectric.0 < 0.6 * all.0 && dielectric.1 > 1.2 * all.1, "{dielectric:?} {all:?}");
     assert!(metal.1 < 0.6 * all.1 && metal.0 > 1.2 * all.0, "{metal:?} {all:?}");
@@ -112,7 +204,7 @@ fn progress_reaches_its_end() {
     fit(&GgxBrdf, &settings(3), &|done, total| seen.lock().unwrap().push((done, total))).unwrap();
     let mut seen = seen.into_inner().unwrap();
     seen.sort_unstable();
-    assert_eq!(seen, (1..=18).map(|done| (done, 18)).collect::<Vec<_>>());
+    assert_eq!(seen, (1..=27).map(|done| (done, 27)).collect::<Vec<_>>());
 }
 
 #[test]
@@ -121,7 +213,7 @@ fn settings_out_of_range_are_named() {
         Err(FitError::Setting { setting, .. }) => setting,
         other => panic!("{other:?}"),
     };
-    let aim = |reflectances| Settings { size: 4, aim: Aim { reflectances } };
+    let aim = |reflectances| Settings { size: 4, aim: Aim::Blend(reflectances) };
     assert_eq!(refuse(settings(1)), "size");
     assert_eq!(refuse(settings(4096)), "size");
     assert_eq!(refuse(aim(vec![])), "number of reflectances");

@@ -4,8 +4,11 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
 use arealight::LightTable;
-use arealight_fit::report::{COUNT, Errors, PUBLISHED, SEED, cases, measure};
-use arealight_fit::{GgxBrdf, Settings};
+use arealight::table::Fresnel;
+use arealight_fit::report::{
+    COUNT, Case, Errors, Horizon, METALS, PUBLISHED, Rung, SEED, cases, measure, measure_colour,
+};
+use arealight_fit::{Aim, GgxBrdf, Settings};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -21,6 +24,9 @@ pub struct Arguments {
     /// Nodes a side, 2 to 1024.
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: u32,
+    /// Two matrices, one for the lobe of F0 and one for that of Schlick's weight; or one for all reflectances.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
+    matrices: u8,
     /// Compare the table with the true BRDF on 3000 random quads, beside the published table.
     #[arg(long)]
     report: bool,
@@ -31,8 +37,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Fit
-    let settings = Settings { size: arguments.size, ..Settings::default() };
-    let bar = progress::bar(2 * u64::from(settings.size).pow(2), "steps");
+    let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::Split };
+    let settings = Settings { size: arguments.size, aim };
+    let bar = progress::bar(settings.steps(), "steps");
     let start = Instant::now();
     let table = arealight_fit::fit(&GgxBrdf, &settings, &|_, _| bar.inc(1));
     let seconds = start.elapsed().as_secs_f64();
@@ -44,17 +51,90 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.output {
         arealight_table::save(&table, path).map_err(|error| Failure::output(path, error))?;
     }
-    let errors = arguments.report.then(|| report(&table));
-    let summary = Summary { arguments, table: &table, seconds, errors: errors.as_deref() };
+    let report = arguments.report.then(|| Report::of(&table));
+    let summary = Summary { arguments, table: &table, seconds, report };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
-/// Measures a table, with a progress bar.
-fn report(table: &LightTable) -> Vec<Errors> {
-    let bar = progress::bar(COUNT as u64, "quads");
-    let cases = cases(COUNT, SEED, &|| bar.inc(1));
-    bar.finish_and_clear();
-    measure(table, &cases)
+/// The errors of a table in each way of using it.
+struct Report {
+    cosine_space: Comparison,
+    both_horizons: Comparison,
+}
+
+/// The errors at one horizon rung.
+struct Comparison {
+    by_f0: Vec<Errors>,
+    split: Vec<Errors>,
+    /// By F0 and split, a metal of [`METALS`] a line.
+    metals: Vec<[Errors; 2]>,
+}
+
+impl Report {
+    /// Measures a table, with a progress bar.
+    fn of(table: &LightTable) -> Self {
+        let bar = progress::bar(COUNT as u64, "quads");
+        let cases = cases(COUNT, SEED, &|| bar.inc(1));
+        bar.finish_and_clear();
+        let at = |horizon| Comparison::of(table, horizon, &cases);
+        Self { cosine_space: at(Horizon::CosineSpace), both_horizons: at(Horizon::Both) }
+    }
+}
+
+impl Comparison {
+    fn of(table: &LightTable, horizon: Horizon, cases: &[Case]) -> Self {
+        let rungs = [Fresnel::ByF0, Fresnel::Split].map(|fresnel| Rung { fresnel, horizon });
+        let [by_f0, split] = rungs.map(|rung| measure(table, rung, cases));
+        let metal = |&(_, f0): &(_, _)| rungs.map(|rung| measure_colour(table, rung, f0, cases));
+        Self { by_f0, split, metals: METALS.iter().map(metal).collect() }
+    }
+
+    /// The errors beside those of the published table, a reflectance a line.
+    fn to_text(&self) -> String {
+        let mut text = format!(
+            "{:>6}  {:^24}  {:^24}  {:^24}\n{:>6}",
+            "", "by F0, one integral", "split, two integrals", "published, 64 x 64", "F0"
+        );
+        for _ in 0..3 {
+            let _ = write!(text, "  {:>8} {:>7} {:>7}", "mean", "95 %", "max");
+        }
+        text.push('\n');
+        let columns = |text: &mut String, errors: &Errors| {
+            let (mean, percentile_95, max) = (errors.mean, errors.percentile_95, errors.max);
+            let _ = write!(text, "  {mean:>8.5} {percentile_95:>7.4} {max:>7.3}");
+        };
+        for ((by_f0, split), published) in self.by_f0.iter().zip(&self.split).zip(&PUBLISHED) {
+            let _ = write!(text, "{:>6}", by_f0.f0);
+            for errors in [by_f0, split, published] {
+                columns(&mut text, errors);
+            }
+            text.push('\n');
+        }
+        for ((name, _), rungs) in METALS.iter().zip(&self.metals) {
+            let _ = write!(text, "{name:>6}");
+            for errors in rungs {
+                columns(&mut text, errors);
+            }
+            text.push('\n');
+        }
+        text
+    }
+
+    fn to_json(&self) -> Value {
+        let errors = |e: &Errors| json!({ "mean": e.mean, "percentile_95": e.percentile_95, "max": e.max });
+        let grey = self.by_f0.iter().zip(&self.split).zip(&PUBLISHED).map(|((by_f0, split), published)| {
+            json!({
+                "f0": by_f0.f0,
+                "by_f0": errors(by_f0),
+                "split": errors(split),
+                "published": errors(published),
+            })
+        });
+        let metals = METALS.iter().zip(&self.metals).map(|((name, f0), [by_f0, split])| {
+            json!({ "metal": name, "f0": f0.to_array(), "by_f0": errors(by_f0), "split": errors(split) })
+        });
+        grey.chain(metals).collect()
+    }
 }
 
 /// What there is to say of a run.
@@ -62,7 +142,7 @@ struct Summary<'a> {
     arguments: &'a Arguments,
     table: &'a LightTable,
     seconds: f64,
-    errors: Option<&'a [Errors]>,
+    report: Option<Report>,
 }
 
 impl Summary<'_> {
@@ -72,51 +152,38 @@ impl Summary<'_> {
         if let Some(path) = &self.arguments.output {
             let _ = writeln!(text, "wrote {}", path.display());
         }
-        if let Some(errors) = self.errors {
-            text.push_str(&comparison(errors));
+        if let Some(report) = &self.report {
+            let _ = write!(
+                text,
+                "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about the mirror\n\
+                 direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees. The published\n\
+                 table is clipped in cosine space only, with one integral.\n\n\
+                 Clipped in cosine space\n{}\nClipped at the surface's horizon too\n{}",
+                report.cosine_space.to_text(),
+                report.both_horizons.to_text()
+            );
         }
         text
     }
 
     fn to_json(&self) -> String {
-        let errors = |e: &Errors| json!({ "mean": e.mean, "percentile_95": e.percentile_95, "max": e.max });
-        let line = |(ours, published): (&Errors, &Errors)| json!({ "f0": ours.f0, "this": errors(ours), "published": errors(published) });
-        let report = self.errors.map(|ours| ours.iter().zip(&PUBLISHED).map(line).collect::<Value>());
+        let report = self.report.as_ref().map(|report| {
+            json!({
+                "quads": COUNT,
+                "cosine_space": report.cosine_space.to_json(),
+                "both_horizons": report.both_horizons.to_json(),
+            })
+        });
         let summary = json!({
             "brdf": self.table.description().brdf,
             "made_by": self.table.description().made_by,
             "size": self.table.size(),
             "seconds": self.seconds,
             "output": self.arguments.output,
-            "quads": report.as_ref().map(|_| COUNT),
             "report": report,
         });
         format!("{summary:#}\n")
     }
-}
-
-/// The errors beside those of the published table, a reflectance a line.
-fn comparison(errors: &[Errors]) -> String {
-    let mut text = format!(
-        "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about the mirror\n\
-         direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees:\n\n\
-         {:>5}  {:>26}  {:>26}\n{:>5}  {:>8} {:>8} {:>8}  {:>8} {:>8} {:>8}\n",
-        "", "this table", "published, 64 x 64", "F0", "mean", "95 %", "max", "mean", "95 %", "max"
-    );
-    for (ours, published) in errors.iter().zip(&PUBLISHED) {
-        let _ = writeln!(
-            text,
-            "{:>5}  {:>8.5} {:>8.4} {:>8.3}  {:>8.5} {:>8.4} {:>8.3}",
-            ours.f0,
-            ours.mean,
-            ours.percentile_95,
-            ours.max,
-            published.mean,
-            published.percentile_95,
-            published.max
-        );
-    }
-    text
 }
 
 #[cfg(test)]
@@ -124,29 +191,43 @@ mod tests {
     use super::*;
 
     fn arguments() -> Arguments {
-        Arguments { output: Some("a.exr".into()), size: 2, report: true, json: true }
+        Arguments { output: Some("a.exr".into()), size: 2, matrices: 2, report: true, json: true }
+    }
+
+    fn comparison() -> Comparison {
+        let published = PUBLISHED.to_vec();
+        let metals = vec![[PUBLISHED[0], PUBLISHED[6]]; METALS.len()];
+        Comparison { by_f0: published.clone(), split: published, metals }
     }
 
     #[test]
     fn the_comparison_is_aligned() {
-        let text = comparison(&PUBLISHED);
-        let lines: Vec<&str> = text.lines().skip(6).collect();
-        assert_eq!(lines[0], " 0.02   0.00140   0.0088    0.040   0.00140   0.0088    0.040");
-        assert_eq!(lines.len(), PUBLISHED.len());
-        assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{text}");
+        let text = comparison().to_text();
+        let lines: Vec<&str> = text.lines().skip(2).collect();
+        let columns = "   0.00140  0.0088   0.040";
+        assert_eq!(lines[0], format!("  0.02{columns}{columns}{columns}"));
+        assert_eq!(lines.len(), PUBLISHED.len() + METALS.len());
+        let (grey, metals) = lines.split_at(PUBLISHED.len());
+        for lines in [grey, metals] {
+            assert!(lines.iter().all(|line| line.len() == lines[0].len()), "{text}");
+        }
+        assert!(metals[0].starts_with("  gold   0.00140"), "{text}");
     }
 
     #[test]
     fn json_holds_what_the_text_says() {
         let (arguments, table) = (arguments(), arealight_table::ggx());
-        let summary =
-            Summary { arguments: &arguments, table: &table, seconds: 1.5, errors: Some(&PUBLISHED) };
+        let report = Some(Report { cosine_space: comparison(), both_horizons: comparison() });
+        let summary = Summary { arguments: &arguments, table: &table, seconds: 1.5, report };
         let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
         assert_eq!(value["size"], 64);
         assert_eq!(value["output"], "a.exr");
-        assert_eq!(value["report"].as_array().unwrap().len(), PUBLISHED.len());
-        assert_eq!(value["report"][6]["this"]["max"], 0.234);
+        let lines = value["report"]["cosine_space"].as_array().unwrap();
+        assert_eq!(lines.len(), PUBLISHED.len() + METALS.len());
+        assert_eq!(lines[6]["split"]["max"], 0.234);
+        assert_eq!(lines[7]["metal"], "gold");
         let text = summary.to_text();
         assert!(text.starts_with("fitted ggx-correlated-smith, 64 x 64 nodes, in 1.5 s\nwrote a.exr\n"));
+        assert!(text.contains("\nClipped at the surface's horizon too\n"), "{text}");
     }
 }
