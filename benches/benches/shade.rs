@@ -42,7 +42,7 @@ fn shade(criterion: &mut Criterion) {
         SceneRenderer::new(&engine, &buffers, &scene.lights, constants, SIZE).expect("it fits");
     renderer.visibility().expect("the device works");
 
-    let fast = Quality { form_factor: FormFactor::Fast };
+    let fast = Quality { form_factor: FormFactor::Fast, ..Quality::default() };
     let effects = scene.effects();
     let mut group = criterion.benchmark_group("shade");
     group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));

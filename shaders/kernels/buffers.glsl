@@ -8,10 +8,12 @@ struct ArealightGpuLight {
     uint first_vertex;
     vec3 center;
     float radius;
+    vec3 area;
     uint vertex_count;
     uint flags;
     uint reserved0;
     uint reserved1;
+    uint reserved2;
 };
 
 const uint LIGHT_TWO_SIDED = 1u;

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 1) const int FORM_FACTOR = 0;
+layout(constant_id = 4) const int HORIZON = 0;
 
 #define LIGHTS_BINDING 1
 #include "table_image.glsl"
@@ -44,7 +45,8 @@ void main() {
     ArealightGpuCase given = cases[index];
     ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo,
                                                 given.f0, given.f90, given.roughness);
+    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON);
     ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS);
-    vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, FORM_FACTOR);
+    vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, quality);
     results[index] = vec4(radiance, 0.0);
 }

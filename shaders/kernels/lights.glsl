@@ -21,7 +21,7 @@ vec3 arealight_bridge_vertex(uint index) {
 ArealightPolygonLight load_light(uint index) {
     ArealightGpuLight record = lights[index];
     return ArealightPolygonLight(record.radiance, record.first_vertex, record.vertex_count, record.center,
-                                 record.radius, (record.flags & LIGHT_TWO_SIDED) != 0u);
+                                 record.radius, record.area, (record.flags & LIGHT_TWO_SIDED) != 0u);
 }
 
 #endif

@@ -92,7 +92,7 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
 }
 
-// A point of a light, uniform by area.
+// A point of a light relative to its center, uniform by area.
 vec3 sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
     float choice = random_float(random);
     uint index = sampling.first_triangle;
@@ -107,8 +107,8 @@ vec3 sample_point(ArealightGpuLightSampling sampling, inout RandomState random) 
          + arealight_bridge_vertex(triangle.vertex1) * (root - v) + arealight_bridge_vertex(triangle.vertex2) * v;
 }
 
-// Whether a point of a light's plane lies within its outline: the even-odd rule, along the two axes in which
-// the polygon is widest.
+// Whether a point of a light's plane, relative to its center, lies within its outline: the even-odd rule, along the two
+// axes in which the polygon is widest.
 bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
     vec3 size = abs(normal);
     uint axis_u = size.x >= size.y && size.x >= size.z ? 1u : 0u;
@@ -139,7 +139,7 @@ float light_density(ArealightPolygonLight light, ArealightGpuLightSampling sampl
 // One sample of one light: a point of it, weighed against the BRDF's density.
 vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLightSampling sampling,
                        inout RandomState random) {
-    vec3 offset = sample_point(sampling, random) - lobes.position;
+    vec3 offset = sample_point(sampling, random) + (light.center - lobes.position);
     float by_light = light_density(light, sampling, offset);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
     if (by_light <= 0.0 || direction.z <= 0.0) {
@@ -154,13 +154,14 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
     // Meet the light's plane, in front of the surface
     vec3 ray = direction * lobes.to_surface;
     float speed = dot(sampling.normal, ray);
-    float distance = dot(sampling.normal, arealight_bridge_vertex(light.first_vertex) - lobes.position) / speed;
+    vec3 center = light.center - lobes.position;
+    float distance = dot(sampling.normal, center) / speed;
     if (!(distance > 0.0 && distance < 1e30)) {
         return vec3(0.0);
     }
     vec3 offset = ray * distance;
     float by_light = light_density(light, sampling, offset);
-    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, lobes.position + offset)) {
+    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center)) {
         return vec3(0.0);
     }
     return light.radiance * evaluate(lobes, direction) / (by_light + by_brdf);

@@ -4,7 +4,7 @@
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
 use arealight::plan::{Output, PositionSource};
-use arealight::{Effects, FormFactor};
+use arealight::{Effects, FormFactor, Horizon, Quality};
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
 use std::collections::BTreeMap;
@@ -392,7 +392,6 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
 
 const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
-const FORM_FACTOR_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor.glsl");
 const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
 const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
 const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
@@ -426,51 +425,24 @@ fn flags_have_the_same_bits_in_glsl() {
 #[test]
 fn choices_have_the_same_numbers_in_glsl() {
     let number = |value: u32| f64::from(value);
-    let rungs = [("EXACT", number(FormFactor::Exact as u32)), ("FAST", number(FormFactor::Fast as u32))];
+    let one_point = Quality { one_point: true, ..Quality::default() };
+    let rungs = [
+        ("EXACT", number(FormFactor::Exact as u32)),
+        ("FAST", number(FormFactor::Fast as u32)),
+        ("DIFFERENCE", number(FormFactor::ExactDifference as u32)),
+        ("ONE_POINT", number(one_point.form_factor_bits())),
+    ];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_FORM_FACTOR_", &rungs);
+    let both = FormFactor::FastDifference as u32;
+    assert_eq!(both, FormFactor::Fast as u32 | FormFactor::ExactDifference as u32, "they are bits");
+    let horizons = [
+        ("COSINE", number(Horizon::Cosine as u32)),
+        ("BOTH", number(Horizon::Both as u32)),
+        ("BARE", number(Horizon::Bare as u32)),
+    ];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
     assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
     assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
-}
-
-/// The coefficients of the two polynomials in `arealight_arc_excess`, lowest first: the fast one, the exact one.
-fn arc_polynomials() -> [Vec<f64>; 2] {
-    let (_, body) = FORM_FACTOR_GLSL.split_once("float arealight_arc_excess(").expect("the function");
-    let (body, _) = body.split_once("\n}").expect("its end");
-    let polynomials: Vec<Vec<f64>> = body
-        .split("return ")
-        .skip(1)
-        .map(|statement| statement.split_once(';').expect("a statement").0)
-        .map(|horner| {
-            horner.split(|c: char| !"-.0123456789".contains(c)).filter_map(|n| n.parse().ok()).collect()
-        })
-        .collect();
-    polynomials.try_into().expect("two polynomials")
-}
-
-/// The largest error of 1 + u (c0 + u (c1 + ...)) relative to theta / sin(theta), u = 1 - cos(theta) in [0, 1].
-fn largest_error(coefficients: &[f64]) -> f64 {
-    let error = |u: f64| {
-        let polynomial = 1.0 + coefficients.iter().rfold(0.0, |sum, c| (sum + c) * u);
-        // Without cancellation: sin(theta / 2)^2 = u / 2
-        let half = (0.5 * u).sqrt().atan2((1.0 - 0.5 * u).sqrt());
-        let exact = if u == 0.0 { 1.0 } else { 2.0 * half / (u * (2.0 - u)).sqrt() };
-        ((polynomial - exact) / exact).abs()
-    };
-    (0..=100_000).map(|i| error(f64::from(i) / 100_000.0)).fold(0.0, f64::max)
-}
-
-#[test]
-fn the_arc_polynomials_have_the_errors_that_they_state() {
-    let [fast, exact] = arc_polynomials();
-    // Degrees 4 and 7, as FormFactor says
-    assert_eq!([fast.len(), exact.len()], [4, 7]);
-    let errors = [&fast, &exact].map(|coefficients| largest_error(coefficients));
-    println!("theta / sin(theta): fast {:.3e}, exact {:.3e}", errors[0], errors[1]);
-    assert!(errors[0] <= 1.2e-4 && errors[1] <= 5e-7, "{errors:?}");
-    // The twin: one part in a thousand of one coefficient shows
-    let mut wrong = exact;
-    wrong[0] *= 1.001;
-    assert!(largest_error(&wrong) > 5e-7);
 }

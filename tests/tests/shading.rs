@@ -130,7 +130,7 @@ fn fresnel_and_both_lobes_add_up() {
 #[test]
 fn the_fast_rung_is_within_its_error_and_no_better_than_it_says() {
     let points = lights(4, |_| lambert_surface());
-    let quality = Quality { form_factor: FormFactor::Fast };
+    let quality = Quality { form_factor: FormFactor::Fast, ..Quality::default() };
     // 1.2e-4 of each edge's share, and the shares of a polygon's edges, signs aside, add up to at most 1 for
     // every horizon they circle: concave outlines of this family reach 2.
     let Some(comparison) = compare("fast Lambert", &points, quality, |_| 2.4e-4 + rounding(1.0)) else {

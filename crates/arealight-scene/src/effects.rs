@@ -27,13 +27,16 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         let first = scene.materials.iter().find(|m| calls(m))?;
         Some(Call { effect, reason: format!("material '{}'", first.name) })
     };
-    let light = scene.lights.iter().find(|light| light.two_sided);
-    let light = light.map(|l| Call { effect: Effects::TWO_SIDED, reason: format!("light '{}'", l.name) });
+    let light = |effect| {
+        let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
+        Some(Call { effect, reason: format!("light '{}'", first.name) })
+    };
     let calls = [
         material(Effects::DIFFUSE, has_diffuse_lobe),
         material(Effects::GLOSSY, has_glossy_lobe),
-        light,
+        light(Effects::TWO_SIDED),
         material(Effects::SPECULAR_INPUT, has_specular_input),
+        light(Effects::POLYGON),
     ];
     calls.into_iter().flatten().collect()
 }

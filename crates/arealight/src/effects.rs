@@ -18,6 +18,9 @@ bitflags::bitflags! {
         /// Some surface has a dielectric reflectance other than F0 = 0.04, F90 = 1 (an index of refraction,
         /// a specular colour or weight), so the G-buffer's fourth image is read.
         const SPECULAR_INPUT = 1 << 3;
+        /// Some light is concave, not quite flat, or has more than four vertices
+        /// ([`PolygonLight::is_convex_quad`](crate::PolygonLight::is_convex_quad) is false).
+        const POLYGON = 1 << 4;
     }
 }
 
@@ -29,6 +32,7 @@ impl Effects {
             (Self::GLOSSY, "glossy"),
             (Self::TWO_SIDED, "two_sided"),
             (Self::SPECULAR_INPUT, "specular_input"),
+            (Self::POLYGON, "polygon"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -37,10 +41,10 @@ impl Effects {
 
     /// What `lights` call for beyond this set, with the name of the first light that does.
     pub fn missing_for(self, lights: &[crate::PolygonLight]) -> Option<(Self, &str)> {
-        if self.contains(Self::TWO_SIDED) {
-            return None;
-        }
-        lights.iter().find(|light| light.two_sided).map(|light| (Self::TWO_SIDED, light.name.as_str()))
+        lights.iter().find_map(|light| {
+            let missing = light.effects() - self;
+            (!missing.is_empty()).then_some((missing, light.name.as_str()))
+        })
     }
 }
 
@@ -78,5 +82,8 @@ mod tests {
         assert_eq!(Effects::GLOSSY.missing_for(&lights), Some((Effects::TWO_SIDED, "sign")));
         assert_eq!(Effects::TWO_SIDED.missing_for(&lights), None);
         assert_eq!(Effects::GLOSSY.missing_for(&lights[..1]), None);
+        let mut star = light("star", false);
+        star.vertices = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y, -DVec3::X].into();
+        assert_eq!(Effects::TWO_SIDED.missing_for(&[star]), Some((Effects::POLYGON, "star")));
     }
 }

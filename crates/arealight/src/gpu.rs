@@ -10,16 +10,18 @@ pub struct GpuLight {
     pub radiance: [f32; 3],
     /// Index of the first vertex in the vertex buffer.
     pub first_vertex: u32,
-    /// Center of a sphere that holds every vertex, relative to the origin.
+    /// The middle of the area, relative to the origin: what the vertices are offsets from.
     pub center: [f32; 3],
-    /// Radius of that sphere.
+    /// Radius of a sphere about the center that holds every vertex.
     pub radius: f32,
+    /// Area times the normal of the front, divided by the radius squared.
+    pub area: [f32; 3],
     /// How many vertices the outline has.
     pub vertex_count: u32,
     /// [`GpuLight::TWO_SIDED`] or zero.
     pub flags: u32,
     /// Zero.
-    pub reserved: [u32; 2],
+    pub reserved: [u32; 3],
 }
 
 impl GpuLight {

@@ -69,12 +69,14 @@ impl Kernel {
 pub mod constant {
     /// [`crate::Effects`] as bits.
     pub const EFFECTS: u32 = 0;
-    /// [`crate::FormFactor`].
+    /// [`crate::Quality::form_factor_bits`].
     pub const FORM_FACTOR: u32 = 1;
     /// [`crate::plan::PositionSource`].
     pub const POSITION_SOURCE: u32 = 2;
     /// [`crate::plan::Output`].
     pub const OUTPUT: u32 = 3;
+    /// [`crate::Horizon`].
+    pub const HORIZON: u32 = 4;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -92,7 +94,7 @@ const TABLE: Binding = read(
 );
 const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
 const LIGHT_VERTICES: Binding =
-    read("light_vertices", BindingKind::StorageBuffer, "vec4[]: position relative to the origin, 0");
+    read("light_vertices", BindingKind::StorageBuffer, "vec4[]: position relative to the light's center, 0");
 const G_POSITION: Binding = read(
     "g_position",
     BindingKind::SampledImage,
@@ -136,7 +138,13 @@ pub static SHADE: Kernel = Kernel {
             "outgoing radiance in rgb, 1 in a where there is a surface (rgba32f)",
         ),
     ],
-    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::POSITION_SOURCE, constant::OUTPUT],
+    constants: &[
+        constant::EFFECTS,
+        constant::FORM_FACTOR,
+        constant::POSITION_SOURCE,
+        constant::OUTPUT,
+        constant::HORIZON,
+    ],
 };
 
 /// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
@@ -152,7 +160,7 @@ pub static EVAL: Kernel = Kernel {
         read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
         write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
     ],
-    constants: &[constant::EFFECTS, constant::FORM_FACTOR],
+    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::HORIZON],
 };
 
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:

@@ -1,5 +1,6 @@
 //! Polygon lights, and how they are packed for the GPU.
 
+use crate::Effects;
 use crate::gpu::GpuLight;
 use glam::{DVec3, Vec3};
 
@@ -87,6 +88,56 @@ impl PolygonLight {
         offsets.zip(next).map(|(a, b)| a.cross(b)).sum::<DVec3>() * 0.5
     }
 
+    /// The middle of the area; of the vertices' box for a degenerate polygon.
+    pub fn center(&self) -> DVec3 {
+        let (low, high) = self
+            .vertices
+            .iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let middle = (low + high) * 0.5;
+        let normal = self.area_vector().normalize_or_zero();
+        // Weigh the triangles of a fan about the middle by their signed areas
+        let next = self.vertices.iter().cycle().skip(1);
+        let (mut area, mut moment) = (0.0, DVec3::ZERO);
+        for (a, b) in self.vertices.iter().zip(next) {
+            let (a, b) = (*a - middle, *b - middle);
+            let weight = a.cross(b).dot(normal);
+            area += weight;
+            moment += (a + b) * (weight / 3.0);
+        }
+        let shift = if area > 0.0 { moment / area } else { DVec3::ZERO };
+        // Rounding has its way with slivers; their middle stays within their box
+        if shift.is_finite() { (middle + shift).clamp(low, high) } else { middle }
+    }
+
+    /// Whether the outline is convex, flat to a ten-thousandth of its size, and has at most four vertices: what is
+    /// shaded without [`Effects::POLYGON`].
+    pub fn is_convex_quad(&self) -> bool {
+        const TOLERANCE: f64 = 1e-4;
+        if self.vertices.len() > 4 {
+            return false;
+        }
+        let normal = self.area_vector().normalize_or_zero();
+        let center = self.center();
+        let size = self.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
+        let flat = self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= TOLERANCE * size);
+        // Every corner turns the outline's way, or not at all
+        let count = self.vertices.len();
+        let convex = (0..count).all(|i| {
+            let [a, b, c] = [i, i + 1, i + 2].map(|j| self.vertices[j % count]);
+            (b - a).cross(c - b).dot(normal) >= -TOLERANCE * (b - a).length() * (c - b).length()
+        });
+        flat && convex
+    }
+
+    /// What the light calls for.
+    pub fn effects(&self) -> Effects {
+        let mut effects = Effects::empty();
+        effects.set(Effects::TWO_SIDED, self.two_sided);
+        effects.set(Effects::POLYGON, !self.is_convex_quad());
+        effects
+    }
+
     /// Vertex indices of triangles that cover the polygon once, three a triangle, in the polygon's
     /// orientation. Empty for a degenerate polygon.
     pub fn triangles(&self) -> Vec<u32> {
@@ -119,7 +170,7 @@ impl PolygonLight {
 pub struct PackedLights {
     /// One record a light, in the given order.
     pub lights: Vec<GpuLight>,
-    /// Vertex positions relative to the origin, in xyz; w is zero.
+    /// Vertex positions relative to their light's center, in xyz; w is zero.
     pub vertices: Vec<[f32; 4]>,
 }
 
@@ -163,29 +214,27 @@ impl PackedLights {
 
     fn push(&mut self, light: &PolygonLight, origin: DVec3) -> Result<(), LightError> {
         let first_vertex = self.vertices.len() as u32;
-        // Subtract the origin in float64, then round once
-        for (index, &vertex) in light.vertices.iter().enumerate() {
-            let relative = (vertex - origin).as_vec3();
-            if !relative.is_finite() {
-                return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value: vertex });
+        for (index, &value) in light.vertices.iter().enumerate() {
+            if !(value - origin).as_vec3().is_finite() {
+                return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
             }
-            self.vertices.push(relative.extend(0.0).to_array());
         }
-        // Bound the polygon by a sphere about the middle of its box
-        let (low, high) = light
-            .vertices
-            .iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
-        let center = (low + high) * 0.5;
-        let radius = light.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
+        // Subtract the origin in float64, then round once: the center for all, the vertices about the rounded center
+        let center = (light.center() - origin).as_vec3();
+        let offsets: Vec<DVec3> =
+            light.vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();
+        self.vertices.extend(offsets.iter().map(|offset| offset.as_vec3().extend(0.0).to_array()));
+        let radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
+        let area = light.area_vector() / radius.powi(2);
         self.lights.push(GpuLight {
             radiance: light.radiance.to_array(),
             first_vertex,
-            center: (center - origin).as_vec3().to_array(),
-            radius: radius as f32,
+            center: center.to_array(),
+            radius: (radius as f32).next_up(),
+            area: if area.is_finite() { area.as_vec3().to_array() } else { [0.0; 3] },
             vertex_count: light.vertices.len() as u32,
             flags: if light.two_sided { GpuLight::TWO_SIDED } else { 0 },
-            reserved: [0; 2],
+            reserved: [0; 3],
         });
         Ok(())
     }
@@ -246,7 +295,7 @@ mod tests {
             *v = *v + offset + DVec3::new(1e-3, 0.0, 0.0);
         }
         let packed = PackedLights::new(&[far], offset).unwrap();
-        assert!((packed.vertices[1][0] - 2.001).abs() < 1e-6);
+        assert!((packed.lights[0].center[0] + packed.vertices[1][0] - 2.001).abs() < 1e-6);
     }
 
     #[test]

@@ -76,19 +76,21 @@ pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
 pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
     vec![
         (kernels::constant::EFFECTS, options.effects.bits()),
-        (kernels::constant::FORM_FACTOR, options.quality.form_factor as u32),
+        (kernels::constant::FORM_FACTOR, options.quality.form_factor_bits()),
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::OUTPUT, options.output as u32),
+        (kernels::constant::HORIZON, options.quality.horizon as u32),
     ]
 }
 
 /// The eval pass: the shade kernel's functions over a list of `case_count` shading points.
-pub fn eval(quality: Quality, case_count: u32) -> Dispatch {
+pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
     Dispatch {
         kernel: &kernels::EVAL,
         specialization: vec![
-            (kernels::constant::EFFECTS, Effects::all().bits()),
-            (kernels::constant::FORM_FACTOR, quality.form_factor as u32),
+            (kernels::constant::EFFECTS, effects.bits()),
+            (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
+            (kernels::constant::HORIZON, quality.horizon as u32),
         ],
         groups: kernels::EVAL.groups_for([case_count, 1, 1]),
     }
@@ -102,6 +104,6 @@ mod tests {
     fn groups_cover_every_pixel() {
         let dispatch = shade(ShadeOptions::all(), 17, 8);
         assert_eq!(dispatch.groups, [3, 1, 1]);
-        assert_eq!(eval(Quality::default(), 65).groups, [2, 1, 1]);
+        assert_eq!(eval(Effects::all(), Quality::default(), 65).groups, [2, 1, 1]);
     }
 }

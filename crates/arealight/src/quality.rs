@@ -1,14 +1,38 @@
 //! The quality ladder: what accuracy costs is the host's choice, made for each pass.
 
-/// How the form factor's edge weight theta / sin theta is evaluated.
+/// How the arcs that a polygon's edges subtend are summed to a form factor.
+///
+/// Every rung returns a finite number in [0, 1], whatever comes in, and keeps the promises that
+/// `shaders/include/arealight/form_factor.glsl` states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum FormFactor {
-    /// Minimax polynomial of degree 7: relative error 5e-7 of each edge, float32's own.
+    /// float32's own precision, absolute: 1e-6.
     #[default]
     Exact = 0,
-    /// Minimax polynomial of degree 4: relative error 1.2e-4 of each edge, fewer instructions.
+    /// A shorter series for the arcs: 2.7e-5 of each edge's share, fewer instructions.
     Fast = 1,
+    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. For them
+    /// the error is at most 1e-6 of their solid angle over pi.
+    ExactDifference = 2,
+    /// As [`FormFactor::Fast`], with an error that shrinks with the light.
+    FastDifference = 3,
+}
+
+/// Where a polygon is clipped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Horizon {
+    /// At the horizon of the lobe's cosine space. A fitted lobe reaches below the surface, with 2 % of its energy on
+    /// average and 17 % at grazing angles: lights leak in from there.
+    #[default]
+    Cosine = 0,
+    /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface.
+    Both = 1,
+    /// Nowhere. For lights and points of which the host knows that the light is wholly above both horizons, and
+    /// that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL library); else the result is
+    /// wrong, though in [0, 1].
+    Bare = 2,
 }
 
 /// The rungs that a pass is specialised for.
@@ -16,4 +40,16 @@ pub enum FormFactor {
 pub struct Quality {
     /// How edges of the polygon are integrated.
     pub form_factor: FormFactor,
+    /// Where polygons are clipped.
+    pub horizon: Horizon,
+    /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative; the
+    /// others as the other fields say.
+    pub one_point: bool,
+}
+
+impl Quality {
+    /// [`Quality::form_factor`] and [`Quality::one_point`] as the bits `AREALIGHT_FORM_FACTOR_*`.
+    pub fn form_factor_bits(self) -> u32 {
+        self.form_factor as u32 | (u32::from(self.one_point) << 2)
+    }
 }

@@ -12,9 +12,19 @@ const uint AREALIGHT_EFFECT_GLOSSY = 2u;
 const uint AREALIGHT_EFFECT_TWO_SIDED = 4u;
 // The G-buffer has a dielectric reflectance of its own.
 const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
+// Some light is concave, or has more than four vertices.
+const uint AREALIGHT_EFFECT_POLYGON = 16u;
 
-// Rungs of the form factor, see form_factor.glsl. The same numbers as arealight::FormFactor.
+// Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
+// arealight::Quality::form_factor_bits.
 const int AREALIGHT_FORM_FACTOR_EXACT = 0;
-const int AREALIGHT_FORM_FACTOR_FAST = 1;
+const int AREALIGHT_FORM_FACTOR_FAST = 1;       // short series
+const int AREALIGHT_FORM_FACTOR_DIFFERENCE = 2; // relative precision for small lights
+const int AREALIGHT_FORM_FACTOR_ONE_POINT = 4;  // far lights from their centre alone, where that is precise enough
+
+// Where polygons are clipped. The same as arealight::Horizon.
+const int AREALIGHT_HORIZON_COSINE = 0; // at the horizon of cosine space
+const int AREALIGHT_HORIZON_BOTH = 1;   // at the surface's horizon too, before the lobe's transform
+const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds
 
 #endif

@@ -3,80 +3,163 @@
 
 #include "arealight/effects.glsl"
 #include "arealight/form_factor.glsl"
-#include "arealight/surface.glsl"
-#include "arealight/table.glsl"
+#include "arealight/shading_point.glsl"
 
-// The host's bridge to the lights' vertices: the position of vertex `index`, relative to the same origin as
-// ArealightSurface.position.
+// The host's bridge to the lights' vertices: the position of vertex `index`, relative to its light's `center`. So a
+// light keeps its shape however far from the origin it is.
 vec3 arealight_bridge_vertex(uint index);
 
-// A flat polygon of constant radiance, convex or concave.
+// A flat polygon of constant radiance.
 struct ArealightPolygonLight {
     vec3 radiance;     // of the front, W/(m^2 sr)
     uint first_vertex; // for arealight_bridge_vertex
-    uint vertex_count; // from 3 on
-    vec3 center;       // of a sphere that holds every vertex, relative to the origin
-    float radius;      // of that sphere; may be generous
+    uint vertex_count; // from 3 on; the outline is convex and has at most 4 without AREALIGHT_EFFECT_POLYGON
+    vec3 center;       // of the area, relative to the origin of ArealightSurface.position
+    float radius;      // of a sphere about the center that holds every vertex; may be generous
+    vec3 area;         // area times the normal of the front, over radius^2 (one-point form alone)
     bool two_sided;    // the back emits too
 };
 
-// A surface made ready for any number of lights: what does not depend on the light.
-struct ArealightShadingPoint {
-    vec3 position;
-    mat3 to_surface;       // offsets into the shading frame: the cosine space of the Lambert lobe
-    mat3 to_cosine;        // offsets into the GGX lobe's cosine space
-    vec3 diffuse_albedo;
-    vec3 specular_albedo;  // the GGX lobe's directional albedo, Fresnel term included
+// How a pass integrates polygons: AREALIGHT_FORM_FACTOR_* bits and one of AREALIGHT_HORIZON_*. Make both from
+// specialisation constants or literals.
+struct ArealightQuality {
+    int form_factor;
+    int horizon;
 };
 
-// Prepares a surface: its frame, and one lookup in the table where `effects` has the glossy lobe.
-ArealightShadingPoint arealight_shading_point(ArealightSurface surface, uint effects) {
-    ArealightShadingPoint point;
-    ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
-    point.position = surface.position;
-    point.to_surface = arealight_frame_matrix(frame);
-    point.to_cosine = point.to_surface;
-    point.diffuse_albedo = surface.diffuse_albedo;
-    point.specular_albedo = vec3(0.0);
-    if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        ArealightLobe lobe = arealight_table_lookup(frame, surface.roughness);
-        point.to_cosine = lobe.to_cosine;
-        // F = f0 + (f90 - f0) (1 - cos)^5, integrated over the lobe
-        point.specular_albedo = surface.f0 * lobe.albedo + (vec3(surface.f90) - surface.f0) * lobe.schlick;
-    }
-    return point;
+// A light before a shading point: scaled by a power of two, so that squares neither overflow nor vanish. That rounds
+// nothing.
+struct ArealightSeenLight {
+    vec3 center;  // from the shading point
+    float radius;
+    float scale;  // what offsets are still to be multiplied with
+    float facing; // minus the product of area vector and center
+};
+
+ArealightSeenLight arealight_see(vec3 position, ArealightPolygonLight light) {
+    ArealightSeenLight seen;
+    vec3 center = light.center - position;
+    seen.scale = arealight_power_of_two_scale(arealight_max_component(center) + light.radius);
+    seen.center = center * seen.scale;
+    seen.radius = light.radius * seen.scale;
+    seen.facing = -dot(light.area, seen.center) * seen.radius * seen.radius;
+    return seen;
 }
 
-// The form factor of a polygon light in the space that `to_cosine` leads to, in [0, 1]; error: see
-// form_factor.glsl. `to_cosine` is linear and keeps handedness.
-float arealight_polygon_form_factor(vec3 position, mat3 to_cosine, ArealightPolygonLight light, int rung) {
-    // Scale by a power of two, so that squares neither overflow nor vanish; it changes no rounding
-    float extent = arealight_max_component(light.center - position) + light.radius;
-    mat3 transform = to_cosine * arealight_power_of_two_scale(extent);
+// What the form factor of a light in a lobe's cosine space begins with.
+struct ArealightLobeView {
+    vec3 center;            // of the light, from the shading point
+    float extent;           // of the light about it; may be generous
+    ArealightAnchor anchor; // at its center
+    mat3 transform;         // offsets from the light's center into cosine space
+    float normal_height;    // the light's center above the surface's horizon
+    vec3 normal;            // product with an offset: the vertex's height over the center's
+};
 
+ArealightLobeView arealight_lobe_view(ArealightCosineSpace space, vec3 normal, ArealightSeenLight seen, int rung) {
+    vec3 center = space.to_cosine * seen.center;
+    float extent = space.stretch * seen.radius;
+    return ArealightLobeView(center, extent, arealight_anchor(center, extent, rung), space.to_cosine * seen.scale,
+                             dot(normal, seen.center), normal * seen.scale);
+}
+
+// The form factor of a convex outline of up to four vertices; see form_factor.glsl.
+float arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, bool two_sided, ArealightQuality quality) {
+    mat3 transform = view.transform;
+    ArealightQuad cosine =
+        ArealightQuad(transform * quad.v0, transform * quad.v1, transform * quad.v2, transform * quad.v3);
+    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
+        return arealight_quad_bare(view.anchor, cosine, two_sided, quality.form_factor);
+    }
+    if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+        vec4 height = view.normal_height + vec4(dot(view.normal, quad.v0), dot(view.normal, quad.v1),
+                                                dot(view.normal, quad.v2), dot(view.normal, quad.v3));
+        return arealight_quad_both_horizons(view.anchor, cosine, height, two_sided, quality.form_factor);
+    }
+    return arealight_quad_clipped(view.anchor, cosine, two_sided, quality.form_factor);
+}
+
+// The form factor of any outline.
+float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, ArealightQuality quality) {
     uint end = light.first_vertex + light.vertex_count;
-    ArealightWalk walk = arealight_walk_begin(transform * (arealight_bridge_vertex(end - 1u) - position));
+    vec3 last = arealight_bridge_vertex(end - 1u);
+    int rung = quality.form_factor;
+    if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+        float height = view.normal_height + dot(view.normal, last);
+        ArealightSurfaceWalk walk = arealight_surface_walk_begin(view.transform * last, height);
+        for (uint index = light.first_vertex; index < end; index++) {
+            vec3 vertex = arealight_bridge_vertex(index);
+            height = view.normal_height + dot(view.normal, vertex);
+            arealight_surface_walk_to(walk, view.anchor, view.transform * vertex, height, rung);
+        }
+        return arealight_surface_walk_form_factor(walk, view.anchor, light.two_sided, rung);
+    }
+    ArealightWalk walk = arealight_walk_begin();
+    ArealightVertex from = arealight_vertex(view.anchor, view.transform * last, rung);
+    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
+        for (uint index = light.first_vertex; index < end; index++) {
+            ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
+            walk.sum += arealight_acute_arc(from, to, rung);
+            walk.squares += to.square;
+            from = to;
+        }
+        return arealight_form_factor_from_arcs(walk.sum, walk.squares, light.two_sided);
+    }
     for (uint index = light.first_vertex; index < end; index++) {
-        arealight_walk_to(walk, transform * (arealight_bridge_vertex(index) - position), rung);
+        ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
+        arealight_walk_edge(walk, view.anchor, from, to, rung);
+        from = to;
     }
     return arealight_walk_form_factor(walk, light.two_sided, rung);
 }
 
+// The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
+ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
+    uint last = min(light.vertex_count, 4u) - 1u;
+    return ArealightQuad(arealight_bridge_vertex(light.first_vertex), arealight_bridge_vertex(light.first_vertex + 1u),
+                         arealight_bridge_vertex(light.first_vertex + min(2u, last)),
+                         arealight_bridge_vertex(light.first_vertex + last));
+}
+
+// The form factor of a polygon light in a lobe's cosine space, in [0, 1]; error: see form_factor.glsl. `quad` is read
+// without AREALIGHT_EFFECT_POLYGON, the light's vertices with it.
+float arealight_polygon_form_factor(ArealightCosineSpace space, vec3 normal, ArealightSeenLight seen,
+                                    ArealightPolygonLight light, ArealightQuad quad, uint effects,
+                                    ArealightQuality quality) {
+    ArealightLobeView view = arealight_lobe_view(space, normal, seen, quality.form_factor);
+    if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && arealight_is_far(view.center, view.extent)) {
+        return arealight_one_point_form_factor(view.center, seen.facing * space.determinant, light.two_sided);
+    }
+    if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
+        return arealight_lobe_walk(view, light, quality);
+    }
+    return arealight_lobe_quad(view, quad, light.two_sided, quality);
+}
+
 // Outgoing radiance towards the viewer from one polygon light, W/(m^2 sr), without visibility.
 //
-// The Lambert lobe is exact to the form factor's error; the GGX lobe is the fitted one: exact for the table's
-// lobe, and as close to GGX as the table's fit. Source: Heitz et al. 2016, eq. 11.
+// The Lambert lobe is exact to the form factor's error; the GGX lobe is the fitted one: exact for the table's lobe, and
+// as close to GGX as the table's fit. Source: Heitz et al. 2016, eq. 11.
 vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
-                                int rung) {
+                                ArealightQuality quality) {
     light.two_sided = light.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
+    // The vertices are read once for both lobes
+    ArealightSeenLight seen = arealight_see(point.position, light);
+    ArealightQuad quad = ArealightQuad(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
+        quad = arealight_light_quad(light);
+    }
     vec3 reflected = vec3(0.0);
     if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
-        reflected += point.diffuse_albedo
-                   * arealight_polygon_form_factor(point.position, point.to_surface, light, rung);
+        // The surface's horizon is that of the Lambert lobe's cosine space
+        ArealightQuality once = quality;
+        once.horizon = quality.horizon == AREALIGHT_HORIZON_BOTH ? AREALIGHT_HORIZON_COSINE : quality.horizon;
+        reflected += point.diffuse_albedo * arealight_polygon_form_factor(point.diffuse, point.normal, seen, light,
+                                                                          quad, effects, once);
     }
     if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        reflected += point.specular_albedo
-                   * arealight_polygon_form_factor(point.position, point.to_cosine, light, rung);
+        reflected += point.specular_albedo * arealight_polygon_form_factor(point.glossy, point.normal, seen, light,
+                                                                           quad, effects, quality);
     }
     return light.radiance * reflected;
 }

@@ -6,6 +6,7 @@ mod gpu;
 mod output;
 mod picture;
 mod progress;
+mod quality;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

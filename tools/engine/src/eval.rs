@@ -3,7 +3,7 @@
 use crate::{Engine, EngineError};
 use arealight::gpu::{EvalConstants, GpuCase};
 use arealight::kernels::EVAL;
-use arealight::{PackedLights, PolygonLight, Quality, Surface, plan};
+use arealight::{Effects, PackedLights, PolygonLight, Quality, Surface, plan};
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 
@@ -28,10 +28,34 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
+        let mut radiance = vec![Vec3::ZERO; points.len()];
+        // Points whose light needs no more than the convex quad get a pipeline that has no more
+        let (quads, polygons): (Vec<usize>, Vec<usize>) =
+            (0..points.len()).partition(|&index| points[index].light.is_convex_quad());
+        for (indices, effects) in [(quads, Effects::all() - Effects::POLYGON), (polygons, Effects::all())] {
+            if indices.is_empty() {
+                continue;
+            }
+            let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
+            let answers = self.eval_with(&subset, effects, quality)?;
+            for (&index, answer) in indices.iter().zip(answers) {
+                radiance[index] = answer;
+            }
+        }
+        Ok(radiance)
+    }
+
+    /// As [`Engine::eval`], with a pipeline for one set of effects.
+    fn eval_with(
+        &self,
+        points: &[&EvalPoint],
+        effects: Effects,
+        quality: Quality,
+    ) -> Result<Vec<Vec3>, EngineError> {
         // Pack each light relative to its own point, so that no precision is lost far from the origin
         let mut lights = PackedLights::default();
         let mut cases = Vec::with_capacity(points.len());
-        for point in points {
+        for &point in points {
             let packed = PackedLights::new(std::slice::from_ref(&point.light), point.position)?;
             cases.push(case(point, lights.lights.len() as u32));
             lights.append(packed)?;
@@ -54,7 +78,7 @@ impl Engine {
                 Resource::buffer(results.handle()),
             ];
             let case_count = cases.len() as u32;
-            let dispatch = plan::eval(quality, case_count);
+            let dispatch = plan::eval(effects, quality, case_count);
             let pass = self.pass(dispatch.kernel, &dispatch.specialization, &resources)?;
             self.host().try_submit(|commands| {
                 pass.record(commands, &EvalConstants { case_count }, [case_count, 1, 1])

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::print;
+use crate::quality::QualityArguments;
 use crate::{gpu, progress};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
@@ -38,6 +39,8 @@ pub struct Arguments {
     /// The Vulkan device, by a part of its name.
     #[arg(long)]
     device: Option<String>,
+    #[command(flatten)]
+    quality: QualityArguments,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -146,7 +149,10 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let supported: Vec<_> = cases.iter().map(Case::supported).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
     let answered = match arguments.on {
-        Method::Gpu => gpu::eval::answer(&answerable, arguments.device.as_deref(), &arguments.cases)?,
+        Method::Gpu => {
+            let quality = arguments.quality.quality();
+            gpu::eval::answer(&answerable, quality, arguments.device.as_deref(), &arguments.cases)?
+        }
         Method::Oracle => answer_by_table(&answerable),
         Method::Truth => answer_in_parallel(&answerable, answer_by_cubature),
     };

@@ -5,7 +5,8 @@ use crate::gpu;
 use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
-use arealight::{Effects, FormFactor, Quality};
+use crate::quality::QualityArguments;
+use arealight::Effects;
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -43,21 +44,11 @@ pub struct Arguments {
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
-    /// How edges of lights are integrated
-    #[arg(long, value_enum, default_value_t = Rung::Exact)]
-    form_factor: Rung,
+    #[command(flatten)]
+    quality: QualityArguments,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
-}
-
-/// The rungs of the form factor.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Rung {
-    /// Relative error 5e-7 an edge
-    Exact,
-    /// Relative error 1.2e-4 an edge, fewer instructions
-    Fast,
 }
 
 impl Arguments {
@@ -72,17 +63,9 @@ impl Arguments {
             reference: None,
             exposure: 0.0,
             supersample: 2,
-            form_factor: Rung::Exact,
+            quality: QualityArguments::default(),
             json: false,
         }
-    }
-
-    fn quality(&self) -> Quality {
-        let form_factor = match self.form_factor {
-            Rung::Exact => FormFactor::Exact,
-            Rung::Fast => FormFactor::Fast,
-        };
-        Quality { form_factor }
     }
 
     /// A pixel's reference samples are spread evenly over its subpixels, each having one at least.
@@ -158,7 +141,7 @@ fn render(
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     let visibility = renderer.visibility()?;
     let shading = match arguments.reference {
-        None => renderer.shade(effects, arguments.quality())?,
+        None => renderer.shade(effects, arguments.quality.quality())?,
         Some(samples) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");

@@ -11,7 +11,12 @@ use std::path::Path;
 
 /// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason;
 /// the others are answered all the same. `input` is the file of the cases, for errors.
-pub fn answer(cases: &[SupportedCase], device: Option<&str>, input: &Path) -> Result<Vec<Answer>, Failure> {
+pub fn answer(
+    cases: &[SupportedCase],
+    quality: Quality,
+    device: Option<&str>,
+    input: &Path,
+) -> Result<Vec<Answer>, Failure> {
     // Set aside the lights that cannot be shaded
     let points: Vec<_> = cases.iter().map(point).collect();
     let checked: Vec<_> = points.iter().map(|point| point.light.validate()).collect();
@@ -22,7 +27,7 @@ pub fn answer(cases: &[SupportedCase], device: Option<&str>, input: &Path) -> Re
         Vec::new()
     } else {
         let engine = engine(device, &arealight_table::ggx())?;
-        engine.eval(&shaded, Quality::default()).map_err(|error| failure(error, input))?
+        engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
     let mut radiance = radiance.into_iter();

@@ -1,0 +1,146 @@
+//! The rational functions of `arc.glsl`, evaluated in float64 from the GLSL's own text, have the errors that their comments
+//! state.
+
+const ARC_GLSL: &str = include_str!("../../shaders/include/arealight/arc.glsl");
+
+/// Evaluates a GLSL expression of numbers, names, `+ - * /` and parentheses.
+struct Expression<'a> {
+    rest: &'a str,
+    variables: &'a [(&'a str, f64)],
+}
+
+impl Expression<'_> {
+    fn evaluate(text: &str, variables: &[(&str, f64)]) -> f64 {
+        let mut expression = Expression { rest: text, variables };
+        let value = expression.sum();
+        assert_eq!(expression.rest.trim(), "", "the whole of '{text}' is an expression");
+        value
+    }
+
+    fn accept(&mut self, symbol: char) -> bool {
+        self.rest = self.rest.trim_start();
+        let rest = self.rest.strip_prefix(symbol);
+        self.rest = rest.unwrap_or(self.rest);
+        rest.is_some()
+    }
+
+    fn sum(&mut self) -> f64 {
+        let mut value = self.product();
+        loop {
+            if self.accept('+') {
+                value += self.product();
+            } else if self.accept('-') {
+                value -= self.product();
+            } else {
+                return value;
+            }
+        }
+    }
+
+    fn product(&mut self) -> f64 {
+        let mut value = self.factor();
+        loop {
+            if self.accept('*') {
+                value *= self.factor();
+            } else if self.accept('/') {
+                value /= self.factor();
+            } else {
+                return value;
+            }
+        }
+    }
+
+    fn factor(&mut self) -> f64 {
+        if self.accept('-') {
+            return -self.factor();
+        }
+        if self.accept('(') {
+            let value = self.sum();
+            assert!(self.accept(')'), "a closing parenthesis before '{}'", self.rest);
+            return value;
+        }
+        let end = self.rest.find(|c: char| !c.is_alphanumeric() && c != '.').unwrap_or(self.rest.len());
+        let (word, rest) = self.rest.split_at(end);
+        self.rest = rest;
+        let variable = self.variables.iter().find(|(name, _)| *name == word);
+        variable.map_or_else(|| word.parse().expect("a number or a known name"), |(_, value)| *value)
+    }
+}
+
+/// The fast and the exact expression that a function returns.
+fn returned(function: &str) -> [String; 2] {
+    let (_, body) = ARC_GLSL.split_once(&format!("float {function}(")).expect("the function");
+    let (body, _) = body.split_once("\n}").expect("its end");
+    let expressions: Vec<String> = body
+        .split("return ")
+        .skip(1)
+        .map(|statement| statement.split_once(';').expect("a statement").0.to_owned())
+        .filter(|expression| !expression.contains("arealight_"))
+        .collect();
+    expressions.try_into().expect("two expressions")
+}
+
+/// theta / sin(theta), from theta.
+fn ratio(theta: f64) -> f64 {
+    if theta == 0.0 { 1.0 } else { theta / theta.sin() }
+}
+
+/// The largest error of `expression` relative to `exact` over the angles from 0 to `end`, given the variables of an angle.
+fn largest_error(
+    expression: &str,
+    end: f64,
+    variables: impl Fn(f64) -> Vec<(&'static str, f64)>,
+    exact: impl Fn(f64) -> f64,
+) -> f64 {
+    (0..=20_000)
+        .map(|i| end * f64::from(i) / 20_000.0)
+        .map(|theta| (Expression::evaluate(expression, &variables(theta)) / exact(theta) - 1.0).abs())
+        .fold(0.0, f64::max)
+}
+
+/// Asserts the errors of both rungs, and that one part in a thousand of one coefficient would show.
+fn assert_errors(
+    function: &str,
+    bounds: [f64; 2],
+    end: f64,
+    variables: impl Fn(f64) -> Vec<(&'static str, f64)> + Copy,
+    exact: impl Fn(f64) -> f64 + Copy,
+) {
+    for (name, expression, bound) in
+        std::iter::zip(["fast", "exact"], returned(function)).zip(bounds).map(|((n, e), b)| (n, e, b))
+    {
+        let error = largest_error(&expression, end, variables, exact);
+        println!("{function}, {name}: {error:.2e} (stated {bound:.1e})");
+        assert!(error <= bound, "{function}, {name}: {error:e}, stated {bound:e}");
+        let wrong = expression.replacen("(1.", "(1.001 * 1.", 1).replacen("(3.", "(1.001 * 3.", 1);
+        assert_ne!(wrong, expression);
+        assert!(largest_error(&wrong, end, variables, exact) > 5e-4, "{function}, {name}: the twin shows");
+    }
+}
+
+#[test]
+fn the_weight_of_an_arc_has_the_error_that_it_states() {
+    let variables = |theta: f64| vec![("s", 1.0), ("y", 2.0 * (0.5 * theta).cos())];
+    // Up to where the weight is a million
+    assert_errors("arealight_arc_weight", [2.7e-5, 7e-8], std::f64::consts::PI - 3e-6, variables, ratio);
+}
+
+#[test]
+fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
+    let variables = |theta: f64| vec![("s", 1.0), ("x", theta.cos())];
+    assert_errors("arealight_acute_arc", [2.7e-5, 7e-8], std::f64::consts::FRAC_PI_2, variables, ratio);
+}
+
+#[test]
+fn the_excess_of_an_arc_has_the_error_that_it_states() {
+    // From where theta / sin(theta) - 1 keeps enough digits of float64; the function is flat below
+    let start = 1e-3;
+    let shifted = move |theta: f64| start + theta;
+    let variables = move |theta: f64| {
+        let half = 0.5 * shifted(theta);
+        // scaled = s chord^2 / 4, chord = 2 sin(theta / 2)
+        vec![("scaled", half.sin().powi(2)), ("y", 2.0 * half.cos())]
+    };
+    let exact = move |theta: f64| ratio(shifted(theta)) - 1.0;
+    assert_errors("arealight_arc_excess", [7e-5, 4e-7], std::f64::consts::PI - 2e-3, variables, exact);
+}
