@@ -12,7 +12,7 @@ const SCHLICK_F0: f64 = 5e-4;
 /// The lobes that are fitted, each scaled to integrate to 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Aim {
-    /// Two matrices: the lobe without Fresnel term, and that of Schlick's weight. See [`arealight::table::Fresnel`].
+    /// Two matrices: the lobe without Fresnel term, and that of Schlick's weight. See [`arealight::Fresnel`].
     #[default]
     Split,
     /// One matrix for every reflectance: a blend of the lobes at some, pairs of a reflectance at normal incidence,

@@ -1,7 +1,7 @@
 //! How well a table does: its polygon integrals against the true BRDF's on random quads.
 
-use arealight::table::{Fresnel, share_above_surface};
-use arealight::{LightTable, TableSample};
+use arealight::table::share_above_surface;
+use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::polygon::transformed_form_factor;
@@ -15,23 +15,14 @@ mod quads;
 
 pub use quads::{Family, Quad, near_mirror_quads, random_quads};
 
-/// Which horizons clip a light.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Horizon {
-    /// That of cosine space alone: light leaks from just below the surface.
-    #[default]
-    CosineSpace,
-    /// The surface's too; what is left of the lobe is scaled to keep its energy
-    /// ([`arealight::table::share_above_surface`]).
-    Both,
-}
-
 /// How a table is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Rung {
     /// One integral or two.
     pub fresnel: Fresnel,
-    /// What is clipped.
+    /// Where quads are clipped. With [`Horizon::Both`] what is left of the lobe is scaled to keep its energy
+    /// ([`share_above_surface`]). [`Horizon::Bare`] is measured as [`Horizon::Cosine`], for they agree on every light
+    /// that it may be used for.
     pub horizon: Horizon,
 }
 
@@ -164,7 +155,7 @@ fn radiance(sample: &TableSample, rung: Rung, f0: DVec3, quad: &[DVec3; 4]) -> D
 /// The integral of a lobe over a quad, seen from its front.
 fn integral(inverse: &DMat3, horizon: Horizon, quad: &[DVec3; 4]) -> f64 {
     match horizon {
-        Horizon::CosineSpace => transformed_form_factor(inverse, quad).max(0.0),
+        Horizon::Cosine | Horizon::Bare => transformed_form_factor(inverse, quad).max(0.0),
         Horizon::Both => {
             let form_factor = transformed_form_factor(inverse, &clipped(quad)).max(0.0);
             form_factor / share_above_surface(inverse)

@@ -35,6 +35,18 @@ pub enum Horizon {
     Bare = 2,
 }
 
+/// How Schlick's Fresnel term enters the integral of a lobe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Fresnel {
+    /// One integral, of the lobe between the table's two that the reflectance calls for. A colour counts by the
+    /// mean of its channels; the specular albedo stays exact in each.
+    #[default]
+    ByF0 = 0,
+    /// Two integrals, one of each lobe: exact in the reflectance and its colour.
+    Split = 1,
+}
+
 /// The rungs that a pass is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {

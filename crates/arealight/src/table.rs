@@ -25,7 +25,7 @@
 //! # Two matrices
 //! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves what
 //! is grazing. A second matrix layer holds the lobe of `f cos (1 - cos theta_vh)^5`, and a material of any
-//! reflectance is a sum of the two, or one lobe between them: see [`Fresnel`]. A table without it uses the one
+//! reflectance is a sum of the two, or one lobe between them: see [`crate::Fresnel`]. A table without it uses the one
 //! matrix for both.
 
 use glam::{DMat3, DVec3};
@@ -50,18 +50,6 @@ pub struct LightTable {
     matrix: Vec<[f32; 4]>,
     magnitude: Vec<[f32; 2]>,
     schlick_matrix: Option<Vec<[f32; 4]>>,
-}
-
-/// How Schlick's Fresnel term enters the integral of a lobe.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum Fresnel {
-    /// One integral, of the lobe between the table's two that the reflectance calls for. A colour counts by the
-    /// mean of its channels; the specular albedo stays exact in each.
-    #[default]
-    ByF0 = 0,
-    /// Two integrals, one of each lobe: exact in the reflectance and its colour.
-    Split = 1,
 }
 
 /// Why texels do not make a table.
@@ -144,7 +132,7 @@ impl TableSample {
         f0 * self.albedo + (f90 - f0) * self.schlick
     }
 
-    /// M⁻¹ of one lobe for a reflectance, [`Fresnel::ByF0`]: between the two by their shares of the specular
+    /// M⁻¹ of one lobe for a reflectance, [`crate::Fresnel::ByF0`]: between the two by their shares of the specular
     /// albedo. Since M⁻¹ is linear in the texel, texels may be interpolated instead.
     pub fn inverse_by_f0(&self, f0: f64, f90: f64) -> DMat3 {
         self.inverse + (self.schlick_inverse - self.inverse) * self.schlick_share(f0, f90)

@@ -1,12 +1,10 @@
 //! Whole tables, coarse ones.
 
-use arealight::table::Fresnel;
-use arealight::{LightTable, TableError};
+use arealight::{Fresnel, Horizon, LightTable, TableError};
 use arealight_fit::brdf::view_direction;
 use arealight_fit::lobe::{Lobe, to_mirror_frame};
 use arealight_fit::report::{
-    Case, Horizon, METALS, PUBLISHED, Rung, SEED, cases, integrate, measure, measure_colour,
-    near_mirror_quads,
+    Case, METALS, PUBLISHED, Rung, SEED, cases, integrate, measure, measure_colour, near_mirror_quads,
 };
 use arealight_fit::{Aim, Brdf, FitError, GgxBrdf, Magnitude, Settings, fit};
 use glam::DVec3;
@@ -18,8 +16,8 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(1500, SEED + 1, &|| {
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(|| fitted(&GgxBrdf, &settings(32)));
 
-const BY_F0: Rung = Rung { fresnel: Fresnel::ByF0, horizon: Horizon::CosineSpace };
-const SPLIT: Rung = Rung { fresnel: Fresnel::Split, horizon: Horizon::CosineSpace };
+const BY_F0: Rung = Rung { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
+const SPLIT: Rung = Rung { fresnel: Fresnel::Split, horizon: Horizon::Cosine };
 
 fn settings(size: u32) -> Settings {
     Settings { size, ..Settings::default() }
@@ -89,7 +87,7 @@ fn a_transformed_cosine_is_found_again() {
 #[test]
 fn two_matrices_meet_their_bars_at_every_reflectance() {
     // Half of the nodes a side that a table has by default: the bars hold with room there
-    for horizon in [Horizon::CosineSpace, Horizon::Both] {
+    for horizon in [Horizon::Cosine, Horizon::Both] {
         let split = measure(&TABLE, Rung { horizon, ..SPLIT }, &CASES);
         let by_f0 = measure(&TABLE, Rung { horizon, ..BY_F0 }, &CASES);
         let [at_4_percent, at_1] = [1, 6];
@@ -163,7 +161,7 @@ fn near_mirrors_are_no_exception() {
         cases.iter().filter(|case| case.quad.cos_view > smallest).cloned().collect()
     };
     for fresnel in [Fresnel::ByF0, Fresnel::Split] {
-        let rung = Rung { fresnel, horizon: Horizon::CosineSpace };
+        let rung = Rung { fresnel, horizon: Horizon::Cosine };
         for (degrees, mean, max) in [(60.0, 2e-4, 5e-3), (85.0, 6e-4, 0.02)] {
             for errors in measure(&TABLE, rung, &below(degrees)) {
                 // The chord of a narrow lobe's width between nodes, which grows towards grazing views

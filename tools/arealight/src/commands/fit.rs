@@ -3,10 +3,9 @@
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
-use arealight::LightTable;
-use arealight::table::Fresnel;
+use arealight::{Fresnel, Horizon, LightTable};
 use arealight_fit::report::{
-    COUNT, Case, Errors, Horizon, METALS, PUBLISHED, Rung, SEED, cases, measure, measure_colour,
+    COUNT, Case, Errors, METALS, PUBLISHED, Rung, SEED, cases, measure, measure_colour,
 };
 use arealight_fit::{Aim, GgxBrdf, Settings};
 use serde_json::{Value, json};
@@ -77,7 +76,7 @@ impl Report {
         let cases = cases(COUNT, SEED, &|| bar.inc(1));
         bar.finish_and_clear();
         let at = |horizon| Comparison::of(table, horizon, &cases);
-        Self { cosine_space: at(Horizon::CosineSpace), both_horizons: at(Horizon::Both) }
+        Self { cosine_space: at(Horizon::Cosine), both_horizons: at(Horizon::Both) }
     }
 }
 
