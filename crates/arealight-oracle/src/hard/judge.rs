@@ -16,7 +16,15 @@ const ONE: u32 = 0x3f80_0000;
 pub struct Judged {
     scope: Scope,
     /// `None` where only the range is judged.
-    truth: Option<(Reference, Nearby)>,
+    truth: Option<Truth>,
+}
+
+/// What is known of a case.
+struct Truth {
+    reference: Reference,
+    /// Form factors that are as right, of an outline that is not flat.
+    other_closings: Vec<f64>,
+    nearby: Nearby,
 }
 
 /// What is found of one result.
@@ -42,12 +50,17 @@ impl Judged {
         let accurate = family.scope == Scope::Accuracy && case.is_finite();
         // A sum of finite numbers may be beyond float32; then nothing but a number is promised
         let scope = if family.scope == Scope::Accuracy && !accurate { Scope::Range } else { family.scope };
-        Self { scope, truth: accurate.then(|| (Reference::new(case), Nearby::new(case))) }
+        let truth = accurate.then(|| {
+            let (reference, other_closings) = Reference::with_closings(case);
+            let nearby = Nearby::new(case, !other_closings.is_empty());
+            Truth { reference, other_closings, nearby }
+        });
+        Self { scope, truth }
     }
 
     /// The truth; `None` where only the range is judged.
     pub fn reference(&self) -> Option<&Reference> {
-        self.truth.as_ref().map(|(reference, _)| reference)
+        self.truth.as_ref().map(|truth| &truth.reference)
     }
 
     /// Holds the bits of a result against `promises`.
@@ -61,15 +74,14 @@ impl Judged {
             return finding;
         }
         finding.ratios[0] = Some((Promise::Range, broken(out_of_range)));
-        let Some((reference, nearby)) = &self.truth else { return finding };
+        let Some(Truth { reference, other_closings, nearby }) = &self.truth else { return finding };
 
         // NaN is as far off as can be
-        let error = (value - reference.form_factor).abs();
-        let error = if error.is_nan() { f64::INFINITY } else { error };
+        let errors = other_closings.iter().chain([&reference.form_factor]).map(|f| (value - f).abs());
+        let error = errors.fold(f64::INFINITY, f64::min);
         // The given polygon is one of those nearby: its value is searched no further where it is close enough
         let bound = promises.backward_bound(reference);
-        let backward =
-            if error <= bound { error } else { nearby.distance(value, reference.form_factor, bound) };
+        let backward = if error <= bound { error } else { nearby.distance(value, bound).min(error) };
         finding.error = Some(error);
         finding.backward_error = Some(backward);
         finding.small_light_error = reference.small_light_unit.map(|unit| ratio(error, unit));

@@ -15,7 +15,7 @@ pub const SMALL: f64 = 0.2;
 /// where a vertex is NaN or infinite.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Promises {
-    /// The largest distance to the values that the polygons within [`MOVE`] have.
+    /// The largest distance to the values between those that the polygons within [`MOVE`] have.
     pub backward: f64,
     /// The largest error far from contact.
     pub forward: f64,
@@ -83,7 +83,7 @@ pub enum Promise {
     Range,
     /// 0 for a vertex that is NaN or infinite.
     Zero,
-    /// The value of a polygon nearby.
+    /// A value between those of polygons nearby.
     Backward,
     /// Close to the given polygon's value.
     Forward,

@@ -2,10 +2,13 @@
 
 use super::HardCase;
 use super::double::Double;
-use super::promise::SMALL;
+use super::promise::{MOVE, SMALL};
 use super::walk::walk;
 use glam::DVec3;
 use std::f64::consts::PI;
+
+/// What the small lights' promise is a millionth of, over what moving a vertex of four units in the last place does.
+const PER_AREA: f64 = MOVE / 1e-6;
 
 /// A case's form factor in 106 bits, and what bounds are made of.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,13 +25,21 @@ pub struct Reference {
     pub share: f64,
     /// The same, each times its edge's angle in radians.
     pub share_by_angle: f64,
-    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`].
+    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`]. Of a sliver, the area
+    /// that four units in the last place of its offsets are a millionth of: no better is its area known.
     pub small_light_unit: Option<f64>,
 }
 
 impl Reference {
     /// Walks around the polygon in 106 bits. Vertices must be finite.
     pub fn new(case: &HardCase) -> Self {
+        Self::with_closings(case).0
+    }
+
+    /// As [`Reference::new`], and the form factors that are as right: those of the polygon whose parts below the
+    /// horizon are closed the other way around. An outline that is not flat and goes below more than once bounds
+    /// regions that differ by whole hemispheres, and no edge tells which is meant.
+    pub fn with_closings(case: &HardCase) -> (Self, Vec<f64>) {
         let (anchor, offsets) = (case.anchor.map(f64::from), case.offsets_exactly());
         let walked = walk::<Double>(anchor, &offsets);
         let offsets: Vec<DVec3> = offsets.iter().map(|offset| DVec3::from_array(*offset)).collect();
@@ -57,16 +68,29 @@ impl Reference {
         let farthest = offsets.iter().map(|o| (anchor + *o).length()).fold(0.0, f64::max);
         let extent = offsets.iter().map(|o| o.length()).fold(0.0, f64::max);
         let area = 0.5 * doubled.length();
-        Self {
-            form_factor: walked.signed_form_factor().abs().min(1.0),
+        // A vertex of four units in the last place moves the area by so much along each edge
+        let perimeter: f64 = (0..offsets.len()).map(|i| (next(i) - offsets[i]).length()).sum();
+        let small_area = area.max(PER_AREA * extent * perimeter);
+        let signed = walked.signed_form_factor();
+        let ambiguous = !case.flat && walked.exits > 1;
+        let closings = if ambiguous { other_closings(signed) } else { Vec::new() };
+        let reference = Self {
+            form_factor: signed.abs().min(1.0),
             rho: if farthest > 0.0 { distance / farthest } else { 0.0 },
             distance,
             area,
             share: walked.share,
             share_by_angle: walked.share_by_angle,
-            small_light_unit: (extent < SMALL * farthest).then(|| area / (PI * distance * distance)),
-        }
+            small_light_unit: (extent < SMALL * farthest).then(|| small_area / (PI * distance * distance)),
+        };
+        (reference, closings)
     }
+}
+
+/// The form factors that differ by whole hemispheres from `signed`.
+fn other_closings(signed: f64) -> Vec<f64> {
+    let shifted = [signed + 1.0, signed - 1.0];
+    shifted.into_iter().map(f64::abs).filter(|value| *value <= 1.0).collect()
 }
 
 /// The distance from the origin to the segment from `start` along `edge`.

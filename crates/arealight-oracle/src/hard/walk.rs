@@ -19,6 +19,8 @@ pub struct Walked<T> {
     /// The distance from the origin to the nearest of the clipped polygon's edges, those along the horizon
     /// included; infinite where nothing is above the horizon.
     pub nearest_edge: f64,
+    /// How often the outline goes below the horizon.
+    pub exits: usize,
 }
 
 impl<T: Number> Walked<T> {
@@ -120,7 +122,7 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
         position: [0, 1, 2].map(|i| T::sum(anchor[i], offset[i])),
     };
     let mut sums = Sums { sum: T::ZERO, share: 0.0, share_by_angle: 0.0, nearest_square: f64::INFINITY };
-    let (mut exit, mut first_entry) = (None, None);
+    let (mut exit, mut first_entry, mut exits) = (None, None, 0);
     let mut previous = offsets.last().map(&vertex);
     for offset in offsets {
         let to = vertex(offset);
@@ -133,6 +135,7 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
                 let point = horizon_point(&from, &to);
                 sums.add_edge(&from, &point);
                 exit = Some(point);
+                exits += 1;
             }
             (false, true) => {
                 let point = horizon_point(&from, &to);
@@ -152,5 +155,6 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
         share: sums.share,
         share_by_angle: sums.share_by_angle,
         nearest_edge: sums.nearest_square.sqrt(),
+        exits,
     }
 }
