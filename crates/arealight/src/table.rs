@@ -30,6 +30,10 @@
 
 use glam::{DMat3, DVec3};
 
+mod ggx_formula;
+
+pub use ggx_formula::ggx_formula;
+
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;
 
@@ -230,11 +234,11 @@ impl LightTable {
     }
 
     /// The layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
-    /// channels, layer 2 the matrix of Schlick's weight if there is one; four `f32` a texel.
+    /// channels, layer 2 the matrix of Schlick's weight, in a table of one matrix that again; four `f32` a texel.
     pub fn texels(&self) -> Vec<[f32; 4]> {
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], 0.0, 0.0]);
-        let schlick = self.schlick_matrix.iter().flatten().copied();
-        self.matrix.iter().copied().chain(magnitude).chain(schlick).collect()
+        let schlick = self.schlick_matrix.as_ref().unwrap_or(&self.matrix);
+        self.matrix.iter().copied().chain(magnitude).chain(schlick.iter().copied()).collect()
     }
 
     /// Looks up the lobes, in float64: the twin of `arealight_table_lookup`.
