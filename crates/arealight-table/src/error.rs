@@ -35,13 +35,16 @@ pub enum ReadError {
         expected: String,
     },
     /// A layer is missing.
-    #[error("layer `{layer}` is missing; a light table has the layers `matrix` and `magnitude`")]
+    #[error(
+        "layer `{layer}` is missing; a light table has the layers `matrix` and `magnitude`, and as a third \
+         only `schlick matrix`"
+    )]
     MissingLayer {
         /// The layer.
         layer: &'static str,
     },
     /// There are more layers than a table has.
-    #[error("{count} layers; a light table has two")]
+    #[error("{count} layers; a light table has two or three")]
     LayerCount {
         /// How many there are.
         count: usize,
@@ -56,9 +59,9 @@ pub enum ReadError {
         /// The channels expected.
         expected: &'static str,
     },
-    /// A layer is not square, too large, too small, or of another size than the other one.
+    /// A layer is not square, too large, too small, or of another size than the first.
     #[error(
-        "layer `{layer}`: {width} x {height} texels; tables are square, 2 to {MAX_SIZE} a side, both layers alike"
+        "layer `{layer}`: {width} x {height} texels; tables are square, 2 to {MAX_SIZE} a side, all layers alike"
     )]
     Size {
         /// The layer.

@@ -1,13 +1,14 @@
 //! Light tables to and from files, and the table that is built in.
 //!
-//! A table file is an OpenEXR image of two layers that any EXR viewer opens:
+//! A table file is an OpenEXR image of two or three layers that any EXR viewer opens:
 //!
 //! | layer | channels, 32-bit float | holds |
 //! |---|---|---|
 //! | `matrix` | `R G B A` | `q00 q02 q20 q22` of [`arealight::table`] |
 //! | `magnitude` | `R G` | `albedo schlick` |
+//! | `schlick matrix` | `R G B A` | the same as in `matrix` for the lobe of Schlick's weight; a table of one matrix does without |
 //!
-//! and these attributes, shared by both layers:
+//! and these attributes, shared by all layers:
 //!
 //! | attribute | type | content |
 //! |---|---|---|
@@ -35,7 +36,7 @@ pub use error::{FileError, ReadError};
 pub use open_exr::{AXES, FORMAT, FRAME, NORMALISATION, VERSION};
 
 /// The largest file that is read: the largest table, uncompressed, and a header.
-pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 24 + (1 << 20);
+pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 40 + (1 << 20);
 
 static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
 

@@ -40,3 +40,5 @@ struct Layer {
 
 const MATRIX: Layer = Layer { name: "matrix", channels: &["R", "G", "B", "A"] };
 const MAGNITUDE: Layer = Layer { name: "magnitude", channels: &["R", "G"] };
+/// Of a table of two matrices.
+const SCHLICK_MATRIX: Layer = Layer { name: "schlick matrix", channels: &["R", "G", "B", "A"] };

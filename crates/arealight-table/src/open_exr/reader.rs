@@ -10,7 +10,9 @@ use exr::meta::{BlockDescription, magic_number};
 use exr::prelude::{Compression, Vec2};
 use std::io::Cursor;
 
-use super::{AXES, FORMAT, FRAME, Layer, MAGNITUDE, MATRIX, NORMALISATION, VERSION, attribute};
+use super::{
+    AXES, FORMAT, FRAME, Layer, MAGNITUDE, MATRIX, NORMALISATION, SCHLICK_MATRIX, VERSION, attribute,
+};
 use crate::ReadError;
 
 /// The table in a file.
@@ -24,23 +26,31 @@ pub fn read(file: &[u8]) -> Result<LightTable, ReadError> {
     let description = check_attributes(headers)?;
     let (matrix_index, matrix_header) = find_layer(headers, &MATRIX)?;
     let (magnitude_index, magnitude_header) = find_layer(headers, &MAGNITUDE)?;
-    if headers.len() != 2 {
+    // A third layer is a second matrix
+    let schlick_layer = (headers.len() > 2).then(|| find_layer(headers, &SCHLICK_MATRIX)).transpose()?;
+    if headers.len() > 3 {
         return Err(ReadError::LayerCount { count: headers.len() });
     }
     let size = check_layer(matrix_header, &MATRIX, None)?;
     check_layer(magnitude_header, &MAGNITUDE, Some(size))?;
+    if let Some((_, header)) = schlick_layer {
+        check_layer(header, &SCHLICK_MATRIX, Some(size))?;
+    }
 
     // Read the texels into what the headers call for
     let mut matrix = Texels::<4>::new(&MATRIX, matrix_header, size);
     let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_header, size);
+    let mut schlick =
+        schlick_layer.map(|(index, header)| (index, Texels::<4>::new(&SCHLICK_MATRIX, header, size)));
     let mut unknown_layer = false;
     reader
         .all_chunks(true)
         .and_then(|chunks| {
             chunks.decompress_sequential(true, |_, block| {
-                match block.index.layer {
-                    layer if layer == matrix_index => matrix.insert(&block),
-                    layer if layer == magnitude_index => magnitude.insert(&block),
+                match (block.index.layer, &mut schlick) {
+                    (layer, _) if layer == matrix_index => matrix.insert(&block),
+                    (layer, _) if layer == magnitude_index => magnitude.insert(&block),
+                    (layer, Some((index, schlick))) if layer == *index => schlick.insert(&block),
                     _ => unknown_layer = true,
                 }
                 Ok(())
@@ -53,7 +63,11 @@ pub fn read(file: &[u8]) -> Result<LightTable, ReadError> {
             reason: "a block of a layer that is not there".into(),
         });
     }
-    Ok(LightTable::new(description, size as u32, matrix.finish()?, magnitude.finish()?)?)
+    let table = LightTable::new(description, size as u32, matrix.finish()?, magnitude.finish()?)?;
+    Ok(match schlick {
+        Some((_, schlick)) => table.with_schlick_matrix(schlick.finish()?)?,
+        None => table,
+    })
 }
 
 fn damaged(part: &'static str, error: &exr::error::Error) -> ReadError {

@@ -5,7 +5,10 @@ use exr::prelude::*;
 use std::io::Cursor;
 
 use super::canonical::sort_attributes;
-use super::{AXES, FORMAT, FRAME, Layer as TableLayer, MAGNITUDE, MATRIX, NORMALISATION, VERSION, attribute};
+use super::{
+    AXES, FORMAT, FRAME, Layer as TableLayer, MAGNITUDE, MATRIX, NORMALISATION, SCHLICK_MATRIX, VERSION,
+    attribute,
+};
 
 /// The file of a table.
 pub fn write(table: &LightTable) -> Vec<u8> {
@@ -24,7 +27,8 @@ pub fn write(table: &LightTable) -> Vec<u8> {
     }
     attributes.other.insert(text(attribute::VERSION), AttributeValue::I32(VERSION));
 
-    let layers = [layer(&MATRIX, size, table.matrix()), layer(&MAGNITUDE, size, table.magnitude())];
+    let mut layers = vec![layer(&MATRIX, size, table.matrix()), layer(&MAGNITUDE, size, table.magnitude())];
+    layers.extend(table.schlick_matrix().map(|texels| layer(&SCHLICK_MATRIX, size, texels)));
     let image = Image { attributes, layer_data: Layers::from(layers) };
     let mut bytes = Vec::new();
     image

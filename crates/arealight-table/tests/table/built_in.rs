@@ -21,19 +21,30 @@ fn its_file_is_small_and_as_this_version_writes_it() {
 #[test]
 fn seen_from_the_normal_its_lobes_are_round() {
     let table = ggx();
-    for texel in &table.matrix()[..table.size() as usize] {
-        assert_eq!(texel[..3], [1.0, 0.0, 0.0]);
+    for layer in [table.matrix(), table.schlick_matrix().unwrap()] {
+        for texel in &layer[..table.size() as usize] {
+            assert_eq!(texel[..3], [1.0, 0.0, 0.0]);
+        }
     }
 }
 
 #[test]
 fn neighbouring_nodes_differ_little() {
-    // Entries are of order 1. The largest step, 0.26, is one of q20 towards the last row, where lobes become
-    // fans; in all rows but the last five, up to 85 degrees, steps are below 0.17
+    // Entries are of order 1. The largest step, 0.27, is one of q20 towards the last row, where lobes become
+    // fans; in all rows but the last five, up to 85 degrees, steps are below 0.08
     let table = ggx();
+    let worst = largest_steps(&table, table.matrix());
+    assert!(worst[0] < 0.1 && worst[1] < 0.3, "{worst:?}");
+    // The lobe of Schlick's weight turns from that of F0 to its own where it begins to count: entries up to 9
+    let worst = largest_steps(&table, table.schlick_matrix().unwrap());
+    assert!(worst[0] < 2.5 && worst[1] < 0.3, "{worst:?}");
+}
+
+/// The largest step of an entry between neighbours: in all rows but the last five, and in those.
+fn largest_steps(table: &LightTable, texels: &[[f32; 4]]) -> [f32; 2] {
     let size = table.size() as usize;
     let step = |a: usize, b: usize| {
-        let pairs = table.matrix()[a].iter().zip(&table.matrix()[b]);
+        let pairs = texels[a].iter().zip(&texels[b]);
         pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
     };
     let mut worst = [0.0_f32; 2];
@@ -46,7 +57,7 @@ fn neighbouring_nodes_differ_little() {
             }
         }
     }
-    assert!(worst[0] < 0.2 && worst[1] < 0.3, "{worst:?}");
+    worst
 }
 
 #[test]
@@ -63,7 +74,10 @@ fn a_lookup_anywhere_is_a_lobe() {
     for i in 0..=200 {
         for j in 0..=200 {
             let sample = table.lookup(f64::from(i) / 200.0, f64::from(j) / 200.0);
-            assert!(sample.inverse.determinant() > 0.0, "{i} {j} {sample:?}");
+            // Those in between too: of one integral for a reflectance
+            for f0 in [0.0, 0.02, 0.04, 0.1, 0.3, 1.0] {
+                assert!(sample.inverse_by_f0(f0, 1.0).determinant() > 0.0, "{i} {j} {f0} {sample:?}");
+            }
             assert!((0.0..=1.0).contains(&sample.albedo) && (0.0..=sample.albedo).contains(&sample.schlick));
         }
     }

@@ -23,8 +23,22 @@ impl Draft {
     pub fn of(table: &LightTable) -> Self {
         let text = |value: &str| AttributeValue::Text(Text::new_or_panic(value));
         let size = (table.size() as usize, table.size() as usize);
-        let matrix = |c: usize| FlatSamples::F32(table.matrix().iter().map(|texel| texel[c]).collect());
+        let matrix = |name, texels: &[[f32; 4]]| {
+            let channel = |(c, letter)| {
+                (letter, FlatSamples::F32(texels.iter().map(|texel: &[f32; 4]| texel[c]).collect()))
+            };
+            DraftLayer {
+                name,
+                size,
+                channels: ["R", "G", "B", "A"].into_iter().enumerate().map(channel).collect(),
+            }
+        };
         let magnitude = |c: usize| FlatSamples::F32(table.magnitude().iter().map(|texel| texel[c]).collect());
+        let mut layers = vec![
+            matrix("matrix", table.matrix()),
+            DraftLayer { name: "magnitude", size, channels: vec![("R", magnitude(0)), ("G", magnitude(1))] },
+        ];
+        layers.extend(table.schlick_matrix().map(|texels| matrix("schlick matrix", texels)));
         Self {
             attributes: vec![
                 ("arealight.format", text(arealight_table::FORMAT)),
@@ -35,18 +49,7 @@ impl Draft {
                 ("arealight.brdf", text(&table.description().brdf)),
                 ("arealight.made_by", text(&table.description().made_by)),
             ],
-            layers: vec![
-                DraftLayer {
-                    name: "matrix",
-                    size,
-                    channels: vec![("R", matrix(0)), ("G", matrix(1)), ("B", matrix(2)), ("A", matrix(3))],
-                },
-                DraftLayer {
-                    name: "magnitude",
-                    size,
-                    channels: vec![("R", magnitude(0)), ("G", magnitude(1))],
-                },
-            ],
+            layers,
             compression: Compression::ZIP16,
             blocks: Blocks::ScanLines,
         }
@@ -96,6 +99,13 @@ impl Draft {
         image.write().non_parallel().to_buffered(Cursor::new(&mut bytes)).expect("the draft can be written");
         bytes
     }
+}
+
+/// A table of two matrices.
+pub fn table_of_two(size: u32) -> LightTable {
+    let table = table(size);
+    let schlick = table.matrix().iter().rev().map(|texel| texel.map(|q| 2.0 * q)).collect();
+    table.with_schlick_matrix(schlick).unwrap()
 }
 
 /// A table of `size` in which every number is another one.

@@ -4,13 +4,15 @@ use arealight::{LightTable, TableDescription};
 use arealight_table::{FileError, ReadError, load, read, save, write};
 use exr::prelude::Compression;
 
-use crate::draft::{Draft, table};
+use crate::draft::{Draft, table, table_of_two};
 
 #[test]
 fn a_table_comes_back_bit_for_bit() {
     for size in [2, 3, 17, 64] {
         let table = table(size);
         assert_eq!(read(&write(&table)).unwrap(), table, "size {size}");
+        let table = table_of_two(size);
+        assert_eq!(read(&write(&table)).unwrap(), table, "size {size}, two matrices");
     }
 }
 
@@ -64,8 +66,9 @@ fn an_uncompressed_file_reads_alike() {
 
 #[test]
 fn layers_may_come_in_any_order_and_with_attributes_of_their_own() {
-    let table = table(5);
-    let mut draft = Draft::of(&table);
-    draft.layers.reverse();
-    assert_eq!(read(&draft.write()).unwrap(), table);
+    for table in [table(5), table_of_two(5)] {
+        let mut draft = Draft::of(&table);
+        draft.layers.reverse();
+        assert_eq!(read(&draft.write()).unwrap(), table);
+    }
 }

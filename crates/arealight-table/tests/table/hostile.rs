@@ -3,7 +3,7 @@
 use arealight_table::{ReadError, read, write};
 use exr::prelude::*;
 
-use crate::draft::{Draft, table};
+use crate::draft::{Draft, table, table_of_two};
 
 /// Drafts a good file, spoils it, and reads it.
 fn spoil(change: impl FnOnce(&mut Draft)) -> ReadError {
@@ -77,12 +77,17 @@ fn each_missing_attribute_is_named() {
 fn missing_and_superfluous_layers_are_named() {
     assert_eq!(spoil(|d| d.layers[0].name = "matrices"), ReadError::MissingLayer { layer: "matrix" });
     assert_eq!(spoil(|d| d.layers.truncate(1)), ReadError::MissingLayer { layer: "magnitude" });
-    let error = spoil(|draft| {
-        let mut third = Draft::of(&table(3)).layers.remove(0);
-        third.name = "third";
-        draft.layers.push(third);
-    });
-    assert_eq!(error, ReadError::LayerCount { count: 3 });
+    let with = |names: &[&'static str]| {
+        spoil(|draft| {
+            for name in names {
+                let mut layer = Draft::of(&table(3)).layers.remove(0);
+                layer.name = name;
+                draft.layers.push(layer);
+            }
+        })
+    };
+    assert_eq!(with(&["third"]), ReadError::MissingLayer { layer: "schlick matrix" });
+    assert_eq!(with(&["schlick matrix", "fourth"]), ReadError::LayerCount { count: 4 });
 }
 
 #[test]
@@ -174,4 +179,8 @@ fn texels_that_make_no_table_are_refused_with_their_place() {
     );
     assert!(spoil_texel(0, 0, -1.0).starts_with("matrix: texel (1, 2) is singular or mirrored"));
     assert!(spoil_texel(1, 0, 1.5).starts_with("magnitude: texel (1, 2) is (1.5, "));
+    let mut draft = Draft::of(&table_of_two(3));
+    draft.layers[2].channels[0].1 = FlatSamples::F32(vec![-1.0; 9]);
+    let error = read(&draft.write()).unwrap_err().to_string();
+    assert!(error.starts_with("schlick matrix: texel (0, 0) is singular or mirrored"), "{error}");
 }
