@@ -1,1 +1,26 @@
-//! Cost, and the error at that cost.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
+//! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
+//! | [`stability`] | every family of hard cases through every method, judged |
+//! | [`report`] | what came of it: as text, as Markdown |
+//!
+//! `arealight bench` is the way to run them; `cargo bench` has those of time.
+
+pub mod kernel;
+pub mod method;
+pub mod report;
+pub mod stability;
+
+/// A failure of a benchmark: the device's, never a method's.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BenchError {
+    /// The device, its memory or a submission.
+    #[error(transparent)]
+    Host(#[from] arealight_host::HostError),
+    /// The recorder.
+    #[error(transparent)]
+    Recorder(#[from] arealight_vk::Error),
+}

@@ -22,7 +22,8 @@ struct CommandLine {
 const AFTER_HELP: &str = "\
 Without a command, the demo scene is rendered.
 
-Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, 2 wrong arguments, \
+Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, or a \
+rung falls short of its promises in bench stability, 2 wrong arguments, \
 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written.";
 
 #[derive(Subcommand)]
@@ -31,6 +32,7 @@ enum Command {
     Eval(commands::eval::Arguments),
     Fit(commands::fit::Arguments),
     Inspect(commands::inspect::Arguments),
+    Bench(commands::bench::Arguments),
     Devices(commands::devices::Arguments),
 }
 
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         Some(Command::Eval(arguments)) => commands::eval::run(&arguments),
         Some(Command::Fit(arguments)) => commands::fit::run(&arguments),
         Some(Command::Inspect(arguments)) => commands::inspect::run(&arguments),
+        Some(Command::Bench(arguments)) => commands::bench::run(&arguments),
         Some(Command::Devices(arguments)) => commands::devices::run(&arguments),
     };
     match result {

@@ -13,6 +13,7 @@ mod table;
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::EvalPoint;
 pub use g_buffer::GBuffer;
+pub use kept::Kept;
 pub use render::SceneRenderer;
 
 use arealight::LightTable;
@@ -21,7 +22,6 @@ use arealight_host::{Buffer, DescriptorPool};
 use arealight_vk::{ComputePass, Context, HostDevice, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
-use kept::Kept;
 use table::UploadedTable;
 
 /// A failure of the engine.

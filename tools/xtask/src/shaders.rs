@@ -15,16 +15,19 @@ struct KernelSet {
     modules: &'static str,
 }
 
-/// What the crate `arealight` embeds, and the wrong-doers that its host's tests must catch.
-const SETS: [KernelSet; 2] = [
+/// What the crate `arealight` embeds, what only the benchmarks run, and the wrong-doers that the host's tests must
+/// catch.
+const SETS: [KernelSet; 3] = [
     KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
+    KernelSet { sources: "benches/kernels", modules: "benches/spirv" },
     KernelSet { sources: "tools/host/tests/canary", modules: "tools/host/tests/canary" },
 ];
 
 /// Compile the kernels to the SPIR-V that is checked in.
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
-/// the sources' hash, the module's hash and the compiler. Likewise for tools/host/tests/canary.
+/// the sources' hash, the module's hash and the compiler. Likewise benches/kernels into
+/// benches/spirv, and tools/host/tests/canary.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.

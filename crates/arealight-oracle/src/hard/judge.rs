@@ -3,7 +3,7 @@
 use super::HardCase;
 use super::family::{Family, Scope};
 use super::nearby::Nearby;
-use super::promise::{Promise, Promises};
+use super::promise::{MOVE, Promise, Promises};
 use super::reference::Reference;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -81,7 +81,10 @@ impl Judged {
         let error = errors.fold(f64::INFINITY, f64::min);
         // The given polygon is one of those nearby: its value is searched no further where it is close enough
         let bound = promises.backward_bound(reference);
-        let backward = if error <= bound { error } else { nearby.distance(value, bound).min(error) };
+        // Nor where it is hopelessly far off: away from contact, values nearby differ by little more than the moves
+        let reach = 100.0 * nearby.vertex_count() as f64 * MOVE / reference.rho;
+        let searched = error > bound && error <= reach;
+        let backward = if searched { nearby.distance(value, bound).min(error) } else { error };
         finding.error = Some(error);
         finding.backward_error = Some(backward);
         finding.small_light_error = reference.small_light_unit.map(|unit| ratio(error, unit));

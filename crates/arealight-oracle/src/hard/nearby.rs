@@ -19,6 +19,8 @@ type Moves = Vec<DVec3>;
 
 /// Random polygons that are tried.
 const TRIALS: usize = 48;
+/// Random polygons that are tried about the best ones, ever closer.
+const REFINEMENTS: i32 = 200;
 /// Steps along the gradient.
 const STEPS: usize = 4;
 
@@ -46,6 +48,11 @@ impl Nearby {
         Self { vertices, radii, ambiguous }
     }
 
+    /// How many vertices the polygon has.
+    pub fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
     /// The signed form factor of a polygon nearby, in float64: its error is 1e-16 over rho, and where rho is smaller
     /// than [`MOVE`], that of a polygon that is nearby too.
     fn signed(&self, moves: &[DVec3]) -> f64 {
@@ -62,12 +69,14 @@ impl Nearby {
         }
         let given = vec![DVec3::ZERO; self.vertices.len()];
         let value = self.signed(&given);
-        let mut search = Search { nearby: self, computed, enough, lowest: value, highest: value };
+        let end = (value, given.clone());
+        let mut search = Search { nearby: self, computed, enough, lowest: end.clone(), highest: end };
         let _ = search.is_enough()
             || search.climb(&given, 1.0)
             || search.climb(&given, -1.0)
             || search.translate()
-            || search.scatter();
+            || search.scatter()
+            || search.refine();
         search.distance()
     }
 }
@@ -77,15 +86,15 @@ struct Search<'a> {
     nearby: &'a Nearby,
     computed: f64,
     enough: f64,
-    lowest: f64,
-    highest: f64,
+    lowest: (f64, Moves),
+    highest: (f64, Moves),
 }
 
 impl Search<'_> {
     /// The distance from the computed value, of either sign, to the interval.
     fn distance(&self) -> f64 {
         let shifts = if self.nearby.ambiguous { &[0.0, 1.0, -1.0][..] } else { &[0.0] };
-        let outside = |signed: f64| (self.lowest - signed).max(signed - self.highest).max(0.0);
+        let outside = |signed: f64| (self.lowest.0 - signed).max(signed - self.highest.0).max(0.0);
         let distance = |shift: &f64| outside(self.computed + shift).min(outside(-self.computed + shift));
         shifts.iter().map(distance).fold(f64::INFINITY, f64::min)
     }
@@ -97,8 +106,12 @@ impl Search<'_> {
     /// Notes a polygon's value. Whether that is enough.
     fn visit(&mut self, moves: &Moves) -> bool {
         let value = self.nearby.signed(moves);
-        self.lowest = self.lowest.min(value);
-        self.highest = self.highest.max(value);
+        if value < self.lowest.0 {
+            self.lowest = (value, moves.clone());
+        }
+        if value > self.highest.0 {
+            self.highest = (value, moves.clone());
+        }
         self.is_enough()
     }
 
@@ -141,6 +154,21 @@ impl Search<'_> {
         let mut stream = Stream::new("nearby", 0, self.computed.to_bits());
         (0..TRIALS).any(|_| {
             let moves: Moves = self.nearby.vertices.iter().map(|_| stream.direction()).collect();
+            self.visit(&moves)
+        })
+    }
+
+    /// Moves on from the polygons at the interval's ends.
+    fn refine(&mut self) -> bool {
+        let mut stream = Stream::new("refined", 0, self.computed.to_bits());
+        (0..2 * REFINEMENTS).any(|trial| {
+            let best = if trial % 2 == 0 { &self.lowest.1 } else { &self.highest.1 };
+            let step = 0.5_f64.powi(trial / 40);
+            let mut next = |m: &DVec3| {
+                let moved = *m + stream.direction() * step;
+                moved / moved.length().max(1.0)
+            };
+            let moves = best.iter().map(&mut next).collect();
             self.visit(&moves)
         })
     }

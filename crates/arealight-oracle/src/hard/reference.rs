@@ -38,7 +38,8 @@ impl Reference {
 
     /// As [`Reference::new`], and the form factors that are as right: those of the polygon whose parts below the
     /// horizon are closed the other way around. An outline that is not flat and goes below more than once bounds
-    /// regions that differ by whole hemispheres, and no edge tells which is meant.
+    /// regions that differ by whole hemispheres, and no edge tells which is meant. Flat ones are flat but for their
+    /// rounding, which matters where the point lies in their plane.
     pub fn with_closings(case: &HardCase) -> (Self, Vec<f64>) {
         let (anchor, offsets) = (case.anchor.map(f64::from), case.offsets_exactly());
         let walked = walk::<Double>(anchor, &offsets);
@@ -72,7 +73,8 @@ impl Reference {
         let perimeter: f64 = (0..offsets.len()).map(|i| (next(i) - offsets[i]).length()).sum();
         let small_area = area.max(PER_AREA * extent * perimeter);
         let signed = walked.signed_form_factor();
-        let ambiguous = !case.flat && walked.exits > 1;
+        let in_plane = walked.nearest_edge < 4.0 * MOVE * farthest;
+        let ambiguous = walked.exits > 1 && (!case.flat || in_plane);
         let closings = if ambiguous { other_closings(signed) } else { Vec::new() };
         let reference = Self {
             form_factor: signed.abs().min(1.0),

@@ -1,0 +1,166 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+// The form factors of a list of polygons, each by one method, as floats whose bits the CPU judges.
+
+layout(local_size_x = 64) in;
+
+#include "arealight/form_factor.glsl"
+
+// AREALIGHT_FORM_FACTOR_* bits, plus one of the shapes; or a yardstick. See benches/src/method.rs.
+layout(constant_id = 0) const int METHOD = 0;
+
+const int METHOD_RUNG = 7;
+const int METHOD_WALK = 0;
+const int METHOD_QUAD = 8;
+const int METHOD_BARE_QUAD = 16;
+const int METHOD_BARE_WALK = 24;
+const int METHOD_TEXTBOOK = 32;
+const int METHOD_PRACTICE = 33;
+
+struct HardPolygon {
+    vec3 anchor;
+    uint first_offset;
+    uint offset_count;
+    uint reserved0;
+    uint reserved1;
+    uint reserved2;
+};
+
+layout(set = 0, binding = 0, std430) readonly buffer Polygons {
+    HardPolygon polygons[];
+};
+layout(set = 0, binding = 1, std430) readonly buffer Offsets {
+    vec4 offsets[];
+};
+layout(set = 0, binding = 2, std430) writeonly buffer Results {
+    float results[];
+};
+
+layout(push_constant, std430) uniform FormFactorConstants {
+    uint polygon_count;
+} constants;
+
+// The polygon at hand, scaled by a power of two.
+vec3 polygon_anchor;
+uint polygon_first;
+float polygon_scale;
+
+// `precise`: a compiler that multiplies the scale with another factor first loses an offset near float32's largest
+// number, because that product is denormal.
+vec3 polygon_offset(uint index) {
+    precise vec3 offset = offsets[polygon_first + index].xyz * polygon_scale;
+    return offset;
+}
+
+vec3 yardstick_vertex(uint index) {
+    return polygon_anchor + polygon_offset(index);
+}
+
+#include "yardsticks.glsl"
+
+// A convex polygon of up to four vertices; the last one of a triangle comes twice.
+ArealightQuad polygon_quad(uint count, vec3 shift) {
+    uint last = min(count, 4u) - 1u;
+    return ArealightQuad(polygon_offset(0u) - shift, polygon_offset(1u) - shift, polygon_offset(min(2u, last)) - shift,
+                         polygon_offset(last) - shift);
+}
+
+// The library's form factor of a convex polygon of up to four vertices.
+float library_quad(ArealightAnchor anchor, uint count, bool bare, int rung) {
+    ArealightQuad quad = polygon_quad(count, vec3(0.0));
+    if (bare) {
+        return arealight_quad_bare(anchor, quad, true, rung);
+    }
+    return arealight_quad_clipped(anchor, quad, true, rung);
+}
+
+// The library's form factor of any polygon.
+float library_walk(ArealightAnchor anchor, uint count, bool bare, int rung) {
+    ArealightWalk walk = arealight_walk_begin();
+    ArealightVertex from = arealight_vertex(anchor, polygon_offset(count - 1u), rung);
+    for (uint index = 0u; index < count; index++) {
+        ArealightVertex to = arealight_vertex(anchor, polygon_offset(index), rung);
+        if (bare) {
+            walk.sum += arealight_acute_arc(from, to, rung);
+            walk.squares += to.square;
+        } else {
+            arealight_walk_edge(walk, anchor, from, to, rung);
+        }
+        from = to;
+    }
+    if (bare) {
+        return arealight_form_factor_from_arcs(walk.sum, walk.squares, true);
+    }
+    return arealight_walk_form_factor(walk, true, rung);
+}
+
+// The library's one-point form of a convex polygon of up to four vertices, where it is enough; else -1.
+float library_one_point(vec3 anchor, uint count) {
+    // The centre of the area: of the triangles' two centres, weighted
+    ArealightQuad quad = polygon_quad(count, vec3(0.0));
+    vec3 area_a = cross(quad.v1 - quad.v0, quad.v2 - quad.v0);
+    vec3 area_b = cross(quad.v2 - quad.v0, quad.v3 - quad.v0);
+    vec3 center_a = (quad.v0 + quad.v1 + quad.v2) / 3.0;
+    vec3 center_b = (quad.v0 + quad.v2 + quad.v3) / 3.0;
+    float total = length(area_a) + length(area_b);
+    vec3 shift = total > 0.0 ? (center_a * length(area_a) + center_b * length(area_b)) / total : center_a;
+    vec3 center = anchor + shift;
+    quad = polygon_quad(count, shift);
+    float square = max(max(dot(quad.v0, quad.v0), dot(quad.v1, quad.v1)),
+                       max(dot(quad.v2, quad.v2), dot(quad.v3, quad.v3)));
+    if (arealight_is_far(center, sqrt(square))) {
+        return arealight_one_point_form_factor(center, -0.5 * dot(area_a + area_b, center), true);
+    }
+    return -1.0;
+}
+
+// The library's form factor. The bare forms are used where the library's own test says that they are enough.
+float library_form_factor(vec3 anchor, uint count, float extent, int shape, int rung) {
+    if ((rung & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0) {
+        float form_factor = library_one_point(anchor, count);
+        if (form_factor >= 0.0) {
+            return form_factor;
+        }
+    }
+    ArealightAnchor at = arealight_anchor(anchor, extent, rung);
+    bool bare = shape >= METHOD_BARE_QUAD && arealight_is_bare(anchor, extent);
+    if (shape == METHOD_QUAD || shape == METHOD_BARE_QUAD) {
+        return library_quad(at, count, bare, rung);
+    }
+    return library_walk(at, count, bare, rung);
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= constants.polygon_count) {
+        return;
+    }
+    HardPolygon polygon = polygons[index];
+    polygon_first = polygon.first_offset;
+    uint count = polygon.offset_count;
+
+    // Scale by a power of two taken from the largest component, as the library's callers do
+    float largest = 0.0;
+    for (uint i = 0u; i < count; i++) {
+        largest = max(largest, arealight_max_component(offsets[polygon_first + i].xyz));
+    }
+    polygon_scale = arealight_power_of_two_scale(arealight_max_component(polygon.anchor) + largest);
+    polygon_anchor = polygon.anchor * polygon_scale;
+    float square = 0.0;
+    for (uint i = 0u; i < count; i++) {
+        vec3 offset = polygon_offset(i);
+        square = max(square, dot(offset, offset));
+    }
+
+    float form_factor;
+    if (METHOD == METHOD_TEXTBOOK) {
+        form_factor = yardstick_textbook(count);
+    } else if (METHOD == METHOD_PRACTICE) {
+        form_factor = yardstick_practice(count);
+    } else {
+        form_factor = library_form_factor(polygon_anchor, count, sqrt(square), METHOD & ~METHOD_RUNG,
+                                          METHOD & METHOD_RUNG);
+    }
+    results[index] = form_factor;
+}

@@ -1,0 +1,109 @@
+//! The battery of hard cases in its short form: every rung keeps every promise, and the yardsticks do not.
+//! `arealight bench stability` is the long form.
+
+use arealight_benches::kernel::FormFactorKernel;
+use arealight_benches::method::{METHODS, Method};
+use arealight_benches::stability::{Options, Stability, run};
+use arealight_host::testing::device_or_skip;
+use arealight_oracle::hard::family::Family;
+use arealight_oracle::hard::judge::{Judged, Tally};
+use arealight_oracle::hard::promise::Promise;
+
+/// Cases of each family.
+const SAMPLES: u64 = 400;
+
+fn short(host: &arealight_host::Host, methods: impl Fn(&&Method) -> bool) -> Stability {
+    let methods = METHODS.iter().filter(methods).collect();
+    let options = Options { samples: SAMPLES, methods, ..Options::default() };
+    run(host, &arealight_table::ggx(), &options, &|_| {}).unwrap()
+}
+
+#[test]
+fn every_rung_keeps_every_promise() {
+    let Some(host) = device_or_skip() else { return };
+    let stability = short(&host, |method| !method.is_yardstick);
+    let judged: usize = stability.rows.iter().map(|row| row.tally.samples).sum();
+    let walks = stability.rows.iter().filter(|row| row.method.contains("walk"));
+    assert!(walks.clone().all(|row| row.tally.samples == SAMPLES as usize), "the walk takes every polygon");
+    assert!(walks.count() > 100 && judged > 50_000, "{judged}");
+    assert_eq!(stability.shortfalls().count(), 0, "{}", stability.to_text());
+}
+
+#[test]
+fn the_yardsticks_break_where_they_are_known_to() {
+    let Some(host) = device_or_skip() else { return };
+    let stability = short(&host, |method| method.is_yardstick);
+    for (method, known) in [
+        // The angle is kept off its ends: contact, and whatever is far
+        ("textbook", &["contact-interior", "contact-edge", "in-plane-inside", "far", "low-alpha"][..]),
+        // Nothing is clipped
+        (
+            "practice",
+            &["crossing", "contact-interior", "contact-edge", "concave", "far", "low-alpha", "above"][..],
+        ),
+    ] {
+        let broken = stability.broken_families(method);
+        let missing: Vec<_> = known.iter().filter(|family| !broken.contains(family)).collect();
+        assert!(missing.is_empty(), "{method} keeps its promises in {missing:?}: the battery is too easy");
+    }
+}
+
+/// The battery's judge on results of the device that were spoiled on the way.
+#[test]
+fn spoiled_results_are_found_out() {
+    let Some(host) = device_or_skip() else { return };
+    let (family, method) = (Family::find("crossing").unwrap(), Method::find("walk-exact").unwrap());
+    let table = arealight_table::ggx();
+    let cases: Vec<_> = (0..100).map(|index| family.case(index, 0, &table)).collect();
+    let results = FormFactorKernel::new(&host, &[method]).unwrap().run(&cases).unwrap().remove(0);
+    let broken = |spoil: &dyn Fn(u32) -> u32| {
+        let mut tally = Tally::default();
+        for ((index, case), bits) in (0..).zip(&cases).zip(&results) {
+            let (judged, bits) = (Judged::new(family, case), spoil(*bits));
+            tally.add(index, bits, None, &judged.judge(bits, &method.promises));
+        }
+        (tally.shortfalls.keys().copied().collect::<Vec<_>>(), tally.not_finite)
+    };
+    assert_eq!(broken(&|bits| bits), (vec![], 0));
+    // Two millionths off
+    let off = |bits| (f32::from_bits(bits) + 2e-6).to_bits();
+    assert_eq!(broken(&off), (vec![Promise::Backward, Promise::Forward], 0));
+    // A NaN, which max(x, 0) or clamp(x, 0, 1) would have made a number
+    let all = vec![Promise::Range, Promise::Backward, Promise::Forward];
+    assert_eq!(broken(&|_| f32::NAN.to_bits()), (all.clone(), 100));
+    // The sign of a zero is no form factor's
+    assert_eq!(broken(&|bits| bits | 0x8000_0000), (all, 0));
+}
+
+/// What the last guard of the library is for: the sums of these polygons are NaN or infinite, as the results of a
+/// formula without a guard show, and the library's results, by their bits and before any clamp, are numbers.
+#[test]
+fn the_last_guard_survives_the_compilers() {
+    let Some(host) = device_or_skip() else { return };
+    let table = arealight_table::ggx();
+    let textbook = Method::find("textbook").unwrap();
+    let ours = METHODS.iter().filter(|method| !method.is_yardstick);
+    let methods: Vec<_> = ours.chain([textbook]).collect();
+    let kernel = FormFactorKernel::new(&host, &methods).unwrap();
+    for name in ["not-finite", "bits", "overflowing", "denormal"] {
+        let family = Family::find(name).unwrap();
+        let cases: Vec<_> = (0..2000).map(|index| family.case(index, 1, &table)).collect();
+        let results = kernel.run(&cases).unwrap();
+        for (method, results) in methods.iter().zip(&results) {
+            let taken = || cases.iter().zip(results).filter(|(case, _)| method.takes(case));
+            let bad = taken().filter(|(_, bits)| **bits > 1.0_f32.to_bits()).count();
+            let nonzero = taken().filter(|(_, bits)| **bits != 0).count();
+            assert!(taken().count() > 100, "{name}: {}", method.name);
+            if method.is_yardstick {
+                // The twin: without a guard the same polygons make NaN
+                assert!(
+                    bad > 0 || name == "overflowing" || name == "denormal",
+                    "{name}: no NaN to guard against"
+                );
+            } else {
+                assert_eq!(bad, 0, "{name}: {}: {bad} results are no numbers from 0 to 1", method.name);
+                assert!(name != "not-finite" || nonzero == 0, "{}: {nonzero} are not 0", method.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! `arealight bench stability`
+
+use crate::failure::Failure;
+use crate::output::print;
+use crate::progress;
+use arealight_benches::method::{METHODS, Method};
+use arealight_benches::stability::{self, Options, Stability};
+use arealight_engine::{Host, HostOptions};
+use arealight_oracle::hard::family::{FAMILIES, Family};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Hold every rung of the form factor to its promises, on families of hard cases.
+///
+/// Each family's polygons go through every rung on the device, and through two yardsticks: the textbook's formula
+/// and the practice of real-time engines. The results' bits are judged against a reference of 106 bits. Printed
+/// are, for each family: the largest error; the largest distance to the values between those of polygons whose
+/// vertices differ in float32's last places; of small lights the error in parts of their solid angle over pi; how
+/// many results were NaN or infinite; and whether the promises were kept.
+///
+/// Exit code 1 if a rung falls short of its promises; what the yardsticks do changes nothing.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The device: a part of its name, or its number among those that `arealight devices` lists.
+    #[arg(long, value_name = "NAME|NUMBER")]
+    device: Option<String>,
+    /// Polygons of each family.
+    #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    samples: u64,
+    /// Another seed makes other polygons.
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Only this family; may be given several times.
+    #[arg(long, value_name = "NAME", value_parser = family)]
+    family: Vec<&'static Family>,
+    /// Only this rung or yardstick; may be given several times.
+    #[arg(long, value_name = "NAME", value_parser = method)]
+    rung: Vec<&'static Method>,
+    /// Write JSON; `-` prints it instead of the tables. Numbers that are not finite are null.
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+    /// Write the tables as Markdown.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+}
+
+fn family(name: &str) -> Result<&'static Family, String> {
+    let names = || FAMILIES.iter().map(|family| family.name).collect::<Vec<_>>().join(", ");
+    Family::find(name).ok_or_else(|| format!("there are: {}", names()))
+}
+
+fn method(name: &str) -> Result<&'static Method, String> {
+    let names = || METHODS.iter().map(|method| method.name).collect::<Vec<_>>().join(", ");
+    Method::find(name).ok_or_else(|| format!("there are: {}", names()))
+}
+
+/// Those that were asked for, or all.
+fn chosen<T>(asked: &[&'static T], all: &'static [T]) -> Vec<&'static T> {
+    if asked.is_empty() { all.iter().collect() } else { asked.to_vec() }
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let options = Options {
+        samples: arguments.samples,
+        seed: arguments.seed,
+        families: chosen(&arguments.family, FAMILIES),
+        methods: chosen(&arguments.rung, METHODS),
+    };
+    let device = |error: &dyn std::fmt::Display| Failure::Device(error.to_string());
+    let host = Host::new(HostOptions { device: arguments.device.clone(), ..HostOptions::default() });
+    let host = host.map_err(|error| device(&error))?;
+
+    let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");
+    let found = stability::run(&host, &arealight_table::ggx(), &options, &|count| bar.inc(count));
+    bar.finish_and_clear();
+    let found = found.map_err(|error| device(&error))?;
+
+    if let Some(path) = &arguments.markdown {
+        write(path, &found.to_markdown())?;
+    }
+    report(&found, arguments.json.as_deref())?;
+    Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Prints the tables, or JSON where that goes to standard output.
+fn report(found: &Stability, json: Option<&Path>) -> Result<ExitCode, Failure> {
+    // Strings and numbers, with strings for keys, always serialise
+    let text = || serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
+    match json {
+        Some(path) if path == Path::new("-") => return print(&text()),
+        Some(path) => write(path, &text())?,
+        None => {}
+    }
+    print(&found.to_text())
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::output(path, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wrong_name_is_answered_with_the_right_ones() {
+        assert_eq!(family("crossing").unwrap().name, "crossing");
+        assert!(family("crosing").unwrap_err().contains("in-horizon, just-above"));
+        assert_eq!(method("practice").unwrap().name, "practice");
+        assert!(method("exact").unwrap_err().starts_with("there are: walk-exact, "));
+    }
+}
