@@ -147,8 +147,8 @@ fn a_table_image_without_memory_is_refused() {
     // SAFETY: No submission uses it.
     let image = unsafe { TableImage::new(engine.context(), &table, TableFormat::Rgba16Float) }.unwrap();
     let size = u64::from(table.size());
-    assert_eq!(TableFormat::Rgba16Float.bytes(&table).len() as u64, size * size * 2 * 8);
-    assert!(image.memory_requirements().size >= size * size * 2 * 8);
+    assert_eq!(TableFormat::Rgba16Float.bytes(&table).len() as u64, size * size * 3 * 8);
+    assert!(image.memory_requirements().size >= size * size * 3 * 8);
     let buffer = engine.host().storage_buffer("numbers", &[0.0_f32; 64]).unwrap();
     let whole = Resource::buffer(buffer.handle());
     // SAFETY: No submission uses the pass; the set is new.

@@ -145,10 +145,15 @@ fn table_in_float16() -> LightTable {
     let bytes = TableFormat::Rgba16Float.bytes(&TABLE);
     let values: Vec<f32> =
         bytes.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
-    let (matrix, magnitude) = values.split_at(values.len() / 2);
-    let matrix = matrix.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
-    let magnitude = magnitude.chunks_exact(4).map(|t| [t[0], t[1]]).collect();
-    LightTable::new(TABLE.description().clone(), TABLE.size(), matrix, magnitude).expect("still a table")
+    let texels: Vec<[f32; 4]> = values.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
+    let [matrix, magnitude, schlick] = [0, 1, 2].map(|layer| {
+        let length = texels.len() / 3;
+        texels[layer * length..][..length].to_vec()
+    });
+    let magnitude = magnitude.iter().map(|t| [t[0], t[1]]).collect();
+    LightTable::new(TABLE.description().clone(), TABLE.size(), matrix, magnitude)
+        .and_then(|table| table.with_schlick_matrix(schlick))
+        .expect("still a table")
 }
 
 #[test]

@@ -60,6 +60,11 @@ pub fn transformed_form_factor(inverse: &DMat3, vertices: &[DVec3]) -> f64 {
     if sum.is_finite() { (sign * sum).clamp(-1.0, 1.0) } else { 0.0 }
 }
 
+/// The part of a polygon above the horizon z = 0, in the space of [`form_factor`]. It may have no vertices.
+pub fn above_horizon(vertices: &[DVec3]) -> Vec<DVec3> {
+    clip(vertices, 0.0)
+}
+
 /// What a light of signed form factor `signed` sends: its front only, or both sides. In [0, 1].
 pub fn emitted(signed: f64, two_sided: bool) -> f64 {
     if two_sided { signed.abs() } else { signed.max(0.0) }

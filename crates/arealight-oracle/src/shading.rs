@@ -4,9 +4,10 @@
 use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
-use crate::polygon::{emitted, form_factor, transformed_form_factor};
-use arealight::{LightTable, PolygonLight, Surface};
-use glam::DVec3;
+use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
+use arealight::table::share_above_surface;
+use arealight::{Fresnel, Horizon, LightTable, PolygonLight, Quality, Surface};
+use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
 /// A polygon light relative to a shading point, in float64 throughout.
@@ -145,12 +146,25 @@ fn lengths_on_lobe(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
 /// Masking that changes over less height than this is left to the error estimate: its share is as small.
 const FINEST_HEIGHT: f64 = 1e-6;
 
-/// Outgoing radiance by the fitted table (Heitz et al. 2016), with Lambert's lobe exact: the float64 twin of
-/// `arealight_polygon_radiance`.
-///
-/// `normal` and `view` have any length above zero; a view below the surface counts as grazing. The glossy
-/// lobe is clipped at the horizon of cosine space only.
+/// Outgoing radiance by the fitted table (Heitz et al. 2016) on the default rungs: [`ltc_on`] with
+/// [`Quality::default`].
 pub fn ltc(
+    table: &LightTable,
+    surface: &Surface,
+    normal: DVec3,
+    view: DVec3,
+    light: &RelativeLight,
+) -> DVec3 {
+    ltc_on(Quality::default(), table, surface, normal, view, light)
+}
+
+/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
+/// `arealight_polygon_radiance`. Of `quality` it takes the horizon and the Fresnel rung; it integrates exactly on
+/// every rung of the form factor, and [`Horizon::Bare`] is clipped at the lobe's horizon.
+///
+/// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
+pub fn ltc_on(
+    quality: Quality,
     table: &LightTable,
     surface: &Surface,
     normal: DVec3,
@@ -159,11 +173,28 @@ pub fn ltc(
 ) -> DVec3 {
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
-    // Look the lobe up
     let sample = table.lookup(surface.alpha.sqrt(), frame.cos_view());
-    let specular = surface.f0 * sample.albedo + (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
-    // Integrate the cosine and the transformed cosine
-    let diffuse = emitted(form_factor(&vertices), light.two_sided);
-    let glossy = emitted(transformed_form_factor(&sample.inverse, &vertices), light.two_sided);
-    light.radiance * (surface.diffuse_albedo * diffuse + specular * glossy)
+    // Integrate the transformed cosine
+    let visible = if quality.horizon == Horizon::Both { above_horizon(&vertices) } else { vertices.clone() };
+    let lobe = |inverse: &DMat3| {
+        let form_factor = emitted(transformed_form_factor(inverse, &visible), light.two_sided);
+        // What is clipped at the surface's horizon is made up for, so that the albedo stays
+        let share = if quality.horizon == Horizon::Both { share_above_surface(inverse) } else { 1.0 };
+        (form_factor / share).min(1.0)
+    };
+    let f0_part = surface.f0 * sample.albedo;
+    let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
+    let glossy = match quality.fresnel {
+        Fresnel::Split => {
+            let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
+            parts.max(DVec3::ZERO)
+        }
+        Fresnel::ByF0 => {
+            let mean = surface.f0.element_sum() / 3.0;
+            (f0_part + schlick_part) * lobe(&sample.inverse_by_f0(mean, surface.f90))
+        }
+    };
+    // Integrate the cosine
+    let diffuse = surface.diffuse_albedo * emitted(form_factor(&vertices), light.two_sided);
+    light.radiance * (diffuse + glossy)
 }

@@ -1,4 +1,4 @@
-//! The light table on the GPU: an array image of two layers.
+//! The light table on the GPU: an array image of three layers.
 
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
@@ -67,7 +67,7 @@ impl TableImage {
             .format(format.vulkan())
             .extent(vk::Extent3D { width: table.size(), height: table.size(), depth: 1 })
             .mip_levels(1)
-            .array_layers(2)
+            .array_layers(LAYERS)
             .samples(vk::SampleCountFlags::TYPE_1)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_DST)
@@ -103,7 +103,7 @@ impl TableImage {
             .image(self.image)
             .view_type(vk::ImageViewType::TYPE_2D_ARRAY)
             .format(self.format.vulkan())
-            .subresource_range(both_layers());
+            .subresource_range(all_layers());
         // SAFETY: the image has memory now.
         self.view = unsafe { device.create_image_view(&info, None) }.call("vkCreateImageView")?;
         Ok(())
@@ -165,7 +165,7 @@ impl TableImage {
         let device = &self.context.device;
         let barrier = vk::ImageMemoryBarrier::default()
             .image(self.image)
-            .subresource_range(both_layers())
+            .subresource_range(all_layers())
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
         let before = barrier
@@ -183,7 +183,7 @@ impl TableImage {
                 aspect_mask: vk::ImageAspectFlags::COLOR,
                 mip_level: 0,
                 base_array_layer: 0,
-                layer_count: 2,
+                layer_count: LAYERS,
             })
             .image_extent(vk::Extent3D { width: self.size, height: self.size, depth: 1 });
         // The queue may have no graphics, so the readers' stages cannot be named one by one
@@ -237,12 +237,15 @@ impl Drop for TableImage {
     }
 }
 
-fn both_layers() -> vk::ImageSubresourceRange {
+/// Those of [`LightTable::texels`].
+const LAYERS: u32 = 3;
+
+fn all_layers() -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {
         aspect_mask: vk::ImageAspectFlags::COLOR,
         base_mip_level: 0,
         level_count: 1,
         base_array_layer: 0,
-        layer_count: 2,
+        layer_count: LAYERS,
     }
 }

@@ -77,6 +77,8 @@ pub mod constant {
     pub const OUTPUT: u32 = 3;
     /// [`crate::Horizon`].
     pub const HORIZON: u32 = 4;
+    /// [`crate::Fresnel`].
+    pub const FRESNEL: u32 = 5;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -90,7 +92,8 @@ const fn write(name: &'static str, kind: BindingKind, access: Access, content: &
 const TABLE: Binding = read(
     "table_image",
     BindingKind::SampledImage,
-    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitude; rgba16f or rgba32f",
+    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix; rgba16f or \
+     rgba32f",
 );
 const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
 const LIGHT_VERTICES: Binding =
@@ -144,6 +147,7 @@ pub static SHADE: Kernel = Kernel {
         constant::POSITION_SOURCE,
         constant::OUTPUT,
         constant::HORIZON,
+        constant::FRESNEL,
     ],
 };
 
@@ -160,7 +164,7 @@ pub static EVAL: Kernel = Kernel {
         read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
         write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
     ],
-    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::HORIZON],
+    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::HORIZON, constant::FRESNEL],
 };
 
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:

@@ -80,6 +80,7 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::OUTPUT, options.output as u32),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
+        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
     ]
 }
 
@@ -91,6 +92,7 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
             (kernels::constant::EFFECTS, effects.bits()),
             (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
             (kernels::constant::HORIZON, quality.horizon as u32),
+            (kernels::constant::FRESNEL, quality.fresnel as u32),
         ],
         groups: kernels::EVAL.groups_for([case_count, 1, 1]),
     }

@@ -54,6 +54,8 @@ pub struct Quality {
     pub form_factor: FormFactor,
     /// Where polygons are clipped.
     pub horizon: Horizon,
+    /// How the Fresnel term enters the glossy lobe.
+    pub fresnel: Fresnel,
     /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative; the
     /// others as the other fields say.
     pub one_point: bool,

@@ -27,4 +27,15 @@ const int AREALIGHT_HORIZON_COSINE = 0; // at the horizon of cosine space
 const int AREALIGHT_HORIZON_BOTH = 1;   // at the surface's horizon too, before the lobe's transform
 const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds
 
+// How Schlick's Fresnel term enters. The same as arealight::Fresnel.
+const int AREALIGHT_FRESNEL_BY_F0 = 0; // one integral, of the lobe between the table's two that the reflectance calls for
+const int AREALIGHT_FRESNEL_SPLIT = 1; // two integrals, one of each lobe
+
+// How a pass shades. Make the fields from specialisation constants or literals.
+struct ArealightQuality {
+    int form_factor; // AREALIGHT_FORM_FACTOR_* bits
+    int horizon;     // one of AREALIGHT_HORIZON_*
+    int fresnel;     // one of AREALIGHT_FRESNEL_*
+};
+
 #endif

@@ -20,13 +20,6 @@ struct ArealightPolygonLight {
     bool two_sided;    // the back emits too
 };
 
-// How a pass integrates polygons: AREALIGHT_FORM_FACTOR_* bits and one of AREALIGHT_HORIZON_*. Make both from
-// specialisation constants or literals.
-struct ArealightQuality {
-    int form_factor;
-    int horizon;
-};
-
 // A light before a shading point: scaled by a power of two, so that squares neither overflow nor vanish. That rounds
 // nothing.
 struct ArealightSeenLight {
@@ -121,45 +114,51 @@ ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
                          arealight_bridge_vertex(light.first_vertex + last));
 }
 
-// The form factor of a polygon light in a lobe's cosine space, in [0, 1]; error: see form_factor.glsl. `quad` is read
-// without AREALIGHT_EFFECT_POLYGON, the light's vertices with it.
-float arealight_polygon_form_factor(ArealightCosineSpace space, vec3 normal, ArealightSeenLight seen,
-                                    ArealightPolygonLight light, ArealightQuad quad, uint effects,
-                                    ArealightQuality quality) {
-    ArealightLobeView view = arealight_lobe_view(space, normal, seen, quality.form_factor);
+// What a lobe reflects of a polygon light of unit radiance, a channel: its albedo times the form factor in its cosine space;
+// error: see form_factor.glsl. `quad` is read without AREALIGHT_EFFECT_POLYGON, the light's vertices with it.
+vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight seen, ArealightPolygonLight light,
+                            ArealightQuad quad, uint effects, ArealightQuality quality) {
+    ArealightLobeView view = arealight_lobe_view(lobe.space, normal, seen, quality.form_factor);
+    float form_factor;
     if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && arealight_is_far(view.center, view.extent)) {
-        return arealight_one_point_form_factor(view.center, seen.facing * space.determinant, light.two_sided);
+        float facing = seen.facing * lobe.space.determinant;
+        form_factor = arealight_one_point_form_factor(view.center, facing, light.two_sided);
+    } else if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
+        form_factor = arealight_lobe_walk(view, light, quality);
+    } else {
+        form_factor = arealight_lobe_quad(view, quad, light.two_sided, quality);
     }
-    if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
-        return arealight_lobe_walk(view, light, quality);
-    }
-    return arealight_lobe_quad(view, quad, light.two_sided, quality);
+    return lobe.albedo * min(form_factor * lobe.gain, 1.0);
 }
 
 // Outgoing radiance towards the viewer from one polygon light, W/(m^2 sr), without visibility.
 //
 // The Lambert lobe is exact to the form factor's error; the GGX lobe is the fitted one: exact for the table's lobe, and
-// as close to GGX as the table's fit. Source: Heitz et al. 2016, eq. 11.
+// as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
 vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
                                 ArealightQuality quality) {
     light.two_sided = light.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
-    // The vertices are read once for both lobes
+    // The vertices are read once for all lobes
     ArealightSeenLight seen = arealight_see(point.position, light);
     ArealightQuad quad = ArealightQuad(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         quad = arealight_light_quad(light);
     }
     vec3 reflected = vec3(0.0);
+    if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
+        reflected = arealight_lobe_polygon(point.glossy, point.normal, seen, light, quad, effects, quality);
+        if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {
+            // Where F90 is below F0 this part is negative
+            reflected += arealight_lobe_polygon(point.schlick, point.normal, seen, light, quad, effects, quality);
+            reflected = max(reflected, vec3(0.0));
+        }
+    }
     if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
         // The surface's horizon is that of the Lambert lobe's cosine space
-        ArealightQuality once = quality;
-        once.horizon = quality.horizon == AREALIGHT_HORIZON_BOTH ? AREALIGHT_HORIZON_COSINE : quality.horizon;
-        reflected += point.diffuse_albedo * arealight_polygon_form_factor(point.diffuse, point.normal, seen, light,
-                                                                          quad, effects, once);
-    }
-    if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        reflected += point.specular_albedo * arealight_polygon_form_factor(point.glossy, point.normal, seen, light,
-                                                                           quad, effects, quality);
+        if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+            quality.horizon = AREALIGHT_HORIZON_COSINE;
+        }
+        reflected += arealight_lobe_polygon(point.diffuse, point.normal, seen, light, quad, effects, quality);
     }
     return light.radiance * reflected;
 }

@@ -3,17 +3,20 @@
 
 #include "arealight/surface.glsl"
 
-// The host's bridge to the fitted table: texel `texel` (x roughness, y view angle) of layer 0 (matrix) or
-// layer 1 (magnitude), unfiltered, in float32 or float16. Texels outside are never asked for.
+// The host's bridge to the fitted table: texel `texel` (x roughness, y view angle) of layer 0 (matrix of the lobe without
+// Fresnel term), layer 1 (magnitudes) or layer 2 (matrix of the lobe of Schlick's weight; layer 0 again in a table of one
+// matrix), unfiltered, in float32 or float16. Texels outside are never asked for.
 vec4 arealight_bridge_table(int layer, ivec2 texel);
 // Nodes a side of the table, from 2 on.
 int arealight_bridge_table_size();
 
-// A lobe as a linearly transformed cosine.
-struct ArealightLobe {
-    mat3 to_cosine; // offsets from the shading point into cosine space
-    float albedo;   // integral of f cos over the hemisphere, without Fresnel term, in [0, 1]
-    float schlick;  // integral of f cos (1 - cos theta_vh)^5, in [0, 1]
+// What the table holds for a roughness and a view.
+struct ArealightTableSample {
+    vec4 matrix;         // of f cos; see arealight_table_transform
+    vec4 schlick_matrix; // of f cos (1 - cos theta_vh)^5
+    float albedo;        // integral of f cos over the hemisphere, without Fresnel term, in [0, 1]
+    float schlick;       // integral of f cos (1 - cos theta_vh)^5, in [0, 1]
+    float alpha;         // roughness^2, at least AREALIGHT_MIN_ALPHA
 };
 
 // The bilinear mean of four texels around `coordinate`, which is in nodes: 0 to size - 1.
@@ -28,34 +31,47 @@ vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
     return mix(low, high, weight.y);
 }
 
-// The GGX lobe of a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01).
-//
-// A texel (q00, q02, q20, q22) holds the inverse transform in the mirror frame, divided by its middle entry,
-// with the last row divided by alpha: there it is smooth down to a mirror. Source: Heitz et al. 2016, section 4;
-// the mirror frame is ours. Error against the float64 twin, LightTable::lookup: 4e-7 of the largest entry.
-ArealightLobe arealight_table_lookup(ArealightFrame frame, float roughness) {
+// The table at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01). Source: Heitz et
+// al. 2016, section 4. Error against the float64 twin, LightTable::lookup: 4e-7 of the largest entry.
+ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness) {
     // Clamp so that NaN becomes the smallest roughness
     float smallest = sqrt(AREALIGHT_MIN_ALPHA);
     roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
-    float alpha = roughness * roughness;
 
     // Axes: roughness and sqrt(1 - cos), the latter without cancellation near the normal
     int size = arealight_bridge_table_size();
     vec2 axes = vec2(roughness, frame.sin_view * inversesqrt(1.0 + frame.cos_view));
     vec2 coordinate = axes * float(size - 1);
-    vec4 texel = arealight_table_bilinear(0, coordinate, size);
     vec4 magnitude = arealight_table_bilinear(1, coordinate, size);
 
+    ArealightTableSample result;
+    result.matrix = arealight_table_bilinear(0, coordinate, size);
+    result.schlick_matrix = arealight_table_bilinear(2, coordinate, size);
+    result.albedo = magnitude.x;
+    result.schlick = magnitude.y;
+    result.alpha = roughness * roughness;
+    return result;
+}
+
+// The part that Schlick's weight has in the specular albedo, in [0, 1]: TableSample::schlick_share. Colours count by the
+// mean of their channels.
+float arealight_schlick_share(ArealightTableSample table, vec3 f0, float f90) {
+    float mean = dot(f0, vec3(1.0 / 3.0));
+    float lobe = mean * table.albedo;
+    float schlick = (f90 - mean) * table.schlick;
+    return schlick > 0.0 && lobe >= 0.0 ? schlick / (lobe + schlick) : 0.0;
+}
+
+// The transform of offsets from the shading point into the cosine space of a lobe.
+//
+// A texel (q00, q02, q20, q22) holds it in the mirror frame, divided by its middle entry, with the last row divided by
+// alpha: there it is smooth down to a mirror. The mirror frame is ours.
+mat3 arealight_table_transform(ArealightFrame frame, vec4 texel, float alpha) {
     // The mirror frame: the view's mirror direction, and across it in the plane of incidence
     vec3 mirror = frame.normal * frame.cos_view - frame.tangent * frame.sin_view;
     vec3 across = frame.tangent * frame.cos_view + frame.normal * frame.sin_view;
-
-    ArealightLobe lobe;
-    lobe.to_cosine = transpose(mat3(across * texel.x + mirror * texel.y, frame.bitangent,
-                                    (across * texel.z + mirror * texel.w) * alpha));
-    lobe.albedo = magnitude.x;
-    lobe.schlick = magnitude.y;
-    return lobe;
+    return transpose(mat3(across * texel.x + mirror * texel.y, frame.bitangent,
+                          (across * texel.z + mirror * texel.w) * alpha));
 }
 
 #endif

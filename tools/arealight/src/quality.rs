@@ -1,16 +1,19 @@
 //! The rungs of the quality ladder, as options of a command.
 
-use arealight::{FormFactor, Horizon, Quality};
+use arealight::{FormFactor, Fresnel, Horizon, Quality};
 
 /// How lights are integrated.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct QualityArguments {
-    /// How edges of lights are integrated
-    #[arg(long, value_enum, value_name = "RUNG", default_value_t = Rung::Exact)]
-    form_factor: Rung,
+    /// How edges of lights are integrated [default: exact for render, exact-difference for eval]
+    #[arg(long, value_enum, value_name = "RUNG")]
+    form_factor: Option<Rung>,
     /// Where lights are clipped
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
     horizon: Clip,
+    /// How Schlick's Fresnel term enters the glossy lobe
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lobes::ByF0)]
+    fresnel: Lobes,
     /// Take far lights from their centre alone where that is within 1e-4, relative
     #[arg(long)]
     one_point: bool,
@@ -38,25 +41,39 @@ pub enum Clip {
     Both,
 }
 
+/// How many lobes of the table are integrated.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Lobes {
+    /// One, chosen by the reflectance
+    ByF0,
+    /// Two, one for F0 and one for what grows at grazing angles: exact in the reflectance and its colour
+    Split,
+}
+
 impl Default for QualityArguments {
     fn default() -> Self {
-        Self { form_factor: Rung::Exact, horizon: Clip::Cosine, one_point: false }
+        Self { form_factor: None, horizon: Clip::Cosine, fresnel: Lobes::ByF0, one_point: false }
     }
 }
 
 impl QualityArguments {
-    /// The rungs chosen.
-    pub fn quality(self) -> Quality {
+    /// The rungs chosen, and `form_factor` where none is.
+    pub fn quality_or(self, form_factor: FormFactor) -> Quality {
         let form_factor = match self.form_factor {
-            Rung::Exact => FormFactor::Exact,
-            Rung::Fast => FormFactor::Fast,
-            Rung::ExactDifference => FormFactor::ExactDifference,
-            Rung::FastDifference => FormFactor::FastDifference,
+            None => form_factor,
+            Some(Rung::Exact) => FormFactor::Exact,
+            Some(Rung::Fast) => FormFactor::Fast,
+            Some(Rung::ExactDifference) => FormFactor::ExactDifference,
+            Some(Rung::FastDifference) => FormFactor::FastDifference,
         };
         let horizon = match self.horizon {
             Clip::Cosine => Horizon::Cosine,
             Clip::Both => Horizon::Both,
         };
-        Quality { form_factor, horizon, one_point: self.one_point }
+        let fresnel = match self.fresnel {
+            Lobes::ByF0 => Fresnel::ByF0,
+            Lobes::Split => Fresnel::Split,
+        };
+        Quality { form_factor, horizon, fresnel, one_point: self.one_point }
     }
 }

@@ -4,11 +4,12 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
+use arealight::{FormFactor, Quality};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Measure, UnknownTruth, measure};
-use arealight_oracle::shading::{ltc, truth};
+use arealight_oracle::shading::{ltc_on, truth};
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use serde_json::json;
@@ -150,10 +151,12 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
     let answered = match arguments.on {
         Method::Gpu => {
-            let quality = arguments.quality.quality();
+            let quality = arguments.quality.quality_or(FormFactor::ExactDifference);
             gpu::eval::answer(&answerable, quality, arguments.device.as_deref(), &arguments.cases)?
         }
-        Method::Oracle => answer_by_table(&answerable),
+        Method::Oracle => {
+            answer_by_table(&answerable, arguments.quality.quality_or(FormFactor::ExactDifference))
+        }
         Method::Truth => answer_in_parallel(&answerable, answer_by_cubature),
     };
     // Put the answers in between
@@ -165,10 +168,10 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     Ok(cases.iter().zip(&supported).map(answer).collect())
 }
 
-fn answer_by_table(cases: &[SupportedCase]) -> Vec<Answer> {
+fn answer_by_table(cases: &[SupportedCase], quality: Quality) -> Vec<Answer> {
     let table = arealight_table::ggx();
     answer_in_parallel(cases, |case| {
-        Answer::new(&case.name, ltc(&table, &case.surface, case.normal, case.view, &case.light))
+        Answer::new(&case.name, ltc_on(quality, &table, &case.surface, case.normal, case.view, &case.light))
     })
 }
 

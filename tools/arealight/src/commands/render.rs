@@ -6,7 +6,7 @@ use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
-use arealight::Effects;
+use arealight::{Effects, FormFactor};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -141,7 +141,7 @@ fn render(
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     let visibility = renderer.visibility()?;
     let shading = match arguments.reference {
-        None => renderer.shade(effects, arguments.quality.quality())?,
+        None => renderer.shade(effects, arguments.quality.quality_or(FormFactor::Exact))?,
         Some(samples) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
