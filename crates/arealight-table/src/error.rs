@@ -1,5 +1,6 @@
 //! Why a file is no table.
 
+use crate::Format;
 use arealight::TableError;
 use arealight::table::MAX_SIZE;
 
@@ -7,15 +8,17 @@ use arealight::table::MAX_SIZE;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReadError {
-    /// The file does not begin as an OpenEXR file does.
+    /// The file begins as none of the formats does.
     #[error("not an OpenEXR file; a light table is one, written by `arealight fit`")]
-    NotExr,
-    /// The OpenEXR reader refuses the file: it is damaged, cut short, or uses what the reader does not know.
-    #[error("{part}: damaged or unsupported OpenEXR data: {reason}")]
+    UnknownFormat,
+    /// The file is damaged, cut short, or uses what the reader does not know.
+    #[error("{part}: damaged or unsupported {format} data: {reason}")]
     Damaged {
+        /// The format by which the file begins.
+        format: Format,
         /// The header, or the texels.
         part: &'static str,
-        /// The reader's own words.
+        /// What is wrong with it.
         reason: String,
     },
     /// An attribute is missing: the file is some other image.
@@ -37,17 +40,19 @@ pub enum ReadError {
     /// A layer is missing.
     #[error(
         "layer `{layer}` is missing; a light table has the layers `matrix` and `magnitude`, and as a third \
-         only `schlick matrix`"
+         only `schlick_matrix`"
     )]
     MissingLayer {
         /// The layer.
         layer: &'static str,
     },
-    /// There are more layers than a table has.
-    #[error("{count} layers; a light table has two or three")]
+    /// There are more layers than a table has, or fewer.
+    #[error("{count} layers; a light table of this version has {}", one_of(expected))]
     LayerCount {
         /// How many there are.
         count: usize,
+        /// How many there may be.
+        expected: &'static [usize],
     },
     /// A layer has other channels than it should.
     #[error("layer `{layer}`: channels `{found}`; expected `{expected}`, 32-bit float, not subsampled")]
@@ -89,6 +94,16 @@ pub enum ReadError {
         /// Scan lines that the header promises.
         expected: usize,
     },
+    /// The texels are not those that the file was written with.
+    #[error(
+        "attribute `arealight.hash` is `{expected}`, but the texels have {found}: the file is damaged, or was edited"
+    )]
+    Hash {
+        /// The texels' hash.
+        found: String,
+        /// What the file says.
+        expected: String,
+    },
     /// The texels make no table.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -107,4 +122,9 @@ pub enum FileError {
     /// The file does not hold a table.
     #[error(transparent)]
     Read(#[from] ReadError),
+}
+
+/// Numbers as `2 or 3`.
+fn one_of(counts: &[usize]) -> String {
+    counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ")
 }

@@ -1,47 +1,40 @@
 //! Reads a table, trusting nothing.
 
 use arealight::table::MAX_SIZE;
-use arealight::{LightTable, TableDescription};
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
+use exr::meta::BlockDescription;
 use exr::meta::attribute::{AttributeValue, SampleType, Text};
 use exr::meta::header::Header;
-use exr::meta::{BlockDescription, magic_number};
 use exr::prelude::{Compression, Vec2};
 use std::io::Cursor;
 
-use super::{
-    AXES, FORMAT, FRAME, Layer, MAGNITUDE, MATRIX, NORMALISATION, SCHLICK_MATRIX, VERSION, attribute,
-};
-use crate::ReadError;
+use super::{Layer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
+use crate::attributes::{Attributes, Value};
+use crate::{Format, ReadError, TableFile};
 
 /// The table in a file.
-pub fn read(file: &[u8]) -> Result<LightTable, ReadError> {
-    if !file.starts_with(&magic_number::BYTES) {
-        return Err(ReadError::NotExr);
-    }
+pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
     // Read the headers alone, and check all that they say
     let reader = exr::block::read(Cursor::new(file), true).map_err(|error| damaged("header", &error))?;
     let headers = reader.headers();
-    let description = check_attributes(headers)?;
+    let attributes = Attributes::read(|name| attribute(headers, name))?;
     let (matrix_index, matrix_header) = find_layer(headers, &MATRIX)?;
     let (magnitude_index, magnitude_header) = find_layer(headers, &MAGNITUDE)?;
-    // A third layer is a second matrix
-    let schlick_layer = (headers.len() > 2).then(|| find_layer(headers, &SCHLICK_MATRIX)).transpose()?;
-    if headers.len() > 3 {
-        return Err(ReadError::LayerCount { count: headers.len() });
+    if !attributes.layer_counts().contains(&headers.len()) {
+        return Err(ReadError::LayerCount { count: headers.len(), expected: attributes.layer_counts() });
     }
+    let schlick = if headers.len() == 3 { Some(find_layer(headers, &SCHLICK_MATRIX)?) } else { None };
     let size = check_layer(matrix_header, &MATRIX, None)?;
     check_layer(magnitude_header, &MAGNITUDE, Some(size))?;
-    if let Some((_, header)) = schlick_layer {
+    if let Some((_, header)) = schlick {
         check_layer(header, &SCHLICK_MATRIX, Some(size))?;
     }
 
     // Read the texels into what the headers call for
     let mut matrix = Texels::<4>::new(&MATRIX, matrix_header, size);
     let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_header, size);
-    let mut schlick =
-        schlick_layer.map(|(index, header)| (index, Texels::<4>::new(&SCHLICK_MATRIX, header, size)));
+    let mut schlick = schlick.map(|(index, header)| (index, Texels::<4>::new(&SCHLICK_MATRIX, header, size)));
     let mut unknown_layer = false;
     reader
         .all_chunks(true)
@@ -58,75 +51,29 @@ pub fn read(file: &[u8]) -> Result<LightTable, ReadError> {
         })
         .map_err(|error| damaged("texels", &error))?;
     if unknown_layer {
-        return Err(ReadError::Damaged {
-            part: "texels",
-            reason: "a block of a layer that is not there".into(),
-        });
+        let reason = "a block of a layer that is not there".into();
+        return Err(ReadError::Damaged { format: Format::Exr, part: "texels", reason });
     }
-    let table = LightTable::new(description, size as u32, matrix.finish()?, magnitude.finish()?)?;
-    Ok(match schlick {
-        Some((_, schlick)) => table.with_schlick_matrix(schlick.finish()?)?,
-        None => table,
-    })
+    let schlick = schlick.map(|(_, texels)| texels.finish()).transpose()?;
+    attributes.table(size as u32, matrix.finish()?, magnitude.finish()?, schlick)
 }
 
 fn damaged(part: &'static str, error: &exr::error::Error) -> ReadError {
-    ReadError::Damaged { part, reason: error.to_string() }
-}
-
-/// Checks the attributes that say what the texels mean, in the order in which they matter.
-fn check_attributes(headers: &[Header]) -> Result<TableDescription, ReadError> {
-    let format = attribute(headers, attribute::FORMAT)?;
-    expect_text(attribute::FORMAT, format, FORMAT)?;
-    match attribute(headers, attribute::VERSION)? {
-        AttributeValue::I32(VERSION) => {}
-        other => return Err(unexpected(attribute::VERSION, other, &VERSION.to_string())),
-    }
-    for (name, expected) in
-        [(attribute::AXES, AXES), (attribute::FRAME, FRAME), (attribute::NORMALISATION, NORMALISATION)]
-    {
-        expect_text(name, attribute(headers, name)?, expected)?;
-    }
-    let text = |name| match attribute(headers, name)? {
-        AttributeValue::Text(text) => Ok(text.to_string()),
-        other => Err(unexpected(name, other, "a string")),
-    };
-    Ok(TableDescription { brdf: text(attribute::BRDF)?, made_by: text(attribute::MADE_BY)? })
+    ReadError::Damaged { format: Format::Exr, part, reason: error.to_string() }
 }
 
 /// The attribute in the first header that has it. Some programs move shared attributes to the layers, or keep
 /// them in the first one only.
-fn attribute<'a>(headers: &'a [Header], name: &'static str) -> Result<&'a AttributeValue, ReadError> {
+fn attribute(headers: &[Header], name: &str) -> Option<Value> {
     let key = Text::from(name);
-    headers
-        .iter()
-        .find_map(|header| {
-            header.shared_attributes.other.get(&key).or_else(|| header.own_attributes.other.get(&key))
-        })
-        .ok_or(ReadError::MissingAttribute { attribute: name })
-}
-
-fn expect_text(name: &'static str, value: &AttributeValue, expected: &str) -> Result<(), ReadError> {
-    match value {
-        AttributeValue::Text(text) if text.as_slice() == expected.as_bytes() => Ok(()),
-        other => Err(unexpected(name, other, expected)),
-    }
-}
-
-fn unexpected(attribute: &'static str, value: &AttributeValue, expected: &str) -> ReadError {
-    const LONGEST: usize = 200;
-    let mut found = match value {
-        // Text of a file that may be anybody's must not steer the terminal
-        AttributeValue::Text(text) => text.to_string().escape_debug().to_string(),
-        AttributeValue::I32(number) => number.to_string(),
-        other => format!("{other:?}"),
-    };
-    // Do not repeat a book that someone stored there
-    if let Some((end, _)) = found.char_indices().nth(LONGEST) {
-        found.truncate(end);
-        found.push_str("...");
-    }
-    ReadError::Attribute { attribute, found, expected: expected.to_owned() }
+    let value = headers.iter().find_map(|header| {
+        header.shared_attributes.other.get(&key).or_else(|| header.own_attributes.other.get(&key))
+    })?;
+    Some(match value {
+        AttributeValue::Text(text) => Value::Text(text.to_string()),
+        AttributeValue::I32(number) => Value::Number(*number),
+        other => Value::Other(format!("{other:?}")),
+    })
 }
 
 fn find_layer<'a>(headers: &'a [Header], layer: &Layer) -> Result<(usize, &'a Header), ReadError> {

@@ -1,31 +1,22 @@
 //! Writes a table.
 
-use arealight::LightTable;
 use exr::prelude::*;
 use std::io::Cursor;
 
 use super::canonical::sort_attributes;
-use super::{
-    AXES, FORMAT, FRAME, Layer as TableLayer, MAGNITUDE, MATRIX, NORMALISATION, SCHLICK_MATRIX, VERSION,
-    attribute,
-};
+use super::{Layer as TableLayer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
+use crate::TableFile;
+use crate::attributes::{VERSION, name, texts};
 
 /// The file of a table.
-pub fn write(table: &LightTable) -> Vec<u8> {
+pub fn write(file: &TableFile) -> Vec<u8> {
+    let table = &file.table;
     let size = table.size() as usize;
     let mut attributes = ImageAttributes::new(IntegerBounds::from_dimensions((size, size)));
-    let description = table.description();
-    for (name, value) in [
-        (attribute::FORMAT, FORMAT),
-        (attribute::AXES, AXES),
-        (attribute::FRAME, FRAME),
-        (attribute::NORMALISATION, NORMALISATION),
-        (attribute::BRDF, &description.brdf),
-        (attribute::MADE_BY, &description.made_by),
-    ] {
-        attributes.other.insert(text(name), AttributeValue::Text(text(value)));
+    for (name, value) in texts(file) {
+        attributes.other.insert(text(name), AttributeValue::Text(text(&value)));
     }
-    attributes.other.insert(text(attribute::VERSION), AttributeValue::I32(VERSION));
+    attributes.other.insert(text(name::VERSION), AttributeValue::I32(VERSION));
 
     let mut layers = vec![layer(&MATRIX, size, table.matrix()), layer(&MAGNITUDE, size, table.magnitude())];
     layers.extend(table.schlick_matrix().map(|texels| layer(&SCHLICK_MATRIX, size, texels)));

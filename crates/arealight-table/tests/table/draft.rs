@@ -38,7 +38,7 @@ impl Draft {
             matrix("matrix", table.matrix()),
             DraftLayer { name: "magnitude", size, channels: vec![("R", magnitude(0)), ("G", magnitude(1))] },
         ];
-        layers.extend(table.schlick_matrix().map(|texels| matrix("schlick matrix", texels)));
+        layers.extend(table.schlick_matrix().map(|texels| matrix("schlick_matrix", texels)));
         Self {
             attributes: vec![
                 ("arealight.format", text(arealight_table::FORMAT)),
@@ -48,6 +48,7 @@ impl Draft {
                 ("arealight.normalisation", text(arealight_table::NORMALISATION)),
                 ("arealight.brdf", text(&table.description().brdf)),
                 ("arealight.made_by", text(&table.description().made_by)),
+                ("arealight.hash", text(&arealight_table::hash(table))),
             ],
             layers,
             compression: Compression::ZIP16,

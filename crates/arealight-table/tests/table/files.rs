@@ -1,8 +1,8 @@
 //! Tables to files and back.
 
 use arealight::{LightTable, TableDescription};
-use arealight_table::{FileError, ReadError, load, read, save, write};
-use exr::prelude::Compression;
+use arealight_table::{FileError, ReadError, TableFile, hash, load, read, save, write};
+use exr::prelude::{AttributeValue, Compression};
 
 use crate::draft::{Draft, table, table_of_two};
 
@@ -14,6 +14,38 @@ fn a_table_comes_back_bit_for_bit() {
         let table = table_of_two(size);
         assert_eq!(read(&write(&table)).unwrap(), table, "size {size}, two matrices");
     }
+}
+
+#[test]
+fn the_fit_error_comes_back() {
+    let fit_error = Some("a mean of 1e-3".to_owned());
+    let file = TableFile { table: table(3), fit_error };
+    assert_eq!(TableFile::read(&file.write()).unwrap(), file);
+    assert_eq!(TableFile::read(&write(&table(3))).unwrap().fit_error, None);
+}
+
+#[test]
+fn a_file_of_version_1_has_two_layers_and_no_hash() {
+    let mut draft = Draft::of(&table(3)).without("arealight.hash");
+    draft.set("arealight.version", AttributeValue::I32(1));
+    assert_eq!(read(&draft.write()).unwrap(), table(3));
+    let mut draft = Draft::of(&table_of_two(3));
+    draft.set("arealight.version", AttributeValue::I32(1));
+    assert_eq!(read(&draft.write()), Err(ReadError::LayerCount { count: 3, expected: &[2] }));
+}
+
+#[test]
+fn a_hash_is_of_texels_alone() {
+    let described = |brdf: &str| {
+        let description = TableDescription { brdf: brdf.into(), made_by: String::new() };
+        LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[1.0, 0.0]; 4]).unwrap()
+    };
+    assert_eq!(hash(&described("a")), hash(&described("b")));
+    // By Python's hashlib, so that others can compute it: sha256(pack("<II16f8f", 2, 1, *(1, 0, 0, 1) * 4, *(1, 0) * 4))
+    let expected = "sha256:56377ea8af2ee463758acb31e839469047ad5496eecf89d896a372ae07816581";
+    assert_eq!(hash(&described("a")), expected);
+    let two = described("a").with_schlick_matrix(vec![[1.0, 0.0, 0.0, 1.0]; 4]).unwrap();
+    assert_ne!(hash(&two), expected);
 }
 
 #[test]
@@ -44,7 +76,7 @@ fn files_are_saved_and_loaded() {
     assert_eq!(load(&path).unwrap(), table(8));
     assert!(matches!(load(&folder.path().join("none.exr")), Err(FileError::File(_))));
     std::fs::write(&path, "GIF89a").unwrap();
-    assert!(matches!(load(&path), Err(FileError::Read(ReadError::NotExr))));
+    assert!(matches!(load(&path), Err(FileError::Read(ReadError::UnknownFormat))));
 }
 
 #[test]

@@ -21,7 +21,7 @@ fn the_draft_itself_is_good() {
 #[test]
 fn what_is_no_exr_is_refused() {
     for bytes in [&b""[..], b"v", b"not an image at all", &[0; 100]] {
-        assert_eq!(read(bytes), Err(ReadError::NotExr));
+        assert_eq!(read(bytes), Err(ReadError::UnknownFormat));
     }
 }
 
@@ -38,10 +38,10 @@ fn a_file_cut_short_anywhere_is_refused() {
 
 #[test]
 fn another_version_is_refused() {
-    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(2)));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `2`; this program reads `1`");
+    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(3)));
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `3`; this program reads `1 to 2`");
     let error = spoil(|draft| draft.set_text("arealight.version", "one"));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1`");
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1 to 2`");
 }
 
 #[test]
@@ -86,8 +86,8 @@ fn missing_and_superfluous_layers_are_named() {
             }
         })
     };
-    assert_eq!(with(&["third"]), ReadError::MissingLayer { layer: "schlick matrix" });
-    assert_eq!(with(&["schlick matrix", "fourth"]), ReadError::LayerCount { count: 4 });
+    assert_eq!(with(&["third"]), ReadError::MissingLayer { layer: "schlick_matrix" });
+    assert_eq!(with(&["schlick_matrix", "fourth"]), ReadError::LayerCount { count: 4, expected: &[2, 3] });
 }
 
 #[test]
@@ -161,6 +161,21 @@ fn storage_that_is_lossy_or_unusual_is_refused() {
     };
     assert_eq!(storage(|d| d.compression = Compression::PXR24), "matrix: pxr24 compression");
     assert_eq!(storage(|d| d.blocks = Blocks::Tiles(Vec2(2, 2))), "matrix: tiles");
+}
+
+#[test]
+fn texels_that_were_changed_are_refused() {
+    for layer in 0..3 {
+        let mut draft = Draft::of(&table_of_two(3));
+        match &mut draft.layers[layer].channels[0].1 {
+            FlatSamples::F32(samples) => samples[4] = f32::from_bits(samples[4].to_bits() + 1),
+            other => panic!("{other:?}"),
+        }
+        let error = read(&draft.write()).unwrap_err();
+        assert!(error.to_string().starts_with("attribute `arealight.hash` is `sha256:"), "{error}");
+    }
+    let error = spoil(|draft| draft.set_text("arealight.hash", "sha256:00"));
+    assert!(matches!(error, ReadError::Hash { .. }), "{error}");
 }
 
 #[test]

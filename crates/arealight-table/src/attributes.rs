@@ -1,0 +1,169 @@
+//! What a file says of its texels: the same names and values in every format.
+
+use arealight::{LightTable, TableDescription};
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+
+use crate::{ReadError, TableFile};
+
+/// The attribute `arealight.format`.
+pub const FORMAT: &str = "arealight-table";
+/// The attribute `arealight.version`: the version of the format that is written; all from 1 on are read.
+pub const VERSION: i32 = 2;
+/// The attribute `arealight.axes`.
+pub const AXES: &str =
+    "x: roughness = x / (size - 1), alpha = roughness^2; y: sqrt(1 - cos theta_view) = y / (size - 1)";
+/// The attribute `arealight.frame`.
+pub const FRAME: &str = "inverse matrix; rows in cosine space; columns (cos t, 0, sin t), (0, 1, 0), (-sin t, 0, cos t) \
+    in the surface frame, for a view (sin t, 0, cos t)";
+/// The attribute `arealight.normalisation`.
+pub const NORMALISATION: &str = "R G B A = q00 q02 q20 q22 of [q00 0 q02; 0 1 0; alpha*q20 0 alpha*q22]; \
+    magnitude R G = integral f cos, integral f cos (1 - cos theta_vh)^5";
+
+pub mod name {
+    pub const FORMAT: &str = "arealight.format";
+    pub const VERSION: &str = "arealight.version";
+    pub const AXES: &str = "arealight.axes";
+    pub const FRAME: &str = "arealight.frame";
+    pub const NORMALISATION: &str = "arealight.normalisation";
+    pub const BRDF: &str = "arealight.brdf";
+    pub const MADE_BY: &str = "arealight.made_by";
+    pub const FIT_ERROR: &str = "arealight.fit_error";
+    pub const HASH: &str = "arealight.hash";
+}
+
+/// An attribute's value.
+pub enum Value {
+    Text(String),
+    Number(i32),
+    /// Of a type that no attribute has, as printed for debugging.
+    Other(String),
+}
+
+impl Value {
+    fn into_text(self) -> String {
+        match self {
+            Self::Text(text) | Self::Other(text) => text,
+            Self::Number(number) => number.to_string(),
+        }
+    }
+}
+
+/// The attributes that are left after those which say what the texels mean were found to be as expected.
+#[derive(Debug)]
+pub struct Attributes {
+    pub version: i32,
+    pub description: TableDescription,
+    pub fit_error: Option<String>,
+    /// Always there from version 2 on.
+    hash: Option<String>,
+}
+
+impl Attributes {
+    /// Reads the attributes, in the order in which they matter. `get` finds one by its name.
+    pub fn read(get: impl Fn(&str) -> Option<Value>) -> Result<Self, ReadError> {
+        let find = |attribute| get(attribute).ok_or(ReadError::MissingAttribute { attribute });
+        let text = |attribute| match find(attribute)? {
+            Value::Text(text) => Ok(text),
+            other => Err(unexpected(attribute, other, "a string")),
+        };
+        let expect = |attribute, expected: &str| match find(attribute)? {
+            Value::Text(text) if text == expected => Ok(()),
+            other => Err(unexpected(attribute, other, expected)),
+        };
+        expect(name::FORMAT, FORMAT)?;
+        let version = match find(name::VERSION)? {
+            Value::Number(version @ 1..=VERSION) => version,
+            other => return Err(unexpected(name::VERSION, other, &format!("1 to {VERSION}"))),
+        };
+        expect(name::AXES, AXES)?;
+        expect(name::FRAME, FRAME)?;
+        expect(name::NORMALISATION, NORMALISATION)?;
+        Ok(Self {
+            version,
+            description: TableDescription { brdf: text(name::BRDF)?, made_by: text(name::MADE_BY)? },
+            fit_error: get(name::FIT_ERROR).map(|_| text(name::FIT_ERROR)).transpose()?,
+            hash: if version == 1 { None } else { Some(text(name::HASH)?) },
+        })
+    }
+
+    /// How many layers a file of this version may have.
+    pub fn layer_counts(&self) -> &'static [usize] {
+        if self.version == 1 { &[2] } else { &[2, 3] }
+    }
+
+    /// Makes the table of layers 0 to 2, and checks its hash.
+    pub fn table(
+        self,
+        size: u32,
+        matrix: Vec<[f32; 4]>,
+        magnitude: Vec<[f32; 2]>,
+        schlick_matrix: Option<Vec<[f32; 4]>>,
+    ) -> Result<TableFile, ReadError> {
+        let mut table = LightTable::new(self.description, size, matrix, magnitude)?;
+        if let Some(schlick_matrix) = schlick_matrix {
+            table = table.with_schlick_matrix(schlick_matrix)?;
+        }
+        let hash = hash(&table);
+        match self.hash {
+            Some(found) if found != hash => Err(ReadError::Hash { found: hash, expected: printable(&found) }),
+            _ => Ok(TableFile { table, fit_error: self.fit_error }),
+        }
+    }
+}
+
+/// The attributes of a table, but for the version.
+pub fn texts(file: &TableFile) -> Vec<(&'static str, String)> {
+    let description = file.table.description();
+    let mut texts = vec![
+        (name::FORMAT, FORMAT.to_owned()),
+        (name::AXES, AXES.to_owned()),
+        (name::FRAME, FRAME.to_owned()),
+        (name::NORMALISATION, NORMALISATION.to_owned()),
+        (name::BRDF, description.brdf.clone()),
+        (name::MADE_BY, description.made_by.clone()),
+        (name::HASH, hash(&file.table)),
+    ];
+    texts.extend(file.fit_error.iter().map(|error| (name::FIT_ERROR, error.clone())));
+    texts
+}
+
+/// The hash of a table's texels, `sha256:` and 64 hexadecimal digits: two tables shade alike if it is the same.
+///
+/// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if there
+/// is one, texel by texel as `f32`, all in little-endian order. What the table says of itself does not count.
+pub fn hash(table: &LightTable) -> String {
+    let schlick_matrix = table.schlick_matrix();
+    let mut hasher = Sha256::new();
+    hasher.update(table.size().to_le_bytes());
+    hasher.update((1 + u32::from(schlick_matrix.is_some())).to_le_bytes());
+    let mut update = |numbers: &[f32]| {
+        // Few calls: a texel at a time is slow
+        for chunk in numbers.chunks(4096) {
+            let bytes: Vec<u8> = chunk.iter().flat_map(|number| number.to_le_bytes()).collect();
+            hasher.update(&bytes);
+        }
+    };
+    update(table.matrix().as_flattened());
+    update(table.magnitude().as_flattened());
+    update(schlick_matrix.unwrap_or_default().as_flattened());
+    let mut text = String::from("sha256:");
+    for byte in hasher.finalize() {
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}
+
+fn unexpected(attribute: &'static str, value: Value, expected: &str) -> ReadError {
+    ReadError::Attribute { attribute, found: printable(&value.into_text()), expected: expected.to_owned() }
+}
+
+/// Text of a file that may be anybody's: it must not steer the terminal, nor repeat a book that someone stored there.
+pub fn printable(text: &str) -> String {
+    const LONGEST: usize = 200;
+    let mut printable: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        printable.push_str("...");
+    }
+    printable
+}
