@@ -92,7 +92,7 @@ float library_walk(ArealightAnchor anchor, uint count, bool bare, int rung) {
     if (bare) {
         return arealight_form_factor_from_arcs(walk.sum, walk.squares, true);
     }
-    return arealight_walk_form_factor(walk, true, rung);
+    return arealight_walk_form_factor(walk, anchor, true, rung);
 }
 
 // The library's one-point form of a convex polygon of up to four vertices, where it is enough; else -1.

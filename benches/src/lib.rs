@@ -1,13 +1,16 @@
+//! Cost, and the error at that cost.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
+//! | [`cost`] | the time of each rung, as a ratio to the practice |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
+pub mod cost;
 pub mod kernel;
 pub mod method;
 pub mod report;

@@ -19,36 +19,44 @@
 struct ArealightVertex {
     vec3 unit;    // its direction; z is exactly zero within AREALIGHT_HORIZON_WIDTH of the horizon
     vec3 chord;   // its direction less the anchor's, to float32's relative precision (difference form alone)
-    vec3 offset;  // from the anchor, in the anchor's scale (difference form alone)
+    vec3 offset;  // from the anchor's base (difference form alone)
     float square; // its squared distance; not finite where a coordinate is not
 };
 
 // Where a polygon is: a point near it, from which its vertices are given as offsets.
 struct ArealightAnchor {
-    vec3 position; // from the shading point, scaled
-    float scale;   // what offsets are multiplied with
-    bool distant;  // the difference form applies: the polygon is no larger than twice its distance
+    vec3 position;    // from the shading point
+    float distance;   // its distance
+    float reciprocal; // of that
+    bool distant;     // the polygon lies within half its distance of it: chords are from its direction
 };
+
+// What a vertex's offset is from: the anchor, or where that is not distant the shading point, so that no vertex near to
+// that is the difference of two that are not.
+vec3 arealight_base(ArealightAnchor anchor) {
+    return anchor.distant ? anchor.position : vec3(0.0);
+}
 
 // The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space.
 ArealightAnchor arealight_anchor(vec3 position, float extent, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
-        return ArealightAnchor(position, 1.0, false);
+        return ArealightAnchor(position, 0.0, 0.0, false);
     }
     float square = dot(position, position);
-    bool distant = extent * extent <= 4.0 * square && square > AREALIGHT_TINY;
-    float scale = distant ? inversesqrt(square) : 1.0;
-    return ArealightAnchor(position * scale, scale, distant);
+    float reciprocal = inversesqrt(square + AREALIGHT_TINY);
+    return ArealightAnchor(position, square * reciprocal, reciprocal, 4.0 * extent * extent <= square);
 }
 
 // The vertex at `offset` from the anchor.
 //
-// With the difference form, the direction's distance from the anchor's direction a keeps the relative precision
-// of the offset: for v = a + o and t = o.(a + v) = |v|^2 - 1, it is v / |v| - a = o / |v| - a t / (|v|^2 + |v|).
+// With the difference form, the direction's distance from the anchor's direction keeps the relative precision of the
+// offset o: with the anchor a, v = a + o and e = o.(a + v) = |v|^2 - |a|^2,
+//
+//     v / |v| - a / |a| = (o - a e / (|a| (|a| + |v|))) / |v|
 ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) {
     ArealightVertex vertex;
-    vertex.offset = offset * anchor.scale;
-    vec3 position = anchor.position + vertex.offset;
+    vec3 position = anchor.position + offset;
+    vertex.offset = anchor.distant ? offset : position;
     vertex.square = dot(position, position);
     float reciprocal = inversesqrt(vertex.square + AREALIGHT_TINY);
     vertex.unit = position * reciprocal;
@@ -57,9 +65,9 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) 
     vertex.unit.z = abs(vertex.unit.z) > AREALIGHT_HORIZON_WIDTH ? vertex.unit.z : 0.0;
     vertex.chord = vertex.unit;
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
-        float excess = dot(vertex.offset, anchor.position + position);
-        float shortening = excess * reciprocal * reciprocal / (1.0 + reciprocal);
-        vec3 chord = vertex.offset * reciprocal - anchor.position * shortening;
+        float excess = dot(offset, anchor.position + position);
+        float shortening = excess * anchor.reciprocal / (anchor.distance + vertex.square * reciprocal + AREALIGHT_TINY);
+        vec3 chord = (offset - anchor.position * shortening) * reciprocal;
         vertex.chord = anchor.distant ? chord : vertex.unit;
     }
     return vertex;
@@ -75,15 +83,15 @@ float arealight_arc_weight(float s, float y, int rung) {
          / (y + y * y * (0.66850024 + y * 0.096849829));
 }
 
-// s (theta / sin(theta) - 1) of an arc whose chord has the squared length `square`: relative error of exact 4e-7,
+// s (theta / sin(theta) - 1) of an arc whose chord has the squared length `square`: relative error of exact 1.5e-7,
 // of fast 7e-5.
 float arealight_arc_excess(float s, float y, float square, int rung) {
     float scaled = 0.25 * square * s;
     if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
         return scaled * (3.1418085 + y * (-0.15366498 + y * 0.017586168)) / (y + y * y * 0.58923405);
     }
-    return scaled * (3.1415937 + y * (0.76759213 - y * 0.0015241161))
-         / (y + y * y * (0.88096553 + y * 0.18527032));
+    return scaled * (3.14159298 + y * (0.806142926 + y * (-0.00320804934 + y * 0.000173867855)))
+         / (y + y * y * (0.893227518 + y * 0.192593366));
 }
 
 // The angle from a to b times the z component of the unit normal of their plane, radians.
@@ -103,6 +111,25 @@ float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     return arealight_arc_weight(s, y, rung);
 }
 
+// The arc along the horizon from a to b, both on it: the angle between them. Where it is obtuse, it is a right angle and
+// the arc that is left: nearly opposite ends would have the rounding of their lengths in y, which moving a vertex
+// explains for an edge (arealight_arc), but not here.
+float arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
+    bool obtuse = dot(a.unit.xy, b.unit.xy) < 0.0;
+    bool left = a.unit.x * b.unit.y - a.unit.y * b.unit.x >= 0.0;
+    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+        // Seen from a distance no angle is obtuse; else chords are the directions themselves, and so is the arc's
+        if (anchor.distant) {
+            return arealight_arc(a, b, rung);
+        }
+        rung &= ~AREALIGHT_FORM_FACTOR_DIFFERENCE;
+    }
+    vec2 turned = left ? vec2(-a.unit.y, a.unit.x) : vec2(a.unit.y, -a.unit.x);
+    a.unit.xy = obtuse ? turned : a.unit.xy;
+    float right_angle = obtuse ? (left ? 0.5 * AREALIGHT_PI : -0.5 * AREALIGHT_PI) : 0.0;
+    return right_angle + arealight_arc(a, b, rung);
+}
+
 // As arealight_arc, for an angle of at most a right one: theta / sin(theta) from the cosine itself. The difference
 // form gains nothing from that, and is the same.
 float arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
@@ -118,19 +145,20 @@ float arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
          / (1.0 + x * (1.3370004 + x * 0.38739931));
 }
 
-// Where an edge meets the horizon, as a multiple of the point: for the difference form of its offset from the anchor,
-// else of its direction.
+// Where an edge meets the horizon, as a multiple of the point: for the difference form of its offset from the
+// anchor's base, else of its direction.
 struct ArealightCrossing {
     vec2 point;
     float height;
 };
 
-// The crossing of the edge from a to b, one end being above the horizon and the other not. It is a sum of two
-// vectors that do not cancel.
+// The crossing of the edge from a to b, one end being above the horizon and the other not: a sum of two vectors, which
+// cancel only where the ends are opposite. There rounding is as if an end had moved by 2^-24 of its distance.
 ArealightCrossing arealight_crossing(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
-        float a_height = a.unit.z == 0.0 ? 0.0 : anchor.position.z + a.offset.z;
-        float b_height = b.unit.z == 0.0 ? 0.0 : anchor.position.z + b.offset.z;
+        float base = arealight_base(anchor).z;
+        float a_height = a.unit.z == 0.0 ? 0.0 : base + a.offset.z;
+        float b_height = b.unit.z == 0.0 ? 0.0 : base + b.offset.z;
         return ArealightCrossing(b.offset.xy * a_height - a.offset.xy * b_height, a_height - b_height);
     }
     return ArealightCrossing(b.unit.xy * a.unit.z - a.unit.xy * b.unit.z, 1.0);
@@ -141,7 +169,7 @@ ArealightVertex arealight_horizon_vertex(ArealightAnchor anchor, ArealightCrossi
                                          int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
         vec2 along = crossing.point / (crossing.height == 0.0 ? 1.0 : crossing.height);
-        anchor.scale = 1.0;
+        anchor.position = arealight_base(anchor);
         return arealight_vertex(anchor, vec3(along, -anchor.position.z), rung);
     }
     vec2 point = crossing.point;

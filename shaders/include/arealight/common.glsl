@@ -24,8 +24,9 @@ const float AREALIGHT_MIN_ALPHA = 1e-4;
 // Squared lengths below this count as zero: 2^-100, far above float32's smallest normal number.
 const float AREALIGHT_TINY = 7.8886090522101181e-31;
 
-// The sine of the elevation below which a vertex counts as on the horizon: 2^-22, four times float32's rounding.
-const float AREALIGHT_HORIZON_WIDTH = 2.384185791015625e-7;
+// The sine of the elevation below which a vertex counts as on the horizon: 1.7 x 2^-24, about what the rounding of a
+// vertex can make of zero.
+const float AREALIGHT_HORIZON_WIDTH = 1e-7;
 
 // The largest absolute component of v.
 float arealight_max_component(vec3 v) {

@@ -14,13 +14,13 @@
 // tests hold them to (docs/stability.md), whatever the rung:
 //
 //   1. Any bits in, a finite number in [0, 1] out; 0 where a coordinate is NaN or infinite.
-//   2. The result is within 6e-7 of what some polygon has whose vertices differ by at most 4 x 2^-24 of their
-//      distance.
+//   2. The result is within 6e-7 of the interval of values that the polygons have whose vertices differ by at most
+//      4 x 2^-24 of their distance.
 //   3. Its error is at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its farthest vertex.
-//   4. With the difference form, for a light of area A at distance d that is smaller than a fifth of it, the error
-//      is at most 1e-6 A / (pi d^2), out to any distance.
+//   4. With the difference form, for a light within a fifth of its distance d of its anchor, the error is at most
+//      1e-6 A / (pi d^2), out to any distance; A is its area, or for a sliver .24 of its extent times its perimeter.
 //
-// The fast rungs add 2.7e-5 (difference form: 7e-5 of its square) of each edge's angle, over 2 pi.
+// The fast rungs add 2.7e-5 of each edge's angle over 2 pi; with the difference form 7e-5 of that times the angle's square.
 
 // Whether the bare rung is enough for a light within `extent` of `center` (an offset from the shading point, in the
 // space of the form factor): it is wholly above the horizon, and no edge can subtend more than a right angle.

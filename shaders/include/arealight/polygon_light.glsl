@@ -103,7 +103,7 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
         arealight_walk_edge(walk, view.anchor, from, to, rung);
         from = to;
     }
-    return arealight_walk_form_factor(walk, light.two_sided, rung);
+    return arealight_walk_form_factor(walk, view.anchor, light.two_sided, rung);
 }
 
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.

@@ -73,7 +73,7 @@ float arealight_quad_clipped(ArealightAnchor anchor, ArealightQuad quad, bool tw
               + arealight_quad_edge(v1, v2, exit, entry, rung)
               + arealight_quad_edge(v2, v3, exit, entry, rung)
               + arealight_quad_edge(v3, v0, exit, entry, rung)
-              + arealight_arc(exit, entry, rung);
+              + arealight_horizon_arc(anchor, exit, entry, rung);
 
     // What goes down twice lies in the horizon: nothing of it is above
     sum = arealight_alternates(v0.unit.z > 0.0, v1.unit.z > 0.0, v2.unit.z > 0.0, v3.unit.z > 0.0) ? 0.0 : sum;

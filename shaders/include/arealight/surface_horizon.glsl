@@ -54,7 +54,7 @@ float arealight_quad_both_horizons(ArealightAnchor anchor, ArealightQuad quad, v
 
     // What is wholly below is not there, nor what lies in the horizon
     walk.squares += dot(quad.v0, quad.v0) + dot(quad.v1, quad.v1) + dot(quad.v2, quad.v2) + dot(quad.v3, quad.v3);
-    float form_factor = arealight_walk_form_factor(walk, two_sided, rung);
+    float form_factor = arealight_walk_form_factor(walk, anchor, two_sided, rung);
     return any(above) && !arealight_alternates(above.x, above.y, above.z, above.w) ? form_factor : 0.0;
 }
 
@@ -107,7 +107,7 @@ float arealight_surface_walk_form_factor(ArealightSurfaceWalk clip, ArealightAnc
     if (clip.begun) {
         arealight_walk_edge(clip.walk, anchor, clip.last, clip.first, rung);
     }
-    return arealight_walk_form_factor(clip.walk, two_sided, rung);
+    return arealight_walk_form_factor(clip.walk, anchor, two_sided, rung);
 }
 
 #endif

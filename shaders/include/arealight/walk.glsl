@@ -9,7 +9,7 @@
 //
 //     ArealightWalk walk = arealight_walk_begin();
 //     for each edge: arealight_walk_edge(walk, anchor, from, to, rung);
-//     float f = arealight_walk_form_factor(walk, two_sided, rung);
+//     float f = arealight_walk_form_factor(walk, anchor, two_sided, rung);
 struct ArealightWalk {
     float sum;             // 2 pi times the form factor of a light seen from its back
     float squares;         // of the vertices' distances
@@ -30,7 +30,8 @@ ArealightWalk arealight_walk_begin() {
 // The crossings of a flat polygon lie on one line, and the angles between them, seen from beside that line, add up to
 // less than pi: so it is enough to know their sum's direction, as a product of complex numbers, whatever the number
 // of crossings. The difference form needs each arc by itself.
-void arealight_walk_close(inout ArealightWalk walk, ArealightVertex crossing, bool exits, int rung) {
+void arealight_walk_close(inout ArealightWalk walk, ArealightAnchor anchor, ArealightVertex crossing, bool exits,
+                          int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
         vec2 turn = vec2(crossing.unit.x, exits ? -crossing.unit.y : crossing.unit.y);
         walk.turn = vec2(walk.turn.x * turn.x - walk.turn.y * turn.y, walk.turn.x * turn.y + walk.turn.y * turn.x);
@@ -38,7 +39,7 @@ void arealight_walk_close(inout ArealightWalk walk, ArealightVertex crossing, bo
         walk.exit = crossing;
         walk.exited = true;
     } else if (walk.exited) {
-        walk.sum += arealight_arc(walk.exit, crossing, rung);
+        walk.sum += arealight_horizon_arc(anchor, walk.exit, crossing, rung);
     } else {
         walk.entry = crossing;
         walk.entered = true;
@@ -54,23 +55,23 @@ void arealight_walk_edge(inout ArealightWalk walk, ArealightAnchor anchor, Areal
     ArealightCrossing point = arealight_crossing(anchor, a, b, rung);
     ArealightVertex crossing = arealight_horizon_vertex(anchor, point, a_above ? 1.0 : -1.0, rung);
     if (a_above != b_above) {
-        arealight_walk_close(walk, crossing, a_above, rung);
+        arealight_walk_close(walk, anchor, crossing, a_above, rung);
     }
     // An edge below the horizon becomes an arc of no length
     walk.sum += arealight_arc(arealight_select(a_above, a, crossing), arealight_select(b_above, b, crossing), rung);
 }
 
 // Ends the walk. One-sided: 0 for a light seen from its back. In [0, 1]; 0 where a vertex is not finite.
-float arealight_walk_form_factor(ArealightWalk walk, bool two_sided, int rung) {
+float arealight_walk_form_factor(ArealightWalk walk, ArealightAnchor anchor, bool two_sided, int rung) {
     float sum = walk.sum;
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
         ArealightVertex begin = walk.exit;
         ArealightVertex end = walk.exit;
         begin.unit = vec3(1.0, 0.0, 0.0);
         end.unit = vec3(walk.turn * inversesqrt(dot(walk.turn, walk.turn) + AREALIGHT_TINY), 0.0);
-        sum += arealight_arc(begin, end, rung);
+        sum += arealight_horizon_arc(anchor, begin, end, rung);
     } else if (walk.exited && walk.entered) {
-        sum += arealight_arc(walk.exit, walk.entry, rung);
+        sum += arealight_horizon_arc(anchor, walk.exit, walk.entry, rung);
     }
     return arealight_form_factor_from_arcs(sum, walk.squares, two_sided);
 }

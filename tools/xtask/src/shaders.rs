@@ -15,11 +15,12 @@ struct KernelSet {
     modules: &'static str,
 }
 
-/// What the crate `arealight` embeds, what only the benchmarks run, and the wrong-doers that the host's tests must
-/// catch.
-const SETS: [KernelSet; 3] = [
+/// What the crate `arealight` embeds, what only the benchmarks and the tests run, and the wrong-doers that the host's
+/// tests must catch.
+const SETS: [KernelSet; 4] = [
     KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
     KernelSet { sources: "benches/kernels", modules: "benches/spirv" },
+    KernelSet { sources: "tests/kernels", modules: "tests/spirv" },
     KernelSet { sources: "tools/host/tests/canary", modules: "tools/host/tests/canary" },
 ];
 
@@ -27,7 +28,7 @@ const SETS: [KernelSet; 3] = [
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
 /// the sources' hash, the module's hash and the compiler. Likewise benches/kernels into
-/// benches/spirv, and tools/host/tests/canary.
+/// benches/spirv, tests/kernels into tests/spirv, and tools/host/tests/canary.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.

@@ -1,0 +1,121 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+// What a form factor of a quad costs: each work item computes those of one quad at many places, by one method. Its memory
+// traffic, one quad and one result a work item, is lost in that.
+
+layout(local_size_x = 64) in;
+
+#include "arealight/form_factor.glsl"
+
+layout(constant_id = 0) const int METHOD = 0;
+layout(constant_id = 1) const int REPEATS = 1;
+
+// AREALIGHT_FORM_FACTOR_* bits, plus one of these; or a yardstick. See benches/src/cost.rs.
+const int METHOD_RUNG = 3;
+const int METHOD_QUAD = 0;
+const int METHOD_BARE = 4;
+const int METHOD_BOTH = 8;
+const int METHOD_WALK = 12;
+const int METHOD_NOTHING = 16;
+const int METHOD_PRACTICE = 17;
+const int METHOD_TEXTBOOK = 18;
+
+layout(set = 0, binding = 0, std430) readonly buffer Vertices {
+    vec4 vertices[]; // four a work item, in a box above the horizon
+};
+layout(set = 0, binding = 1, std430) writeonly buffer Results {
+    float results[];
+};
+
+ArealightQuad moved(ArealightQuad quad, vec3 shift) {
+    return ArealightQuad(quad.v0 + shift, quad.v1 + shift, quad.v2 + shift, quad.v3 + shift);
+}
+
+float walk(ArealightAnchor anchor, ArealightQuad quad, int rung) {
+    ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
+    ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
+    ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
+    ArealightVertex v3 = arealight_vertex(anchor, quad.v3, rung);
+    ArealightWalk walk = arealight_walk_begin();
+    arealight_walk_edge(walk, anchor, v3, v0, rung);
+    arealight_walk_edge(walk, anchor, v0, v1, rung);
+    arealight_walk_edge(walk, anchor, v1, v2, rung);
+    arealight_walk_edge(walk, anchor, v2, v3, rung);
+    return arealight_walk_form_factor(walk, anchor, false, rung);
+}
+
+// The library's, of a quad given as offsets from `center`.
+float library(vec3 center, ArealightQuad quad) {
+    int rung = METHOD & METHOD_RUNG;
+    int shape = METHOD & ~METHOD_RUNG;
+    ArealightAnchor anchor = arealight_anchor(center, 1.0, rung);
+    if (shape == METHOD_BARE) {
+        return arealight_quad_bare(anchor, quad, false, rung);
+    }
+    if (shape == METHOD_BOTH) {
+        vec3 normal = vec3(0.6, 0.0, 0.8);
+        vec4 height = dot(normal, center)
+                    + vec4(dot(normal, quad.v0), dot(normal, quad.v1), dot(normal, quad.v2), dot(normal, quad.v3));
+        return arealight_quad_both_horizons(anchor, quad, height, false, rung);
+    }
+    if (shape == METHOD_WALK) {
+        return walk(anchor, quad, rung);
+    }
+    return arealight_quad_clipped(anchor, quad, false, rung);
+}
+
+// The practice's, as its users write it for four vertices; see yardsticks.glsl for the source.
+vec3 practice_edge(vec3 a, vec3 b) {
+    float x = dot(a, b);
+    float y = abs(x);
+    float numerator = 0.8543985 + (0.4965155 + 0.0145206 * y) * y;
+    float denominator = 3.4175940 + (4.1616724 + y) * y;
+    float weight = numerator / denominator;
+    weight = x > 0.0 ? weight : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - weight;
+    return cross(a, b) * weight;
+}
+
+float practice(ArealightQuad quad) {
+    vec3 v0 = normalize(quad.v0);
+    vec3 v1 = normalize(quad.v1);
+    vec3 v2 = normalize(quad.v2);
+    vec3 v3 = normalize(quad.v3);
+    vec3 sum = practice_edge(v0, v1) + practice_edge(v1, v2) + practice_edge(v2, v3) + practice_edge(v3, v0);
+    float l = length(sum);
+    return max((l * l - sum.z) / (l + 1.0), 0.0);
+}
+
+ArealightQuad yardstick;
+
+vec3 yardstick_vertex(uint index) {
+    return index == 0u ? yardstick.v0 : index == 1u ? yardstick.v1 : index == 2u ? yardstick.v2 : yardstick.v3;
+}
+
+#include "yardsticks.glsl"
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    uint first = 4u * index;
+    ArealightQuad quad = ArealightQuad(vertices[first].xyz, vertices[first + 1u].xyz, vertices[first + 2u].xyz,
+                                       vertices[first + 3u].xyz);
+    vec3 center = 0.25 * (quad.v0 + quad.v1 + quad.v2 + quad.v3);
+    ArealightQuad offsets = moved(quad, -center);
+    float sum = 0.0;
+    for (int i = 0; i < REPEATS; i++) {
+        // Moving the quad costs three additions a vertex; the library's adds its center to its offsets anyway
+        vec3 shift = vec3(1.0, 1.0, 0.5) * (float(i) / 512.0);
+        if (METHOD == METHOD_PRACTICE) {
+            sum += practice(moved(quad, shift));
+        } else if (METHOD == METHOD_TEXTBOOK) {
+            yardstick = moved(quad, shift);
+            sum += yardstick_textbook(4u);
+        } else if (METHOD == METHOD_NOTHING) {
+            ArealightQuad there = moved(quad, shift);
+            sum += dot(there.v0 + there.v1, there.v2 + there.v3);
+        } else {
+            sum += library(center + shift, offsets);
+        }
+    }
+    results[index] = sum / float(REPEATS);
+}

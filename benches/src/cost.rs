@@ -1,0 +1,233 @@
+//! What the form factor of a quad costs on a device, by the library's rungs and by the yardsticks.
+//!
+//! The machines that this runs on are shared: every method is run in turn, round after round, and read as a ratio to
+//! the practice in the same run.
+
+use crate::BenchError;
+use arealight::FormFactor;
+use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight_engine::Kept;
+use arealight_host::{Buffer, DescriptorPool, Host};
+use arealight_vk::{ComputePass, Context, HostDevice, Resource};
+use ash::vk;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+/// A quad's form factor many times over.
+pub static FORM_FACTOR_COST: Kernel = Kernel {
+    name: "form_factor_cost",
+    spirv: include_bytes!("../spirv/form_factor_cost.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 0,
+    bindings: &[
+        Binding {
+            name: "vertices",
+            kind: BindingKind::StorageBuffer,
+            access: Access::Read,
+            content: "vec4[]: four vertices a work item, 0",
+        },
+        Binding {
+            name: "results",
+            kind: BindingKind::StorageBuffer,
+            access: Access::Write,
+            content: "float[]: the mean form factor of a work item",
+        },
+    ],
+    constants: &[0, 1],
+};
+
+/// What is measured.
+#[derive(Debug, Clone, Copy)]
+pub struct CostMethod {
+    /// A short name.
+    pub name: &'static str,
+    /// The error that it promises, in words.
+    pub promise: &'static str,
+    /// The kernel's `METHOD`.
+    id: u32,
+}
+
+const QUAD: u32 = 0;
+const BARE: u32 = 4;
+const BOTH: u32 = 8;
+const WALK: u32 = 12;
+
+const fn rung(name: &'static str, shape: u32, rung: FormFactor) -> CostMethod {
+    let promise = match rung {
+        FormFactor::Exact => "1e-6",
+        FormFactor::Fast => "1e-6 + 2.7e-5 of each edge's share",
+        FormFactor::ExactDifference => "1e-6, of small lights relative",
+        FormFactor::FastDifference => {
+            "1e-6, of small lights relative, + 7e-5 of each edge's share times its angle squared"
+        }
+    };
+    CostMethod { name, promise, id: shape | rung as u32 }
+}
+
+const fn yardstick(name: &'static str, id: u32) -> CostMethod {
+    CostMethod { name, promise: "none", id }
+}
+
+/// The yardstick that the others are ratios to.
+pub const PRACTICE: &str = "practice";
+
+/// Every method, the yardstick of the ratios first.
+pub static METHODS: &[CostMethod] = &[
+    yardstick(PRACTICE, 17),
+    yardstick("textbook", 18),
+    yardstick("an empty loop", 16),
+    rung("bare, exact", BARE, FormFactor::Exact),
+    rung("bare, fast", BARE, FormFactor::Fast),
+    rung("bare, exact, difference", BARE, FormFactor::ExactDifference),
+    rung("quad, exact", QUAD, FormFactor::Exact),
+    rung("quad, fast", QUAD, FormFactor::Fast),
+    rung("quad, exact, difference", QUAD, FormFactor::ExactDifference),
+    rung("quad, fast, difference", QUAD, FormFactor::FastDifference),
+    rung("any outline, exact", WALK, FormFactor::Exact),
+    rung("any outline, fast", WALK, FormFactor::Fast),
+    rung("any outline, exact, difference", WALK, FormFactor::ExactDifference),
+    rung("both horizons, quad, exact", BOTH, FormFactor::Exact),
+    rung("both horizons, quad, fast", BOTH, FormFactor::Fast),
+    rung("both horizons, quad, exact, difference", BOTH, FormFactor::ExactDifference),
+];
+
+/// A method's cost.
+#[derive(Debug, Clone, Serialize)]
+pub struct Cost {
+    /// The method.
+    pub method: &'static str,
+    /// Nanoseconds a form factor: the median over the rounds. Only ratios mean something on a shared machine.
+    pub nanoseconds: f64,
+    /// The median over the rounds of the ratio to the practice in the same round.
+    pub ratio: f64,
+    /// The quartiles of that ratio.
+    pub quartiles: [f64; 2],
+    /// The mean form factor of the quads: what was computed.
+    pub mean: f64,
+}
+
+const WORK_ITEMS: usize = 4096;
+const REPEATS: u32 = 256;
+
+struct Run {
+    pass: Kept<ComputePass>,
+    set: vk::DescriptorSet,
+    results: Buffer,
+    seconds: Vec<f64>,
+    _pool: DescriptorPool,
+}
+
+impl Run {
+    fn new(host: &Host, context: &Context, vertices: &Buffer, id: u32) -> Result<Self, BenchError> {
+        // SAFETY: Submissions are waited for, so that no use is pending when the pass is dropped; where one timed out,
+        // it is leaked.
+        let pass = unsafe { ComputePass::new(context, &FORM_FACTOR_COST, &[(0, id), (1, REPEATS)]) }?;
+        let pass = Kept::new(host, pass);
+        let results = host.storage_buffer("results", &vec![f32::NAN; WORK_ITEMS])?;
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's, and alive.
+        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+        let resources = [vertices, &results].map(|buffer| Resource::buffer(buffer.handle()));
+        // SAFETY: The set is new; the caller keeps the vertices, and this the results, until submissions are waited for.
+        unsafe { pass.write_set(set, &resources) }?;
+        Ok(Self { pass, set, results, seconds: Vec::new(), _pool: pool })
+    }
+
+    /// One dispatch; GPU time, or wall time where the queue has no timestamps.
+    fn once(&self, host: &Host) -> Result<f64, BenchError> {
+        let groups = FORM_FACTOR_COST.groups_for([WORK_ITEMS as u32, 1, 1]);
+        let start = Instant::now();
+        let took = host.try_submit_timed(|commands| {
+            // SAFETY: `commands` is being recorded, outside a render pass; the set was written.
+            unsafe { self.pass.record(commands, self.set, &[], groups) }.map_err(BenchError::from)
+        })?;
+        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
+    }
+}
+
+/// Measures every method in `rounds` rounds, after one that warms up.
+///
+/// # Errors
+/// [`BenchError`] where the device fails.
+pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, BenchError> {
+    let handles = HostDevice {
+        instance: host.instance(),
+        physical_device: host.physical_device(),
+        device: host.device(),
+        pipeline_cache: vk::PipelineCache::null(),
+    };
+    // SAFETY: The handles belong together, and the passes, which go first, keep the host alive.
+    let context = unsafe { Context::new(&handles) }?;
+    let vertices = host.storage_buffer("vertices", &quads())?;
+    let mut runs = Vec::new();
+    for method in METHODS {
+        runs.push(Run::new(host, &context, &vertices, method.id)?);
+    }
+    for round in 0..=rounds {
+        for run in &mut runs {
+            let seconds = run.once(host)?;
+            if round > 0 {
+                run.seconds.push(seconds);
+            }
+        }
+    }
+    let yardstick = runs[0].seconds.clone();
+    let cost = |(method, run): (&CostMethod, &Run)| {
+        let ratios: Vec<f64> = run.seconds.iter().zip(&yardstick).map(|(a, b)| a / b).collect();
+        let means: Vec<f32> = run.results.download()?;
+        Ok(Cost {
+            method: method.name,
+            nanoseconds: quantile(&run.seconds, 0.5) * 1e9 / (WORK_ITEMS as f64 * f64::from(REPEATS)),
+            ratio: quantile(&ratios, 0.5),
+            quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
+            mean: means.iter().map(|mean| f64::from(*mean)).sum::<f64>() / WORK_ITEMS as f64,
+        })
+    };
+    METHODS.iter().zip(&runs).map(cost).collect()
+}
+
+fn quantile(values: &[f64], part: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let index = (part * (sorted.len().max(1) - 1) as f64).round() as usize;
+    sorted.get(index).copied().unwrap_or(f64::NAN)
+}
+
+/// Quads of half a unit about a point one or two units above the shading point, front towards it.
+fn quads() -> Vec<[f32; 4]> {
+    let mut state = 88172645463325252_u64;
+    let mut random = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 40) as f32 / 16_777_216.0
+    };
+    let mut vertices = Vec::with_capacity(4 * WORK_ITEMS);
+    for _ in 0..WORK_ITEMS {
+        let center = [random() - 0.5, random() - 0.5, 1.5 + random()];
+        let a = [0.1 + 0.3 * random(), 0.2 * random(), 0.3 * random()];
+        let b = [0.2 * random(), 0.1 + 0.3 * random(), 0.3 * random()];
+        for (x, y) in [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)] {
+            let vertex = |axis: usize| center[axis] + x * a[axis] + y * b[axis];
+            vertices.push([vertex(0), vertex(1), vertex(2), 0.0]);
+        }
+    }
+    vertices
+}
+
+/// The costs as a Markdown table.
+pub fn markdown(costs: &[Cost]) -> String {
+    let mut text = String::from(
+        "| form factor of a quad | error promised | time, practice = 1 | quartiles |\n|---|---|---|---|\n",
+    );
+    for (cost, method) in costs.iter().zip(METHODS) {
+        let [low, high] = cost.quartiles;
+        let _ = writeln!(
+            text,
+            "| {} | {} | {:.2} | {low:.2} to {high:.2} |",
+            cost.method, method.promise, cost.ratio
+        );
+    }
+    text
+}
