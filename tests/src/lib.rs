@@ -3,6 +3,7 @@
 
 mod cases;
 mod compare;
+pub mod kernel;
 pub mod lobe;
 mod points;
 mod property;

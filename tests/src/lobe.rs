@@ -6,7 +6,8 @@
 //! form factor itself (6e-7, and a short series' share). The inputs move by
 //! - 4 units in the last place of each vertex' distance in cosine space, as `form_factor.glsl` says of it;
 //! - [`PRODUCT`] units of each row's length times a vertex' distance, for the products that take it there;
-//! - [`ROW`] units of each row's length, for the row itself: the frame, the lookup, the mirror frame.
+//! - [`ROW`] units of each row's length, for the row itself: the frame, the texel, the mirror frame;
+//! - [`AXIS`] units of the table's two axes.
 //!
 //! How far the result moves with them is measured: each coordinate is moved both ways by its share, in float64, and the
 //! larger change counts. So the bound is as sharp for a mirror as for a Lambert lobe, and wide only where the light's
@@ -14,7 +15,7 @@
 
 use crate::{Cases, Rung};
 use arealight::gpu::{GpuCase, GpuLight};
-use arealight::table::share_above_surface;
+use arealight::table::{mirror_frame, share_above_surface};
 use arealight::{Horizon, LightTable};
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::hard::walk::walk;
@@ -29,15 +30,22 @@ const PRODUCT: f64 = 4.0;
 /// frame take three more.
 const ROW: f64 = 8.0;
 
+/// Units in an axis of the table: sine and cosine of the view, their product, and its place among the nodes.
+const AXIS: f64 = 3.0;
+
 /// A lobe in world directions.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Lobe {
     /// M⁻¹, directions of the world into cosine space.
     pub inverse: DMat3,
+    /// The same, where the table's axes are rounded, up and down.
+    pub moved: Vec<[DMat3; 2]>,
     /// The surface's normal, unit.
     pub normal: DVec3,
     /// What the form factor is multiplied with.
     pub albedo: f64,
+    /// How far it moves with the table's axes.
+    pub albedo_reach: f64,
     /// The part of the lobe above the surface, in (0, 1].
     pub above_surface: f64,
 }
@@ -61,8 +69,10 @@ impl Lobe {
         let normal = frame.from_surface(DVec3::Z);
         Self {
             inverse: to_surface(&frame),
+            moved: Vec::new(),
             normal,
             albedo: case.diffuse_albedo[0].into(),
+            albedo_reach: 0.0,
             above_surface: 1.0,
         }
     }
@@ -73,10 +83,29 @@ impl Lobe {
         let sample = table.lookup(case.roughness.into(), frame.cos_view());
         let (f0, f90) = (f64::from(case.f0[0]), f64::from(case.f90));
         let inverse = sample.inverse_by_f0(f0, f90);
+        let albedo = sample.specular_albedo(f0, f90);
+        // In the mirror frame of the view itself, whatever the axis
+        let cos_view = frame.cos_view().clamp(0.0, 1.0);
+        let at = |roughness: f64, axis: f64| {
+            let moved = table.lookup(roughness, 1.0 - axis);
+            let to_mirror = mirror_frame(1.0 - axis) * mirror_frame(cos_view).transpose();
+            let inverse = moved.inverse_by_f0(f0, f90) * to_mirror * to_surface(&frame);
+            (inverse, (moved.specular_albedo(f0, f90) - albedo).abs())
+        };
+        let (roughness, axis, unit) = (f64::from(case.roughness), 1.0 - cos_view, AXIS * UNIT);
+        let moved = [
+            [-unit, unit].map(|unit| at(roughness * (1.0 + unit), axis)),
+            // The axis is the square root
+            [-unit, unit].map(|unit| at(roughness, axis * (1.0 + 2.0 * unit))),
+        ];
+        let albedo_reach = moved.iter().map(|[a, b]| a.1.max(b.1)).sum();
+        let moved = moved.map(|both| both.map(|(inverse, _)| inverse)).into();
         Self {
             inverse: inverse * to_surface(&frame),
+            moved,
             normal: frame.from_surface(DVec3::Z),
-            albedo: sample.specular_albedo(f0, f90),
+            albedo,
+            albedo_reach,
             above_surface: share_above_surface(&inverse),
         }
     }
@@ -95,8 +124,18 @@ pub struct Seen {
 impl Seen {
     /// What the lobe sees of a case's light.
     pub fn new(given: &Cases, case: usize, lobe: Lobe, horizon: Horizon) -> Self {
+        Self::with_vertices(given, case, given.relative_vertices(case), lobe, horizon)
+    }
+
+    /// The same, with the vertices that were packed, as seen from the point: packing rounds each by a unit.
+    pub fn with_vertices(
+        given: &Cases,
+        case: usize,
+        polygon: Vec<DVec3>,
+        lobe: Lobe,
+        horizon: Horizon,
+    ) -> Self {
         let light = &given.lights[given.cases[case].light as usize];
-        let polygon = given.relative_vertices(case);
         // The center and the offset are rounded apart
         let center = wide(light.center);
         let distances = polygon.iter().map(|v| center.length() + v.distance(center)).collect();
@@ -151,6 +190,11 @@ impl Seen {
             reach += square.sqrt();
         }
 
+        // Move the table's axes
+        for moved in &self.lobe.moved {
+            reach += change(moved.each_ref().map(|inverse| self.factor_of(&self.transformed(inverse))));
+        }
+
         // Move each row, and the normal
         for (axis, row) in rows.iter().enumerate() {
             let mut square = 0.0;
@@ -175,10 +219,11 @@ impl Seen {
         let outline: Vec<[f64; 3]> = self.outline().iter().map(DVec3::to_array).collect();
         let walked = walk::<f64>([0.0; 3], &outline);
         let form_factor = self.form_factor();
-        let Lobe { albedo, above_surface, .. } = self.lobe;
+        let Lobe { albedo, albedo_reach, above_surface, .. } = self.lobe;
         let share = if self.horizon == Horizon::Both { above_surface } else { 1.0 };
         Judge {
             albedo,
+            albedo_reach,
             share,
             gain: share.recip(),
             form_factor,
@@ -194,6 +239,8 @@ impl Seen {
 pub struct Judge {
     /// What the form factor is multiplied with.
     pub albedo: f64,
+    /// How far that moves with roundings.
+    pub albedo_reach: f64,
     /// The part of the lobe that is left by clipping.
     pub share: f64,
     /// What the form factor is multiplied with, to keep the albedo.
@@ -224,7 +271,7 @@ impl Judge {
         let series = promises.of_share * self.arcs + promises.of_share_by_angle * self.arcs_by_angle;
         let walk = promises.backward + series + one_point;
         // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are multiplied
-        let factors = 4e-7 + 8.0 * UNIT;
+        let factors = self.albedo_reach + 4e-7 + 8.0 * UNIT;
         self.albedo * self.gain * (walk + self.reach) + factors * self.gain * self.form_factor
     }
 }

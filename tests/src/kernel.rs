@@ -1,0 +1,101 @@
+//! Kernels of the tests' own, compiled from `tests/kernels`.
+
+use crate::TestEngine;
+use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight_vk::{ComputePass, Resource};
+use bytemuck::Pod;
+
+const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
+    Binding { name, kind: BindingKind::StorageBuffer, access, content }
+}
+
+/// Single functions of the library over a list of arguments.
+pub static PROBE: Kernel = Kernel {
+    name: "probe",
+    spirv: include_bytes!("../spirv/probe.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        arealight::kernels::EVAL.bindings[0],
+        storage("arguments", Access::Read, "vec4[3] a call"),
+        storage("results", Access::Write, "vec4[4] a call"),
+    ],
+    constants: &[0],
+};
+
+/// The arcs of quads, summed without a guard: the sum, and the sum clamped.
+pub static UNGUARDED: Kernel = Kernel {
+    name: "unguarded",
+    spirv: include_bytes!("../spirv/unguarded.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        storage("vertices", Access::Read, "vec4[4] a quad"),
+        storage("results", Access::Write, "vec4 a quad"),
+    ],
+    constants: &[],
+};
+
+/// The functions that the probe kernel calls: its specialisation constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Function {
+    /// `arealight_surface_frame` of a normal a and a view b: tangent and cosine, bitangent and sine, normal.
+    Frame = 0,
+    /// `arealight_normalize_or` of a and b, and in w `arealight_power_of_two_scale` of a.w.
+    Common = 1,
+    /// `arealight_table_transform` at a normal a, a view b and a roughness a.w: its columns, with albedo, Schlick part and
+    /// alpha; and the texel of the second matrix.
+    Table = 2,
+    /// `arealight_ggx_*` of a view a, a light b, an alpha a.w and two random numbers c: f cos with density; half vector with
+    /// distribution; sample with visibility.
+    Ggx = 3,
+    /// `arealight_arc` of vertices a and b by a rung a.w: their directions, with the arc and the acute arc, and where it
+    /// crosses the horizon.
+    Arc = 4,
+    /// `arealight_is_bare` and `arealight_is_far` of a center a and an extent a.w.
+    Light = 5,
+}
+
+impl TestEngine {
+    /// Runs a kernel of the tests over `count` items, with `inputs` bound in turn and the results, `R` an item, at the
+    /// last binding.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn dispatch<R: Pod>(
+        &self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+        inputs: &[Resource],
+        count: usize,
+    ) -> Vec<R> {
+        let host = self.host();
+        // What is not written stays NaN
+        let unwritten = vec![u32::MAX; count * size_of::<R>() / 4];
+        let results = host.storage_buffer("results", &unwritten).expect("memory");
+        let resources = [inputs, &[Resource::buffer(results.handle())]].concat();
+        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        unsafe {
+            let pass = ComputePass::new(self.context(), kernel, specialization).expect("a pipeline");
+            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");
+            let set = pool.allocate(pass.set_layout()).expect("a set");
+            pass.write_set(set, &resources).expect("the resources fit");
+            let (constants, groups) = (count as u32, kernel.groups_for([count as u32, 1, 1]));
+            let bytes = bytemuck::bytes_of(&constants);
+            host.submit(|commands| pass.record(commands, set, bytes, groups).expect("it records"))
+                .expect("it runs");
+        }
+        results.download().expect("the results come back")
+    }
+
+    /// Calls a function of the library.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn probe(&self, function: Function, arguments: &[[[f32; 4]; 3]]) -> Vec<[[f32; 4]; 4]> {
+        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
+        let inputs = [self.table(), Resource::buffer(given.handle())];
+        self.dispatch(&PROBE, &[(0, function as u32)], &inputs, arguments.len())
+    }
+}

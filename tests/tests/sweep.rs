@@ -1,0 +1,219 @@
+//! A light sweeps through a floor, through a point that is shaded, and past the horizon, through the whole shade pass: each
+//! frame is what float64 says, and none jumps from the one before.
+
+use arealight::gpu::{GpuCase, GpuLight};
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, Horizon, LightTable, Material, PackedLights, PolygonLight};
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_tests::lobe::{Lobe, Seen};
+use arealight_tests::{Cases, Comparison, Path, Rung, TestEngine};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use glam::{DQuat, DVec3, Vec3};
+use std::sync::LazyLock;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+const FRAMES: usize = 1000;
+
+/// The surfaces of a frame: one that the light passes through, one beside it, and one that is seen at a grazing angle with
+/// the light behind it; each nearly a mirror, and rough.
+const SURFACES: [(Vec3, f32); 6] = [
+    (Vec3::new(0.0, 0.0, 0.0), 0.05),
+    (Vec3::new(0.0, 0.0, 0.0), 0.5),
+    (Vec3::new(1.0, 0.25, 0.0), 0.05),
+    (Vec3::new(1.0, 0.25, 0.0), 0.5),
+    (Vec3::new(-3.0, 0.5, 0.0), 0.05),
+    (Vec3::new(-3.0, 0.5, 0.0), 0.5),
+];
+
+/// Sees the far surface at 88 degrees, so that the light is in its mirror direction.
+const CAMERA: Vec3 = Vec3::new(-24.0, 0.5, 0.75);
+
+fn material(roughness: f32) -> Material {
+    Material {
+        base_color: Vec3::splat(0.5),
+        metalness: 0.5,
+        roughness,
+        dielectric_f0: Vec3::splat(0.04),
+        dielectric_f90: 1.0,
+    }
+}
+
+/// Where the light's middle is in a frame: from above the first surface through it, and down. On a grid, so that float32
+/// subtracts it without an error; the light stands still, and the surfaces move the other way.
+fn place(frame: usize) -> Vec3 {
+    let part = frame as f64 / (FRAMES - 1) as f64 * 2.0 - 1.0;
+    let grid = |x: f64| ((x * 4096.0).round() / 4096.0) as f32;
+    Vec3::new(grid(0.3 * part), grid(-0.2 * part), grid(-0.8 * part))
+}
+
+/// A tilted plate, or an arrow, about the origin.
+fn light(concave: bool) -> PolygonLight {
+    let flat: &[(f64, f64)] = if concave {
+        &[(-0.5, -0.4), (0.6, 0.0), (-0.5, 0.5), (-0.1, 0.3), (-0.2, 0.0)]
+    } else {
+        &[(-0.5, -0.4), (0.5, -0.4), (0.5, 0.4), (-0.5, 0.4)]
+    };
+    // Its front looks down, and to the far surface
+    let tilt = DQuat::from_rotation_y(0.5) * DQuat::from_rotation_x(0.3);
+    let vertices = flat.iter().rev().map(|&(x, y)| tilt * DVec3::new(x, y, 0.0)).collect();
+    PolygonLight { name: "sweeping".into(), vertices, radiance: Vec3::ONE, two_sided: concave }
+}
+
+/// What the pass is given: a row of pixels a frame.
+struct Sweep<'a> {
+    engine: &'a TestEngine,
+    packed: PackedLights,
+    positions: Vec<[f32; 4]>,
+    /// The same as cases, with the light as each pixel sees it.
+    given: Cases,
+    images: [Image; 4],
+}
+
+impl<'a> Sweep<'a> {
+    fn new(engine: &'a TestEngine, light: &PolygonLight) -> Self {
+        let packed = PackedLights::new(std::slice::from_ref(light), DVec3::ZERO).unwrap();
+        let pixels: Vec<(Vec3, Material)> = (0..FRAMES)
+            .flat_map(|frame| {
+                SURFACES.map(|(surface, roughness)| (surface - place(frame), material(roughness)))
+            })
+            .collect();
+        let mut given = Cases { vertices: packed.vertices.clone(), ..Cases::default() };
+        for (index, (position, material)) in pixels.iter().enumerate() {
+            let surface = material.surface();
+            given.lights.push(GpuLight {
+                center: (Vec3::from_array(packed.lights[0].center) - *position).to_array(),
+                ..packed.lights[0]
+            });
+            given.cases.push(GpuCase {
+                normal: [0.0, 0.0, 1.0],
+                roughness: material.roughness,
+                view: (CAMERA - *position).to_array(),
+                f90: surface.f90 as f32,
+                diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
+                light: index as u32,
+                f0: surface.f0.as_vec3().to_array(),
+                reserved: 0,
+            });
+        }
+        let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();
+        let normals: Vec<[f32; 4]> = pixels.iter().map(|(_, m)| [0.0, 0.0, 1.0, m.roughness]).collect();
+        let colors: Vec<[f32; 4]> =
+            pixels.iter().map(|(_, m)| m.base_color.extend(m.metalness).to_array()).collect();
+        let image = |name, usage| {
+            let format = vk::Format::R32G32B32A32_SFLOAT;
+            let extent = [SURFACES.len() as u32, FRAMES as u32];
+            engine.host().image(&ImageDescription { name, extent, layers: 1, format, usage }).unwrap()
+        };
+        let sampled = |name, texels: &[[f32; 4]]| {
+            let image = image(name, vk::ImageUsageFlags::SAMPLED);
+            image.upload(texels, Usage::COMPUTE_READ).unwrap();
+            image
+        };
+        let radiance = image("radiance", vk::ImageUsageFlags::STORAGE);
+        // What is not written stays NaN
+        radiance.upload(&vec![[f32::NAN; 4]; pixels.len()], Usage::COMPUTE_WRITE).unwrap();
+        let images = [
+            sampled("position", &positions),
+            sampled("normal", &normals),
+            sampled("colour", &colors),
+            radiance,
+        ];
+        Self { engine, packed, positions, given, images }
+    }
+
+    /// The red channel of every pixel.
+    fn shade(&self, rung: Rung) -> Vec<f32> {
+        let host = self.engine.host();
+        let effects = rung.effects(Effects::DIFFUSE | Effects::GLOSSY);
+        let options = ShadeOptions { effects, quality: rung.quality, ..ShadeOptions::all() };
+        let sampled =
+            |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
+        let [position, normal, color, radiance] = &self.images;
+        let lights = host.storage_buffer("lights", &self.packed.lights).unwrap();
+        let vertices = host.storage_buffer("vertices", &self.packed.vertices).unwrap();
+        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        unsafe {
+            let pass = ShadePass::new(self.engine.context(), options).unwrap();
+            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+            let set = pool.allocate(pass.set_layout()).unwrap();
+            let resources = ShadeResources {
+                table: self.engine.table(),
+                lights: Resource::buffer(lights.handle()),
+                light_vertices: Resource::buffer(vertices.handle()),
+                position: sampled(position),
+                normal: sampled(normal),
+                base_color: sampled(color),
+                specular: sampled(color),
+                radiance: Resource::StorageImage { view: radiance.view() },
+            };
+            pass.write_set(set, &resources).unwrap();
+            let frame = ShadeFrame {
+                size: [SURFACES.len() as u32, FRAMES as u32],
+                camera: CAMERA,
+                position_from_clip: None,
+                light_count: 1,
+            };
+            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
+        }
+        let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).unwrap();
+        texels.iter().map(|texel| texel[0]).collect()
+    }
+}
+
+fn check(concave: bool) {
+    let Some(engine) = TestEngine::new() else { return };
+    let sweep = Sweep::new(&engine, &light(concave));
+    let path = if concave { Path::Walk } else { Path::Quad };
+    for horizon in [Horizon::Cosine, Horizon::Both] {
+        let judges: Vec<_> = (0..sweep.given.cases.len())
+            .map(|pixel| {
+                let case = &sweep.given.cases[pixel];
+                let see = |lobe: Lobe, horizon| Seen::new(&sweep.given, pixel, lobe, horizon).judge();
+                (see(Lobe::lambert(case), Horizon::Cosine), see(Lobe::glossy(&TABLE, case), horizon))
+            })
+            .collect();
+        let expected: Vec<f64> = judges.iter().map(|(d, g)| d.expected() + g.expected()).collect();
+        for rung in Rung::of(&[path], &[horizon]) {
+            let found = sweep.shade(rung);
+            let bounds: Vec<f64> = judges.iter().map(|(d, g)| d.bound(rung) + g.bound(rung)).collect();
+            let mut frames = Comparison::new(format!("frames, {rung}"));
+            let mut later = Comparison::new("a frame as the next one");
+            let mut jumps = Comparison::new(format!("jumps, {rung}"));
+            for pixel in 0..found.len() {
+                let place = || format!("pixel {pixel}: {:?}", sweep.positions[pixel]);
+                frames.add(found[pixel].into(), expected[pixel], bounds[pixel], place);
+                let next = pixel + SURFACES.len();
+                if next >= found.len() {
+                    continue;
+                }
+                later.add(found[pixel].into(), expected[next], bounds[pixel], String::new);
+                let jump = f64::from(found[next]) - f64::from(found[pixel]);
+                jumps.add(jump, expected[next] - expected[pixel], bounds[pixel] + bounds[next], place);
+            }
+            frames.assert_all();
+            jumps.assert_all();
+            assert!(later.failures() > FRAMES / 2, "the twin: {} noticed", later.failures());
+        }
+        // The light does pass through the first surface: from one frame to the next it is gone, or seen from its back
+        let jump = |surface: usize| {
+            let column = expected.iter().skip(surface).step_by(SURFACES.len());
+            column.clone().zip(column.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        println!("{horizon:?}: largest steps of the truth {:?}", [0, 1, 2, 3, 4, 5].map(jump));
+        assert!(jump(1) > 0.05, "contact: {}", jump(1));
+        // Beside the light, a rough surface changes by a few times a step's part of the way
+        assert!(jump(3) < 0.02, "no contact: {}", jump(3));
+    }
+}
+
+#[test]
+fn a_quad_sweeps_through_a_floor() {
+    check(false);
+}
+
+#[test]
+fn a_concave_light_of_two_sides_sweeps_through_a_floor() {
+    check(true);
+}
