@@ -69,6 +69,9 @@ impl<'a> Property<'a> {
 
     /// Asserts for every rung and group that both sides of `relation` are the same, but for the bounds of the group's
     /// form factors.
+    ///
+    /// # Panics
+    /// Where they are not.
     pub fn assert(&self, engine: &TestEngine, rungs: &[Rung], relation: impl Fn(&[f64]) -> [f64; 2]) {
         for &rung in rungs {
             let mut comparison = Comparison::new(format!("{}, {rung}", self.what));
@@ -81,6 +84,9 @@ impl<'a> Property<'a> {
     }
 
     /// The twin of [`Property::assert`]: a relation that does not hold is noticed in more than this part of the groups.
+    ///
+    /// # Panics
+    /// Where it is not.
     pub fn assert_fails(
         &self,
         engine: &TestEngine,

@@ -146,13 +146,17 @@ fn scaling_by_a_power_of_two_changes_no_bit(engine: &TestEngine, table: Option<&
                 let mut vertices = outline(&mut random, rung.path, index);
                 // Some are small and far, for the difference form
                 let far = DVec3::Z * 10.0_f64.powf(random.between(-2.0, 4.0));
-                vertices.iter_mut().for_each(|v| *v += if index % 3 == 0 { far } else { DVec3::ZERO });
+                for vertex in &mut vertices {
+                    *vertex += if index % 3 == 0 { far } else { DVec3::ZERO };
+                }
                 random_point(&mut random, table, vertices)
             })
             .collect();
         let scaled = |scale: f64| {
             let mut points = points.clone();
-            points.iter_mut().for_each(|p| p.light.vertices.iter_mut().for_each(|v| *v *= scale));
+            for vertex in points.iter_mut().flat_map(|point| &mut point.light.vertices) {
+                *vertex *= scale;
+            }
             engine.run(&Cases::new(&points), rung.effects(lobes), rung.quality)
         };
         let before = scaled(1.0);

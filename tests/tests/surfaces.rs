@@ -129,16 +129,17 @@ fn family(seed: usize) -> Vec<EvalPoint> {
 #[test]
 fn hard_surfaces_are_as_in_float64_clipped_once() {
     let Some(engine) = TestEngine::new() else { return };
-    for seed in 0..FAMILIES.len() - 1 {
-        check(&engine, &TABLE, FAMILIES[seed].0, &family(seed), Horizon::Cosine);
+    // The last one takes its time, and is below
+    for (seed, (what, _)) in FAMILIES[..5].iter().enumerate() {
+        check(&engine, &TABLE, what, &family(seed), Horizon::Cosine);
     }
 }
 
 #[test]
 fn hard_surfaces_are_as_in_float64_clipped_twice() {
     let Some(engine) = TestEngine::new() else { return };
-    for seed in 0..FAMILIES.len() {
-        check(&engine, &TABLE, FAMILIES[seed].0, &family(seed), Horizon::Both);
+    for (seed, (what, _)) in FAMILIES.iter().enumerate() {
+        check(&engine, &TABLE, what, &family(seed), Horizon::Both);
     }
 }
 

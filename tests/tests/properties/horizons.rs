@@ -81,7 +81,9 @@ pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, rungs: &[Rung])
             // From just below, by more than float32's rounding, on down
             let top = vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
             let depth = 10.0_f64.powf(random.between(-5.0, 0.0));
-            vertices.iter_mut().for_each(|v| v.z -= top + depth);
+            for vertex in &mut vertices {
+                vertex.z -= top + depth;
+            }
             let cos_view: f64 = random.between(0.0, 0.4);
             let azimuth = DQuat::from_rotation_z(random.between(0.0, 6.3));
             let view = azimuth * DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
@@ -96,7 +98,7 @@ pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, rungs: &[Rung])
         let once = Rung::of(&[rung.path], &[Horizon::Cosine])[0];
         let leaks = engine.factors(&given, Effects::GLOSSY, once);
         let many = leaks.iter().filter(|leak| **leak > 1e-4).count();
-        assert!(many > COUNT / 10, "{once}: {many} leak");
+        assert!(many > COUNT / 20, "{once}: {many} leak");
     }
 }
 

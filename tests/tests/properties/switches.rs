@@ -47,13 +47,13 @@ fn assert_continuous(engine: &TestEngine, property: &Property<'_>, rung: Rung) {
     assert!(changed > COUNT / 2, "the twin: the form did change: {changed}");
 }
 
-/// `arealight_anchor` takes a light as distant whose sphere's radius is twice its distance, at most.
+/// `arealight_anchor` takes a light as distant whose sphere's radius is half its distance, at most.
 pub fn the_difference_form_begins_without_a_jump(engine: &TestEngine) {
     for path in PATHS {
         for rung in Rung::of(&[path], &[Horizon::Cosine]) {
             let form_factor = rung.quality.form_factor;
             if matches!(form_factor, FormFactor::ExactDifference | FormFactor::FastDifference) {
-                assert_continuous(engine, &pairs(rung, 41, 1.5, [2.0 - 1e-6, 2.0 + 1e-6], 0.0), rung);
+                assert_continuous(engine, &pairs(rung, 41, 0.6, [0.5 - 1e-6, 0.5 + 1e-6], 0.0), rung);
             }
         }
     }
