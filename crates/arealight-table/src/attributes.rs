@@ -30,6 +30,8 @@ pub mod name {
     pub const MADE_BY: &str = "arealight.made_by";
     pub const FIT_ERROR: &str = "arealight.fit_error";
     pub const HASH: &str = "arealight.hash";
+    /// Of formats whose layers are always three.
+    pub const MATRICES: &str = "arealight.matrices";
 }
 
 /// An attribute's value.
@@ -47,6 +49,11 @@ impl Value {
             Self::Number(number) => number.to_string(),
         }
     }
+
+    /// The error for an attribute of this value.
+    pub fn unexpected(self, attribute: &'static str, expected: &str) -> ReadError {
+        ReadError::Attribute { attribute, found: printable(&self.into_text()), expected: expected.to_owned() }
+    }
 }
 
 /// The attributes that are left after those which say what the texels mean were found to be as expected.
@@ -60,21 +67,25 @@ pub struct Attributes {
 }
 
 impl Attributes {
-    /// Reads the attributes, in the order in which they matter. `get` finds one by its name.
-    pub fn read(get: impl Fn(&str) -> Option<Value>) -> Result<Self, ReadError> {
+    /// Reads the attributes, in the order in which they matter. `oldest` is the first version that the file's format had,
+    /// `get` finds an attribute by its name.
+    pub fn read(oldest: i32, get: impl Fn(&str) -> Option<Value>) -> Result<Self, ReadError> {
         let find = |attribute| get(attribute).ok_or(ReadError::MissingAttribute { attribute });
         let text = |attribute| match find(attribute)? {
             Value::Text(text) => Ok(text),
-            other => Err(unexpected(attribute, other, "a string")),
+            other => Err(other.unexpected(attribute, "a string")),
         };
         let expect = |attribute, expected: &str| match find(attribute)? {
             Value::Text(text) if text == expected => Ok(()),
-            other => Err(unexpected(attribute, other, expected)),
+            other => Err(other.unexpected(attribute, expected)),
         };
         expect(name::FORMAT, FORMAT)?;
         let version = match find(name::VERSION)? {
-            Value::Number(version @ 1..=VERSION) => version,
-            other => return Err(unexpected(name::VERSION, other, &format!("1 to {VERSION}"))),
+            Value::Number(version) if (oldest..=VERSION).contains(&version) => version,
+            other if oldest == VERSION => {
+                return Err(other.unexpected(name::VERSION, &VERSION.to_string()));
+            }
+            other => return Err(other.unexpected(name::VERSION, &format!("{oldest} to {VERSION}"))),
         };
         expect(name::AXES, AXES)?;
         expect(name::FRAME, FRAME)?;
@@ -152,10 +163,6 @@ pub fn hash(table: &LightTable) -> String {
         let _ = write!(text, "{byte:02x}");
     }
     text
-}
-
-fn unexpected(attribute: &'static str, value: Value, expected: &str) -> ReadError {
-    ReadError::Attribute { attribute, found: printable(&value.into_text()), expected: expected.to_owned() }
 }
 
 /// Text of a file that may be anybody's: it must not steer the terminal, nor repeat a book that someone stored there.

@@ -9,7 +9,7 @@ use arealight::table::MAX_SIZE;
 #[non_exhaustive]
 pub enum ReadError {
     /// The file begins as none of the formats does.
-    #[error("not an OpenEXR file; a light table is one, written by `arealight fit`")]
+    #[error("neither OpenEXR nor KTX2 nor DDS, in which light tables are kept")]
     UnknownFormat,
     /// The file is damaged, cut short, or uses what the reader does not know.
     #[error("{part}: damaged or unsupported {format} data: {reason}")]
@@ -22,7 +22,10 @@ pub enum ReadError {
         reason: String,
     },
     /// An attribute is missing: the file is some other image.
-    #[error("attribute `{attribute}` is missing; a light table has it (is this another image?)")]
+    #[error(
+        "attribute `{attribute}` is missing; a light table has it (is this another image? Tables in the convention of \
+         Heitz et al. 2016 are two images: convert them by `arealight table convert`)"
+    )]
     MissingAttribute {
         /// The attribute.
         attribute: &'static str,
@@ -54,8 +57,20 @@ pub enum ReadError {
         /// How many there may be.
         expected: &'static [usize],
     },
+    /// A field of the header says something that no light table has.
+    #[error("{format} header: `{field}` is {found}; expected {expected}")]
+    Field {
+        /// The format by which the file begins.
+        format: Format,
+        /// The field, by its name in the format's specification.
+        field: &'static str,
+        /// What the file says.
+        found: String,
+        /// What it must say.
+        expected: &'static str,
+    },
     /// A layer has other channels than it should.
-    #[error("layer `{layer}`: channels `{found}`; expected `{expected}`, 32-bit float, not subsampled")]
+    #[error("layer `{layer}`: channels `{found}`; expected `{expected}`, not subsampled")]
     Channels {
         /// The layer.
         layer: &'static str,
@@ -122,6 +137,53 @@ pub enum FileError {
     /// The file does not hold a table.
     #[error(transparent)]
     Read(#[from] ReadError),
+}
+
+/// Why a table cannot be written.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum WriteError {
+    /// The file's name does not say what to write.
+    #[error("extension `{extension}`: tables are written as .exr, .ktx2, .dds, .h (C) or .glsl")]
+    Extension {
+        /// What the file's name ends with.
+        extension: String,
+    },
+    /// The format has another precision.
+    #[error("{format} tables are written in {bits}-bit floats only")]
+    Precision {
+        /// The format.
+        format: &'static str,
+        /// The bits that it has.
+        bits: u32,
+    },
+    /// The table is too large for constants.
+    #[error("{size} nodes a side: GLSL constants hold at most {}; resample it", crate::MAX_GLSL_SIZE)]
+    TooLarge {
+        /// Nodes a side.
+        size: u32,
+    },
+    /// What the table says of itself is too long.
+    #[error("{bytes} bytes of attributes; at most {} are read back", crate::texture::MAX_KEY_VALUE_BYTES)]
+    Attributes {
+        /// Their length.
+        bytes: usize,
+    },
+    /// Rounded to 16 bits, the texels make no table.
+    #[error("in 16-bit floats, {0}; write 32-bit ones")]
+    Table(#[from] TableError),
+}
+
+/// Why a table cannot be saved.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SaveError {
+    /// The table cannot be written as the path asks.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] std::io::Error),
 }
 
 /// Numbers as `2 or 3`.

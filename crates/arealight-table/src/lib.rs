@@ -22,14 +22,25 @@
 //! | `arealight.hash` | string | the texels' [`hash`] |
 //! | `arealight.fit_error` | string | how far the table is from its BRDF, in words; may be missing |
 //!
+//! Engines take the same table as KTX2 or DDS, a 2D array of three layers in 16 or 32-bit floats (in a table of one matrix
+//! the third repeats the first) with these attributes as key/value data and `arealight.matrices`, 1 or 2; in DDS they
+//! follow the texels. C and GLSL take it as source text. [`read_published`] reads tables in the convention of Heitz
+//! et al. 2016. A file's format is told by its content.
+//!
 //! A file whose axes, frame or normalisation differ would be read without complaint and shade wrongly, so
 //! they are compared word by word; so is the hash. Files are treated as hostile: headers are checked before anything
 //! is allocated for texels, and every refusal says what was found, where, and what was expected.
 
 mod attributes;
+mod convert;
+mod dds;
 mod error;
 mod format;
+mod ktx;
 mod open_exr;
+mod published;
+mod source;
+mod texture;
 
 use arealight::LightTable;
 use std::fs::File;
@@ -37,8 +48,11 @@ use std::io::Read;
 use std::path::Path;
 
 pub use attributes::{AXES, FORMAT, FRAME, NORMALISATION, VERSION, hash};
-pub use error::{FileError, ReadError};
-pub use format::Format;
+pub use convert::{resampled, rounded};
+pub use error::{FileError, ReadError, SaveError, WriteError};
+pub use format::{Format, Precision, Target};
+pub use published::{Adjusted, Published, PublishedError, load_published, read_published};
+pub use source::MAX_GLSL_SIZE;
 
 /// The largest file that is read: the largest table, uncompressed, and a header.
 pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 48 + (1 << 20);
@@ -70,6 +84,8 @@ impl TableFile {
     pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
         match Format::detect(bytes).ok_or(ReadError::UnknownFormat)? {
             Format::Exr => open_exr::read(bytes),
+            Format::Ktx2 => ktx::read(bytes)?.table(),
+            Format::Dds => dds::read(bytes)?.table(),
         }
     }
 
@@ -83,9 +99,37 @@ impl TableFile {
 
     /// The file's bytes; equal tables make equal bytes.
     ///
-    /// Characters that EXR's Latin-1 lacks become `?`.
-    pub fn write(&self) -> Vec<u8> {
-        open_exr::write(self)
+    /// Characters of attributes that the format lacks (EXR: those beyond Latin-1) become `?`.
+    ///
+    /// # Errors
+    /// [`WriteError`] if the table is too large for the target, or its numbers are for the precision.
+    pub fn write(&self, target: Target) -> Result<Vec<u8>, WriteError> {
+        // Round first: the hash is of the numbers in the file
+        let table = rounded(&self.table, target.precision())?;
+        let file = Self { table, fit_error: self.fit_error.clone() };
+        let attributes = texture::encode_key_values(&file, &[]).len();
+        if attributes > texture::MAX_KEY_VALUE_BYTES / 2 {
+            return Err(WriteError::Attributes { bytes: attributes });
+        }
+        Ok(match target {
+            Target::Exr => open_exr::write(&file),
+            Target::Ktx2(precision) => ktx::write(&file, precision),
+            Target::Dds(precision) => dds::write(&file, precision),
+            Target::CHeader(precision) => source::c_header(&file, precision).into_bytes(),
+            Target::Glsl if file.table.size() > MAX_GLSL_SIZE => {
+                return Err(WriteError::TooLarge { size: file.table.size() });
+            }
+            Target::Glsl => source::glsl(&file).into_bytes(),
+        })
+    }
+
+    /// Writes a file, of the format that its extension stands for, see [`Target::of_path`].
+    ///
+    /// # Errors
+    /// [`SaveError`] if the path does not say what to write, or the file cannot be written.
+    pub fn save(&self, path: &Path, precision: Option<Precision>) -> Result<(), SaveError> {
+        let bytes = self.write(Target::of_path(path, precision)?)?;
+        Ok(std::fs::write(path, bytes)?)
     }
 }
 
@@ -109,15 +153,15 @@ pub fn load(path: &Path) -> Result<LightTable, FileError> {
 ///
 /// Characters of the description that Latin-1 lacks become `?`, for EXR's strings hold nothing else.
 pub fn write(table: &LightTable) -> Vec<u8> {
-    TableFile { table: table.clone(), fit_error: None }.write()
+    open_exr::write(&TableFile { table: table.clone(), fit_error: None })
 }
 
-/// Writes a table to an OpenEXR file.
+/// Writes a table to a file, of the format that its extension stands for, see [`Target::of_path`].
 ///
 /// # Errors
-/// [`std::io::Error`] if the file cannot be written.
-pub fn save(table: &LightTable, path: &Path) -> std::io::Result<()> {
-    std::fs::write(path, write(table))
+/// [`SaveError`] if the path does not say what to write, or the file cannot be written.
+pub fn save(table: &LightTable, path: &Path) -> Result<(), SaveError> {
+    TableFile { table: table.clone(), fit_error: None }.save(path, None)
 }
 
 /// The bytes of a file that is not larger than any table.

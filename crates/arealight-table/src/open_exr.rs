@@ -4,7 +4,7 @@ mod canonical;
 mod reader;
 mod writer;
 
-pub use reader::read;
+pub use reader::{read, read_image};
 pub use writer::write;
 
 /// A layer of a table file.
@@ -17,3 +17,5 @@ struct Layer {
 const MATRIX: Layer = Layer { name: "matrix", channels: &["R", "G", "B", "A"] };
 const MAGNITUDE: Layer = Layer { name: "magnitude", channels: &["R", "G"] };
 const SCHLICK_MATRIX: Layer = Layer { name: "schlick_matrix", channels: &["R", "G", "B", "A"] };
+/// The layer of an image that is no table file.
+const IMAGE: Layer = Layer { name: "image", channels: &["R", "G", "B", "A"] };

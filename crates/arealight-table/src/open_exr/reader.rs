@@ -7,9 +7,10 @@ use exr::meta::BlockDescription;
 use exr::meta::attribute::{AttributeValue, SampleType, Text};
 use exr::meta::header::Header;
 use exr::prelude::{Compression, Vec2};
+use half::f16;
 use std::io::Cursor;
 
-use super::{Layer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
+use super::{IMAGE, Layer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
 use crate::attributes::{Attributes, Value};
 use crate::{Format, ReadError, TableFile};
 
@@ -18,17 +19,17 @@ pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
     // Read the headers alone, and check all that they say
     let reader = exr::block::read(Cursor::new(file), true).map_err(|error| damaged("header", &error))?;
     let headers = reader.headers();
-    let attributes = Attributes::read(|name| attribute(headers, name))?;
+    let attributes = Attributes::read(1, |name| attribute(headers, name))?;
     let (matrix_index, matrix_header) = find_layer(headers, &MATRIX)?;
     let (magnitude_index, magnitude_header) = find_layer(headers, &MAGNITUDE)?;
     if !attributes.layer_counts().contains(&headers.len()) {
         return Err(ReadError::LayerCount { count: headers.len(), expected: attributes.layer_counts() });
     }
     let schlick = if headers.len() == 3 { Some(find_layer(headers, &SCHLICK_MATRIX)?) } else { None };
-    let size = check_layer(matrix_header, &MATRIX, None)?;
-    check_layer(magnitude_header, &MAGNITUDE, Some(size))?;
+    let size = check_layer(matrix_header, &MATRIX, None, &[SampleType::F32])?;
+    check_layer(magnitude_header, &MAGNITUDE, Some(size), &[SampleType::F32])?;
     if let Some((_, header)) = schlick {
-        check_layer(header, &SCHLICK_MATRIX, Some(size))?;
+        check_layer(header, &SCHLICK_MATRIX, Some(size), &[SampleType::F32])?;
     }
 
     // Read the texels into what the headers call for
@@ -58,6 +59,26 @@ pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
     attributes.table(size as u32, matrix.finish()?, magnitude.finish()?, schlick)
 }
 
+/// The texels a side and the texels of an image of one layer, of whatever name, with channels R, G, B and A.
+pub fn read_image(file: &[u8]) -> Result<(u32, Vec<[f32; 4]>), ReadError> {
+    let reader = exr::block::read(Cursor::new(file), true).map_err(|error| damaged("header", &error))?;
+    let [header] = reader.headers() else {
+        return Err(ReadError::LayerCount { count: reader.headers().len(), expected: &[1] });
+    };
+    let size = check_layer(header, &IMAGE, None, &[SampleType::F16, SampleType::F32])?;
+    let mut texels = Texels::<4>::new(&IMAGE, header, size);
+    reader
+        .all_chunks(true)
+        .and_then(|chunks| {
+            chunks.decompress_sequential(true, |_, block| {
+                texels.insert(&block);
+                Ok(())
+            })
+        })
+        .map_err(|error| damaged("texels", &error))?;
+    Ok((size as u32, texels.finish()?))
+}
+
 fn damaged(part: &'static str, error: &exr::error::Error) -> ReadError {
     ReadError::Damaged { format: Format::Exr, part, reason: error.to_string() }
 }
@@ -82,8 +103,13 @@ fn find_layer<'a>(headers: &'a [Header], layer: &Layer) -> Result<(usize, &'a He
     found.next().ok_or(ReadError::MissingLayer { layer: layer.name })
 }
 
-/// Checks a layer's header and returns its size.
-fn check_layer(header: &Header, layer: &Layer, size: Option<usize>) -> Result<usize, ReadError> {
+/// Checks a layer's header and returns its size. All channels have one and the same of the types.
+fn check_layer(
+    header: &Header,
+    layer: &Layer,
+    size: Option<usize>,
+    types: &[SampleType],
+) -> Result<usize, ReadError> {
     let Vec2(width, height) = header.layer_size;
     let is_square = width == height && (2..=MAX_SIZE as usize).contains(&width);
     if !is_square || size.is_some_and(|size| size != width) {
@@ -102,7 +128,8 @@ fn check_layer(header: &Header, layer: &Layer, size: Option<usize>) -> Result<us
     let list = &header.channels.list;
     let is_expected = |channel: &exr::meta::attribute::ChannelDescription| {
         layer.channels.iter().any(|&name| channel.name.as_slice() == name.as_bytes())
-            && channel.sample_type == SampleType::F32
+            && types.contains(&channel.sample_type)
+            && channel.sample_type == list[0].sample_type
             && channel.sampling == Vec2(1, 1)
     };
     // Names are unique, as the header's own check has shown, so that counting them is enough
@@ -112,7 +139,11 @@ fn check_layer(header: &Header, layer: &Layer, size: Option<usize>) -> Result<us
             .take(8)
             .map(|channel| format!("{} {:?}", channel.name, channel.sample_type))
             .collect();
-        let expected = if layer.channels.len() == 4 { "R G B A" } else { "R G" };
+        let expected = match (layer.channels.len(), types) {
+            (2, _) => "R G, 32-bit float",
+            (_, [_]) => "R G B A, 32-bit float",
+            _ => "R G B A, all 16-bit or all 32-bit float",
+        };
         return Err(ReadError::Channels { layer: layer.name, found: found.join(", "), expected });
     }
     Ok(width)
@@ -124,6 +155,8 @@ struct Texels<const N: usize> {
     size: usize,
     /// For each channel in the file's order, its place in a texel.
     places: Vec<usize>,
+    /// Of all channels.
+    sample_type: SampleType,
     values: Vec<[f32; N]>,
     /// Which scan lines have come.
     lines: Vec<bool>,
@@ -138,6 +171,7 @@ impl<const N: usize> Texels<N> {
             layer: layer.name,
             size,
             places,
+            sample_type: header.channels.list[0].sample_type,
             values: vec![[0.0; N]; size * size],
             lines: vec![false; size],
         }
@@ -148,15 +182,20 @@ impl<const N: usize> Texels<N> {
     fn insert(&mut self, block: &UncompressedBlock) {
         let Vec2(left, top) = block.index.pixel_position;
         let Vec2(width, height) = block.index.pixel_size;
-        let line_bytes = self.size * N * 4;
+        let sample_bytes = self.sample_type.bytes_per_sample();
+        let line_bytes = self.size * N * sample_bytes;
         if left != 0 || width != self.size || block.data.len() != height * line_bytes {
             return;
         }
         for (y, line) in (top..self.size).zip(block.data.chunks_exact(line_bytes)) {
-            for (&place, samples) in self.places.iter().zip(line.chunks_exact(self.size * 4)) {
+            for (&place, samples) in self.places.iter().zip(line.chunks_exact(self.size * sample_bytes)) {
                 let texels = &mut self.values[y * self.size..(y + 1) * self.size];
-                for (texel, sample) in texels.iter_mut().zip(samples.chunks_exact(4)) {
-                    texel[place] = f32::from_ne_bytes([sample[0], sample[1], sample[2], sample[3]]);
+                for (texel, sample) in texels.iter_mut().zip(samples.chunks_exact(sample_bytes)) {
+                    texel[place] = match *sample {
+                        [a, b] => f16::from_ne_bytes([a, b]).to_f32(),
+                        [a, b, c, d] => f32::from_ne_bytes([a, b, c, d]),
+                        _ => f32::NAN,
+                    };
                 }
             }
             self.lines[y] = true;

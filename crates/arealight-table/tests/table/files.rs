@@ -1,7 +1,7 @@
 //! Tables to files and back.
 
 use arealight::{LightTable, TableDescription};
-use arealight_table::{FileError, ReadError, TableFile, hash, load, read, save, write};
+use arealight_table::{FileError, ReadError, TableFile, Target, hash, load, read, save, write};
 use exr::prelude::{AttributeValue, Compression};
 
 use crate::draft::{Draft, table, table_of_two};
@@ -20,7 +20,7 @@ fn a_table_comes_back_bit_for_bit() {
 fn the_fit_error_comes_back() {
     let fit_error = Some("a mean of 1e-3".to_owned());
     let file = TableFile { table: table(3), fit_error };
-    assert_eq!(TableFile::read(&file.write()).unwrap(), file);
+    assert_eq!(TableFile::read(&file.write(Target::Exr).unwrap()).unwrap(), file);
     assert_eq!(TableFile::read(&write(&table(3))).unwrap().fit_error, None);
 }
 

@@ -1,0 +1,118 @@
+//! Tables as source text, for those who embed them.
+
+use std::fmt::Write as _;
+
+use crate::texture::LAYERS;
+use crate::{Precision, TableFile, hash};
+use half::f16;
+
+/// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts; drivers
+/// keep large ones in memory, where a texture would be faster.
+pub const MAX_GLSL_SIZE: u32 = 64;
+
+/// A table as a C header: one array in the layout of the GPU image.
+pub fn c_header(file: &TableFile, precision: Precision) -> String {
+    let size = file.table.size();
+    let (include, element, note) = match precision {
+        Precision::Half => ("#include <stdint.h>\n\n", "uint16_t", "bits of 16-bit floats (RGBA16F)"),
+        Precision::Single => ("", "float", "32-bit floats (RGBA32F)"),
+    };
+    let mut text = format!(
+        "#ifndef AREALIGHT_TABLE_H\n#define AREALIGHT_TABLE_H\n\n/*\n\
+         {}\
+         \n  AREALIGHT_TABLE_LAYERS layers of AREALIGHT_TABLE_SIZE rows of AREALIGHT_TABLE_SIZE texels of 4 channels,\n  \
+         {note}, tightly packed: upload it to a 2D array image as it is.\n*/\n\n\
+         {include}#define AREALIGHT_TABLE_SIZE {size}\n#define AREALIGHT_TABLE_LAYERS {LAYERS}\n\n\
+         static const {element} arealight_table[AREALIGHT_TABLE_LAYERS * AREALIGHT_TABLE_SIZE * AREALIGHT_TABLE_SIZE * 4] = {{\n",
+        convention(file, "  "),
+    );
+    for texel in file.table.texels() {
+        for (channel, number) in texel.into_iter().enumerate() {
+            let separator = if channel == 3 { "\n" } else { " " };
+            let _ = match precision {
+                Precision::Half => write!(text, "0x{:04x},{separator}", f16::from_f32(number).to_bits()),
+                Precision::Single => write!(text, "{number:?}f,{separator}"),
+            };
+        }
+    }
+    text.push_str("};\n\n#endif\n");
+    text
+}
+
+/// A table as GLSL that needs no texture: the functions of the bridge over an array of constants.
+pub fn glsl(file: &TableFile) -> String {
+    let table = &file.table;
+    let size = table.size();
+    let pair =
+        |a: f32, b: f32| u32::from(f16::from_f32(a).to_bits()) | u32::from(f16::from_f32(b).to_bits()) << 16;
+    let mut words = Vec::new();
+    let mut push_matrix = |texels: &[[f32; 4]]| {
+        let at = words.len();
+        words.extend(texels.iter().flat_map(|texel| [pair(texel[0], texel[1]), pair(texel[2], texel[3])]));
+        at
+    };
+    push_matrix(table.matrix());
+    // In a table of one matrix, that one again
+    let schlick = table.schlick_matrix().map_or(0, &mut push_matrix);
+    let magnitude = words.len();
+    words.extend(table.magnitude().iter().map(|texel| pair(texel[0], texel[1])));
+
+    let count = words.len();
+    let mut text = format!(
+        "#ifndef AREALIGHT_TABLE_CONSTANT_GLSL\n#define AREALIGHT_TABLE_CONSTANT_GLSL\n\n\
+         // The bridge to the table, for a shader without a table texture: include this after\n\
+         // arealight/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a side is for a texture.\n//\n\
+         {}\n\
+         const uint AREALIGHT_TABLE_WORDS[{count}] = uint[{count}](\n",
+        count * 4,
+        convention(file, "// "),
+    );
+    for (row, line) in words.chunks(8).enumerate() {
+        let numbers: Vec<String> = line.iter().map(|word| format!("0x{word:08x}u")).collect();
+        let end = if (row + 1) * 8 < count { ",\n" } else { ");\n" };
+        let _ = write!(text, "    {}{end}", numbers.join(", "));
+    }
+    let _ = write!(
+        text,
+        "\nint arealight_bridge_table_size() {{\n    return {size};\n}}\n\n\
+         vec4 arealight_bridge_table(int layer, ivec2 texel) {{\n    \
+         int node = texel.y * {size} + texel.x;\n    \
+         if (layer == 1) return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[{magnitude} + node]), 0.0, 0.0);\n    \
+         int word = (layer == 2 ? {schlick} : 0) + 2 * node;\n    \
+         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[word]), unpackHalf2x16(AREALIGHT_TABLE_WORDS[word + 1]));\n}}\n\n\
+         #endif\n"
+    );
+    text
+}
+
+/// What the numbers mean, as lines of a comment.
+fn convention(file: &TableFile, prefix: &str) -> String {
+    let table = &file.table;
+    // Text that may be anybody's must not end the comment
+    let safe = |text: &str| text.escape_default().to_string().replace("*/", "* /");
+    let mut lines = vec![
+        "Arealight's table of transformed cosines. Generated: do not edit.".to_owned(),
+        String::new(),
+        format!("BRDF: {}", safe(&table.description().brdf)),
+        format!("Made by: {}", safe(&table.description().made_by)),
+        format!("Texels: {}", hash(table)),
+        String::new(),
+        "Texel (x, y) is for roughness = x / (size - 1), alpha = roughness^2 and for".to_owned(),
+        "sqrt(1 - cos theta_view) = y / (size - 1); rows follow each other. Between texels: bilinear."
+            .to_owned(),
+        "Layer 0, matrix: (q00, q02, q20, q22). A direction goes into cosine space by".to_owned(),
+        "    |       q00  0        q02 |   | cos t  0  sin t |".to_owned(),
+        "    |         0  1          0 | * |     0  1      0 |      for a view (sin t, 0, cos t)".to_owned(),
+        "    | alpha q20  0  alpha q22 |   | -sin t 0  cos t |      in the surface frame".to_owned(),
+        "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, 0, 0).".to_owned(),
+        if table.schlick_matrix().is_some() {
+            "Layer 2: the matrix for the lobe of Schlick's weight, as layer 0.".to_owned()
+        } else {
+            "Layer 2: layer 0 again; this table has one matrix for all reflectances.".to_owned()
+        },
+    ];
+    if let Some(error) = &file.fit_error {
+        lines.insert(4, format!("Error: {}", safe(error)));
+    }
+    lines.iter().map(|line| format!("{prefix}{line}").trim_end().to_owned() + "\n").collect()
+}

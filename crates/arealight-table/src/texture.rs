@@ -1,0 +1,130 @@
+//! Images of four channels as texture formats hold them, and tables in them.
+
+use crate::attributes::{Attributes, Value, name, printable, texts};
+use crate::{Format, Precision, ReadError, TableFile, VERSION};
+use arealight::table::MAX_SIZE;
+use half::f16;
+use ktx2::KeyValueDataIterator;
+
+/// The layers of a table: matrix, magnitude, Schlick's matrix; in a table of one matrix that one again.
+pub const LAYERS: u32 = 3;
+
+/// The most bytes of attributes that are searched: ours take about one thousand.
+pub const MAX_KEY_VALUE_BYTES: usize = 1 << 16;
+
+/// An image in a file's bytes, whose sizes were checked.
+#[derive(Debug)]
+pub struct Texture<'a> {
+    pub precision: Precision,
+    /// Texels a side.
+    pub size: u32,
+    pub layers: u32,
+    /// Just as long as the above call for.
+    pub texels: &'a [u8],
+    /// Key/value data as KTX2 has it.
+    pub key_values: &'a [u8],
+}
+
+/// Checks that an image is square and of a table's size.
+pub fn check_size(width: u32, height: u32) -> Result<u32, ReadError> {
+    if width != height || !(2..=MAX_SIZE).contains(&width) {
+        let (width, height) = (width as usize, height as usize);
+        return Err(ReadError::Size { layer: "image", width, height });
+    }
+    Ok(width)
+}
+
+/// Bytes of an image whose size [`check_size`] has seen.
+pub fn byte_length(size: u32, layers: u32, precision: Precision) -> u64 {
+    u64::from(size) * u64::from(size) * u64::from(layers) * precision.texel_bytes() as u64
+}
+
+impl Texture<'_> {
+    /// The table in an image.
+    pub fn table(&self) -> Result<TableFile, ReadError> {
+        let attributes = Attributes::read(2, |name| self.attribute(name))?;
+        let two_matrices = match self.attribute(name::MATRICES) {
+            Some(Value::Text(text)) if text == "1" => false,
+            Some(Value::Text(text)) if text == "2" => true,
+            Some(other) => return Err(other.unexpected(name::MATRICES, "1 or 2")),
+            None => return Err(ReadError::MissingAttribute { attribute: name::MATRICES }),
+        };
+        if self.layers != LAYERS {
+            return Err(ReadError::LayerCount { count: self.layers as usize, expected: &[LAYERS as usize] });
+        }
+        let magnitude = self.layer(1).into_iter().map(|texel| [texel[0], texel[1]]).collect();
+        let schlick_matrix = two_matrices.then(|| self.layer(2));
+        attributes.table(self.size, self.layer(0), magnitude, schlick_matrix)
+    }
+
+    /// The texels of a layer that is there.
+    pub fn layer(&self, layer: u32) -> Vec<[f32; 4]> {
+        let texel_bytes = self.precision.texel_bytes();
+        let layer_bytes = self.size as usize * self.size as usize * texel_bytes;
+        let bytes = &self.texels[layer as usize * layer_bytes..][..layer_bytes];
+        let decode = |texel: &[u8]| match self.precision {
+            Precision::Half => {
+                std::array::from_fn(|c| f16::from_le_bytes([texel[2 * c], texel[2 * c + 1]]).to_f32())
+            }
+            Precision::Single => {
+                std::array::from_fn(|c| f32::from_le_bytes(std::array::from_fn(|byte| texel[4 * c + byte])))
+            }
+        };
+        bytes.chunks_exact(texel_bytes).map(decode).collect()
+    }
+
+    fn attribute(&self, wanted: &str) -> Option<Value> {
+        let (_, value) = KeyValueDataIterator::new(self.key_values).find(|(key, _)| *key == wanted)?;
+        let value = value.strip_suffix(&[0]).unwrap_or(value);
+        let Ok(text) = std::str::from_utf8(value) else {
+            return Some(Value::Other(printable(&String::from_utf8_lossy(value))));
+        };
+        // Numbers are text here
+        if wanted == name::VERSION
+            && let Ok(number) = text.parse()
+        {
+            return Some(Value::Number(number));
+        }
+        Some(Value::Text(text.to_owned()))
+    }
+}
+
+/// The three layers of a table.
+pub fn encode_texels(file: &TableFile, precision: Precision) -> Vec<u8> {
+    let texels = file.table.texels();
+    let numbers = texels.as_flattened().iter();
+    match precision {
+        Precision::Half => numbers.flat_map(|&number| f16::from_f32(number).to_le_bytes()).collect(),
+        Precision::Single => numbers.flat_map(|number| number.to_le_bytes()).collect(),
+    }
+}
+
+/// A table's attributes and `others` as key/value data of KTX2: sorted by key, each of them padded to four bytes.
+pub fn encode_key_values(file: &TableFile, others: &[(&'static str, &str)]) -> Vec<u8> {
+    let matrices = 1 + u32::from(file.table.schlick_matrix().is_some());
+    let mut entries = texts(file);
+    entries.push((name::VERSION, VERSION.to_string()));
+    entries.push((name::MATRICES, matrices.to_string()));
+    entries.extend(others.iter().map(|&(key, value)| (key, value.to_owned())));
+    entries.sort_unstable_by_key(|(key, _)| *key);
+    let mut bytes = Vec::new();
+    for (key, value) in entries {
+        // Text ends with a zero, and cannot hold one
+        let entry = [key.as_bytes(), &[0], value.replace('\0', "?").as_bytes(), &[0]].concat();
+        bytes.extend_from_slice(&(entry.len() as u32).to_le_bytes());
+        bytes.extend_from_slice(&entry);
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    bytes
+}
+
+/// The error for a field of a header.
+pub fn field(format: Format, field: &'static str, found: u32, expected: &'static str) -> ReadError {
+    ReadError::Field { format, field, found: found.to_string(), expected }
+}
+
+/// The error for a file that ends too early, or goes on.
+pub fn length(format: Format, part: &'static str, needed: u64, found: u64) -> ReadError {
+    let reason = format!("{needed} bytes are called for, {found} are there");
+    ReadError::Damaged { format, part, reason }
+}
