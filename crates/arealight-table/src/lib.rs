@@ -59,12 +59,21 @@ pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 48 
 
 static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
 
-/// The table for GGX that is built in: 64 nodes a side, two matrices, fitted by `arealight fit`.
+/// The table for GGX that is built in: 64 nodes a side, two matrices, made by `arealight fit -o fitted.exr` and
+/// `arealight table convert fitted.exr tables/ggx.exr --measure`.
 ///
 /// # Panics
 /// Never: a test reads the embedded file.
 pub fn ggx() -> LightTable {
-    read(GGX).expect("the embedded table is valid, as a test shows")
+    ggx_file().table
+}
+
+/// The built-in table with what its file says beside it.
+///
+/// # Panics
+/// Never: a test reads the embedded file.
+pub fn ggx_file() -> TableFile {
+    TableFile::read(GGX).expect("the embedded table is valid, as a test shows")
 }
 
 /// What a table file holds.

@@ -33,6 +33,7 @@ enum Command {
     Fit(commands::fit::Arguments),
     Inspect(commands::inspect::Arguments),
     Bench(commands::bench::Arguments),
+    Table(commands::table::Arguments),
     Devices(commands::devices::Arguments),
 }
 
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Some(Command::Fit(arguments)) => commands::fit::run(&arguments),
         Some(Command::Inspect(arguments)) => commands::inspect::run(&arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(&arguments),
+        Some(Command::Table(arguments)) => commands::table::run(&arguments),
         Some(Command::Devices(arguments)) => commands::devices::run(&arguments),
     };
     match result {

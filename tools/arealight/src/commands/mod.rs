@@ -6,3 +6,4 @@ pub mod eval;
 pub mod fit;
 pub mod inspect;
 pub mod render;
+pub mod table;
