@@ -3,7 +3,7 @@
 //! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
 //! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
 
-use arealight::{Effects, FormFactor, Quality};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Quality};
 use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -42,15 +42,20 @@ fn shade(criterion: &mut Criterion) {
         SceneRenderer::new(&engine, &buffers, &scene.lights, constants, SIZE).expect("it fits");
     renderer.visibility().expect("the device works");
 
-    let fast = Quality { form_factor: FormFactor::Fast, ..Quality::default() };
+    let exact = Quality::default();
     let effects = scene.effects();
     let mut group = criterion.benchmark_group("shade");
     group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
     for (name, effects, quality) in [
-        ("exact", effects, Quality::default()),
-        ("fast", effects, fast),
-        ("exact, diffuse only", effects - Effects::GLOSSY, Quality::default()),
-        ("exact, every effect", Effects::all(), Quality::default()),
+        ("exact", effects, exact),
+        ("fast", effects, Quality { form_factor: FormFactor::Fast, ..exact }),
+        ("exact, difference", effects, Quality { form_factor: FormFactor::ExactDifference, ..exact }),
+        ("exact, bare", effects, Quality { horizon: Horizon::Bare, ..exact }),
+        ("exact, both horizons", effects, Quality { horizon: Horizon::Both, ..exact }),
+        ("exact, split", effects, Quality { fresnel: Fresnel::Split, ..exact }),
+        ("exact, one point", effects, Quality { one_point: true, ..exact }),
+        ("exact, diffuse only", effects - Effects::GLOSSY, exact),
+        ("exact, every effect", Effects::all(), exact),
     ] {
         group.bench_function(name, |bencher| {
             bencher.iter_custom(|count| {

@@ -8,7 +8,44 @@ use std::fmt::Write as _;
 /// The heads of a table's columns.
 const HEADS: [&str; 6] = ["family", "error", "backward", "small light", "not finite", "verdict"];
 
+/// The methods that stand side by side in the document's first table.
+const OVERVIEW: [&str; 5] = ["walk-exact", "quad-exact", "quad-exact-difference", "textbook", "practice"];
+
+/// The document's words on the first table.
+const PROMISES: &str = "\
+Each family's polygons go through every rung of the form factor, and through two yardsticks: the textbook's formula (clip, \
+normalise, arc cosine) and the practice of real-time engines (nothing is clipped, a rational function, a sphere's \
+horizon). The bits of each result are judged against a reference of 106 bits:
+
+1. A finite number in [0, 1]; exactly 0 where a vertex is NaN or infinite.
+2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most 4 x 2^-24 of their distance.
+3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its farthest vertex.
+4. *Small light*, of the rungs with the difference form: error at most 1e-6 of area / (pi distance^2), out to any distance.
+
+The fast rungs may add 2.7e-5 of each edge's angle over 2 pi, the one-point form 1e-4 of the result. The yardsticks are held to the \
+best rung's promises.
+
+The table gives the largest backward error; **bold** is a promise broken, any of the four. A forward error near 1 \
+beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 vertex says on which side it is.
+
+";
+
 impl Row {
+    /// The largest backward error, bold where a promise is broken; and how many results were no numbers.
+    fn overview(&self) -> String {
+        let tally = &self.tally;
+        if tally.samples == 0 {
+            return "-".to_owned();
+        }
+        let error = match tally.largest_backward_error {
+            Some(error) if error.is_finite() => format!("{error:.1e}"),
+            _ if tally.not_finite > 0 => format!("{} NaN, inf", tally.not_finite),
+            Some(_) | None if self.is_kept() => "kept".to_owned(),
+            Some(_) | None => "wrong".to_owned(),
+        };
+        if self.is_kept() { error } else { format!("**{error}**") }
+    }
+
     /// The row's cells, under [`HEADS`].
     fn cells(&self) -> [String; 6] {
         let tally = &self.tally;
@@ -110,15 +147,20 @@ impl Stability {
         }
     }
 
-    /// One table a method, and what the families are.
+    /// A document: what is promised, every family by the methods of [`OVERVIEW`], and one table a method.
     pub fn to_markdown(&self) -> String {
-        let mut text =
-            format!("{} polygons a family, seed {}, on {}.\n\n", self.samples, self.seed, self.device);
+        let mut text = format!(
+            "# Hard cases\n\nMade by `arealight bench stability --samples {} --seed {} --markdown FILE` on {}.\n\n{PROMISES}",
+            self.samples, self.seed, self.device
+        );
+        self.write_overview(&mut text);
+        let _ = writeln!(text, "## Every method\n");
         for (method, rows) in self.by_method() {
             let _ = writeln!(
                 text,
-                "### {}\n\n{}. It {}.\n\n| {} |\n|---|---|---|---|---|---|",
+                "<details><summary>{}: {}</summary>\n\n{}. It {}.\n\n| {} |\n|---|---|---|---|---|---|",
                 method.name,
+                if rows.iter().all(|row| row.is_kept()) { "kept" } else { "broken" },
                 method.description,
                 Self::summary(method, &rows),
                 HEADS.join(" | ")
@@ -126,19 +168,31 @@ impl Stability {
             for row in rows {
                 let _ = writeln!(text, "| {} |", row.cells().join(" | "));
             }
-            text.push('\n');
+            text.push_str("\n</details>\n\n");
         }
-        text.push_str("### Families\n\n| family | what makes it hard | judged by |\n|---|---|---|\n");
-        let mut names: Vec<&str> = self.rows.iter().map(|row| row.family).collect();
-        names.dedup();
-        for family in names.into_iter().filter_map(Family::find) {
-            let scope = match family.scope {
-                Scope::Accuracy => "every promise",
-                Scope::Range => "a number from 0 to 1",
-                Scope::Zero => "exactly 0",
-            };
-            let _ = writeln!(text, "| {} | {} | {scope} |", family.name, family.description);
-        }
+        text.truncate(text.trim_end().len());
+        text.push('\n');
         text
+    }
+
+    /// A line a family: what makes it hard, and the largest backward error of the methods of [`OVERVIEW`].
+    fn write_overview(&self, text: &mut String) {
+        let methods: Vec<_> =
+            self.by_method().filter(|(method, _)| OVERVIEW.contains(&method.name)).collect();
+        let names: Vec<&str> = methods.iter().map(|(method, _)| method.name).collect();
+        let _ = writeln!(text, "| family | what makes it hard | {} |", names.join(" | "));
+        let _ = writeln!(text, "|---|---|{}", "---|".repeat(names.len()));
+        let mut families: Vec<&str> = self.rows.iter().map(|row| row.family).collect();
+        families.dedup();
+        for family in families.into_iter().filter_map(Family::find) {
+            let cells = methods.iter().map(|(_, rows)| {
+                rows.iter()
+                    .find(|row| row.family == family.name)
+                    .map_or_else(String::new, |row| row.overview())
+            });
+            let cells: Vec<String> = cells.collect();
+            let _ = writeln!(text, "| {} | {} | {} |", family.name, family.description, cells.join(" | "));
+        }
+        text.push('\n');
     }
 }

@@ -128,7 +128,7 @@ fn the_weight_of_an_arc_has_the_error_that_it_states() {
 #[test]
 fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("x", theta.cos())];
-    assert_errors("arealight_acute_arc", [2.7e-5, 7e-8], std::f64::consts::FRAC_PI_2, variables, ratio);
+    assert_errors("arealight_acute_weight", [2.7e-5, 7e-8], std::f64::consts::FRAC_PI_2, variables, ratio);
 }
 
 #[test]

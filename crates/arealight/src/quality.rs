@@ -12,8 +12,8 @@ pub enum FormFactor {
     Exact = 0,
     /// A shorter series for the arcs: 2.7e-5 of each edge's share, fewer instructions.
     Fast = 1,
-    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. For them
-    /// the error is at most 1e-6 of their solid angle over pi.
+    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. Of a
+    /// light of area A at the distance d the error is at most 1e-6 A / (pi d²), out to any distance.
     ExactDifference = 2,
     /// As [`FormFactor::Fast`], with an error that shrinks with the light.
     FastDifference = 3,

@@ -96,7 +96,8 @@ float arealight_arc_excess(float s, float y, float square, int rung) {
 
 // The angle from a to b times the z component of the unit normal of their plane, radians.
 //
-// Error of the exact rung: 3e-7; of the fast one 2.7e-5 of the result more. In the difference form, what
+// Error of the exact rung: 3.6e-7 of one radian or of the angle, whichever is larger; of the fast one 2.7e-5 of the
+// result more. In the difference form, what
 // (a x b).z has from the anchor is left out: it cancels in the sum over a closed outline, and with it what would
 // be the error of a small one. There the sum's error is relative to the square of the outline's angular size.
 float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
@@ -111,38 +112,38 @@ float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     return arealight_arc_weight(s, y, rung);
 }
 
-// The arc along the horizon from a to b, both on it: the angle between them. Where it is obtuse, it is a right angle and
-// the arc that is left: nearly opposite ends would have the rounding of their lengths in y, which moving a vertex
-// explains for an edge (arealight_arc), but not here.
-float arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
-    bool obtuse = dot(a.unit.xy, b.unit.xy) < 0.0;
-    bool left = a.unit.x * b.unit.y - a.unit.y * b.unit.x >= 0.0;
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
-        // Seen from a distance no angle is obtuse; else chords are the directions themselves, and so is the arc's
-        if (anchor.distant) {
-            return arealight_arc(a, b, rung);
-        }
-        rung &= ~AREALIGHT_FORM_FACTOR_DIFFERENCE;
-    }
-    vec2 turned = left ? vec2(-a.unit.y, a.unit.x) : vec2(a.unit.y, -a.unit.x);
-    a.unit.xy = obtuse ? turned : a.unit.xy;
-    float right_angle = obtuse ? (left ? 0.5 * AREALIGHT_PI : -0.5 * AREALIGHT_PI) : 0.0;
-    return right_angle + arealight_arc(a, b, rung);
-}
-
-// As arealight_arc, for an angle of at most a right one: theta / sin(theta) from the cosine itself. The difference
-// form gains nothing from that, and is the same.
-float arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
-        return arealight_arc(a, b, rung);
-    }
-    float x = dot(a.unit, b.unit);
-    float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
+// s theta / sin(theta) of an angle of at most a right one with the cosine x: errors as arealight_arc_weight's.
+float arealight_acute_weight(float s, float x, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
         return s * (1.5707552 + x * (0.26598448 - x * 0.031967809)) / (1.0 + x * 0.80481912);
     }
     return s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
          / (1.0 + x * (1.3370004 + x * 0.38739931));
+}
+
+// As arealight_arc, for an angle of at most a right one. The difference form gains nothing from that, and is the same.
+float arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
+    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+        return arealight_arc(a, b, rung);
+    }
+    float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
+    return arealight_acute_weight(s, dot(a.unit, b.unit), rung);
+}
+
+// The arc along the horizon from a to b, both on it: the angle between them, in (-pi, pi].
+//
+// An obtuse angle is pi less the one to the opposite direction. arealight_arc would have the rounding of their lengths in
+// the y of nearly opposite ends, which for an edge is as if a vertex had moved, but not here. The series is the exact
+// one on every rung: it is taken once.
+float arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
+    // Seen from a distance no angle is obtuse; else chords are the directions themselves
+    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0 && anchor.distant) {
+        return arealight_arc(a, b, rung);
+    }
+    float x = dot(a.unit.xy, b.unit.xy);
+    float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
+    float acute = arealight_acute_weight(s, abs(x), AREALIGHT_FORM_FACTOR_EXACT);
+    return x < 0.0 ? (s < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute;
 }
 
 // Where an edge meets the horizon, as a multiple of the point: for the difference form of its offset from the

@@ -29,10 +29,11 @@ bool arealight_is_bare(vec3 center, float extent) {
     return center.z > extent && dot(center, center) > 2.0 * extent * extent;
 }
 
-// Whether the one-point form of a light within `extent` of `center` is within 1e-4 of the exact form factor, relative:
-// its error is of second order, at most 8 (extent / distance)^2 where the light is four of its radii above the horizon.
+// Whether the one-point form of a light within `extent` of `center` is within 1e-4 of the exact form factor, relative. Its
+// error is of second order in e = extent: at most .5 (e / d)^2 in the distance d, and .7 e^2 / (d z) where the height z
+// varies with it.
 bool arealight_is_far(vec3 center, float extent) {
-    return center.z > 4.0 * extent && dot(center, center) > 8e4 * extent * extent;
+    return center.z > 45.0 * extent && dot(center, center) > 8e4 * extent * extent;
 }
 
 // The form factor of a far light from its centre alone, in [0, 1]. `facing` is the negative product of the light's area
