@@ -66,6 +66,17 @@ fn wrong_arguments_are_exit_code_2() {
     refuse(folder.path(), &["render", &room, "-o", "picture.bmp"], 2, &["picture.bmp", ".png or .exr"]);
     refuse(folder.path(), &["render", &room, "--camera", "nobody"], 2, &["--camera", "nobody"]);
     refuse(folder.path(), &["paint"], 2, &["paint"]);
+    refuse(folder.path(), &["inspect", "--f0", "2"], 2, &["--f0", "0 to 1"]);
+    refuse(folder.path(), &["inspect", "--fresnel", "none"], 2, &["--fresnel", "by-f0", "split"]);
+    refuse(folder.path(), &["inspect", "--entries"], 2, &["--output"]);
+    refuse(
+        folder.path(),
+        &["inspect", "--entries", "-o", "a.png", "--errors"],
+        2,
+        &["--errors", "--entries"],
+    );
+    refuse(folder.path(), &["inspect", "--quads", "9"], 2, &["--errors"]);
+    refuse(folder.path(), &["inspect", "--errors", "--quads", "2"], 2, &["--quads", "3..=3000"]);
 }
 
 #[test]
@@ -105,6 +116,50 @@ fn bad_cases_are_exit_code_3_and_named() {
     refuse(folder.path(), &["inspect", "missing.exr"], 3, &["missing.exr"]);
     write(folder.path(), "noise.exr", "not a table");
     refuse(folder.path(), &["inspect", "noise.exr"], 3, &["noise.exr"]);
+    refuse(folder.path(), &["inspect", "--errors", "noise.exr"], 3, &["noise.exr"]);
+}
+
+#[test]
+fn inspect_draws_lobes_entries_and_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let inspect = |arguments: &[&str]| {
+        let output = run(folder.path(), &[&["inspect", "--json"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
+    };
+    let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
+
+    // The lobes depend on the reflectance and the rung
+    let summary = inspect(&["-o", "metal.png"]);
+    assert_eq!(summary["channels"].as_array().unwrap().len(), 10, "two matrices and the albedos");
+    assert_eq!(summary["errors"], serde_json::Value::Null);
+    inspect(&["-o", "one.png", "--f0", "0.04"]);
+    inspect(&["-o", "two.png", "--f0", "0.04", "--fresnel", "split"]);
+    let [metal, one, two] = ["metal.png", "one.png", "two.png"].map(picture);
+    assert_eq!(metal.dimensions(), one.dimensions());
+    assert!(metal != one && one != two);
+
+    // A small table is worse than the one that is built in; it is drawn in a column more
+    assert!(
+        run(folder.path(), &["fit", "--size", "4", "--matrices", "1", "-o", "small.exr"]).status.success()
+    );
+    inspect(&["small.exr", "--entries", "-o", "small.png"]);
+    inspect(&["--entries", "-o", "large.png"]);
+    assert!(picture("small.png").height() < picture("large.png").height(), "one matrix, a row less");
+    let summary = inspect(&["--errors", "small.exr", "--quads", "3", "-o", "errors.png"]);
+    let errors = summary["errors"].as_array().unwrap();
+    let mean = |of: &str, fresnel: &str, f0: f64| {
+        let is_it = |e: &&serde_json::Value| e["of"] == of && e["fresnel"] == fresnel && e["f0"] == f0;
+        errors.iter().find(is_it).and_then(|e| e["mean"].as_f64()).unwrap()
+    };
+    for f0 in [0.04, 1.0] {
+        assert!(mean("table", "split", f0) <= mean("table", "by F0", f0));
+        assert!(mean("table", "by F0", f0) < mean("formula", "by F0", f0));
+        assert!(2.0 * mean("formula", "by F0", f0) < mean("small", "by F0", f0));
+    }
+    assert_eq!(errors.len(), 8);
+    inspect(&["--errors", "--quads", "3", "-o", "ours.png"]);
+    assert!(picture("ours.png").width() < picture("errors.png").width());
 }
 
 #[test]

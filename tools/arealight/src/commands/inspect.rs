@@ -2,41 +2,55 @@
 
 use crate::failure::Failure;
 use crate::output::print;
-use arealight::LightTable;
+use crate::progress;
+use crate::quality::Lobes;
+use arealight::{Fresnel, LightTable};
+use channels::Channel;
+use errors::{CELLS, ErrorMap, Source, Subject};
+use lobes::Material;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 mod canvas;
+mod channels;
 mod colour;
+mod entries;
+mod error_maps;
+mod errors;
 mod lobes;
+mod panel;
 
-/// Say what a light table holds, and draw its lobes beside those of the BRDF.
+/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The table; the one that is built in if none is given.
     table: Option<PathBuf>,
-    /// Where a picture of the fitted lobes beside the true ones goes.
+    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors or --entries.
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
     /// The reflectance at normal incidence of the lobes in the picture, 0 to 1.
     #[arg(long, value_name = "F0", default_value_t = 1.0)]
     f0: f64,
+    /// How Schlick's Fresnel term enters the lobes in the picture.
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lobes::ByF0)]
+    fresnel: Lobes,
+    /// Measure the errors of the table, of the table-free formula and of other tables (by F0) over roughness and view angle,
+    /// and draw these.
+    #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
+    errors: Option<Vec<PathBuf>>,
+    /// On how many quads --errors measures each of 32 x 32 cells, 3 to 3000.
+    #[arg(long, value_name = "COUNT", default_value_t = 96, requires = "errors",
+          value_parser = clap::value_parser!(u16).range(3..=3000))]
+    quads: u16,
+    /// Draw the table's entries and albedos.
+    #[arg(long, requires = "output")]
+    entries: bool,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
 }
-
-/// The channels in the order of the texels of both layers, with the layer they belong to.
-const CHANNELS: [(&str, &str); 6] = [
-    ("matrix", "q00"),
-    ("matrix", "q02"),
-    ("matrix", "q20"),
-    ("matrix", "q22"),
-    ("magnitude", "albedo"),
-    ("magnitude", "schlick"),
-];
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if !(0.0..=1.0).contains(&arguments.f0) {
@@ -44,62 +58,55 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         return Err(Failure::Argument { argument: "--f0", message });
     }
     let (name, table) = match &arguments.table {
-        Some(path) => {
-            let table = arealight_table::load(path).map_err(|error| Failure::input(path, error))?;
-            (path.display().to_string(), table)
-        }
+        Some(path) => (path.display().to_string(), load(path)?),
         None => ("the built-in table".to_owned(), arealight_table::ggx()),
     };
+    let channels = Channel::all(&table);
+    let errors =
+        arguments.errors.as_ref().map(|others| measure(&table, others, arguments.quads)).transpose()?;
     if let Some(path) = &arguments.output {
-        lobes::draw(&table, arguments.f0).save_png(path)?;
-    }
-    let channels: Vec<Channel> = (0..CHANNELS.len()).map(|i| Channel::of(&table, i)).collect();
-    print(&if arguments.json { to_json(&name, &table, &channels) } else { to_text(&name, &table, &channels) })
-}
-
-/// What a channel's texels span, and how smooth they are.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Channel {
-    layer: &'static str,
-    name: &'static str,
-    min: f32,
-    max: f32,
-    step: Step,
-}
-
-/// The largest difference between neighbouring nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Step {
-    difference: f32,
-    /// The two nodes, (x, y).
-    from: (usize, usize),
-    to: (usize, usize),
-}
-
-impl Channel {
-    fn of(table: &LightTable, index: usize) -> Self {
-        let (layer, name) = CHANNELS[index];
-        let size = table.size() as usize;
-        let value = |(x, y): (usize, usize)| {
-            let i = y * size + x;
-            if index < 4 { table.matrix()[i][index] } else { table.magnitude()[i][index - 4] }
+        let picture = match &errors {
+            Some(maps) => error_maps::draw(maps, arguments.quads),
+            None if arguments.entries => entries::draw(&table, &channels),
+            None => lobes::draw(&table, arguments.material()),
         };
-        let mut channel =
-            Self { layer, name, min: f32::INFINITY, max: f32::NEG_INFINITY, step: Step::default() };
-        for from in (0..size * size).map(|i| (i % size, i / size)) {
-            channel.min = channel.min.min(value(from));
-            channel.max = channel.max.max(value(from));
-            for to in [(from.0 + 1, from.1), (from.0, from.1 + 1)] {
-                if to.0 < size && to.1 < size {
-                    let difference = (value(to) - value(from)).abs();
-                    if difference > channel.step.difference {
-                        channel.step = Step { difference, from, to };
-                    }
-                }
-            }
-        }
-        channel
+        picture.save_png(path)?;
     }
+    let summary = Summary { name: &name, table: &table, channels: &channels, errors: errors.as_deref() };
+    print(&if arguments.json { summary.to_json() } else { summary.to_text() })
+}
+
+impl Arguments {
+    fn material(&self) -> Material {
+        let fresnel = match self.fresnel {
+            Lobes::ByF0 => Fresnel::ByF0,
+            Lobes::Split => Fresnel::Split,
+        };
+        Material { f0: self.f0, fresnel }
+    }
+}
+
+fn load(path: &Path) -> Result<LightTable, Failure> {
+    arealight_table::load(path).map_err(|error| Failure::input(path, error))
+}
+
+/// Maps the errors of a table in both rungs, of the formula and of other tables, with a progress bar.
+fn measure(table: &LightTable, others: &[PathBuf], quads: u16) -> Result<Vec<ErrorMap>, Failure> {
+    let loaded = others.iter().map(|path| load(path)).collect::<Result<Vec<_>, _>>()?;
+    let subject = |name: &str, lobes, fresnel| Subject { name: name.to_owned(), lobes, fresnel };
+    let mut subjects = vec![
+        subject("table", Source::Table(table), Fresnel::ByF0),
+        subject("table", Source::Table(table), Fresnel::Split),
+        subject("formula", Source::Formula, Fresnel::ByF0),
+    ];
+    subjects.extend(others.iter().zip(&loaded).map(|(path, table)| {
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+        subject(&name, Source::Table(table), Fresnel::ByF0)
+    }));
+    let bar = progress::bar((CELLS * CELLS) as u64, "cells");
+    let maps = errors::measure(&subjects, usize::from(quads), &|| bar.inc(1));
+    bar.finish_and_clear();
+    Ok(maps)
 }
 
 /// Where a node lies, for people.
@@ -113,64 +120,101 @@ fn degrees(cosine: f64) -> f64 {
     (1.0 - cosine * cosine).max(0.0).sqrt().atan2(cosine).to_degrees()
 }
 
-fn to_text(name: &str, table: &LightTable, channels: &[Channel]) -> String {
-    let (size, description) = (table.size(), table.description());
-    let mut text = format!(
-        "{name}\n\
-         brdf           {}\n\
-         made by        {}\n\
-         format         {} {}\n\
-         axes           {}\n\
-         frame          {}\n\
-         normalisation  {}\n\
-         size           {size} x {size} nodes, {} KiB as float32\n\n",
-        // Text of a file that may be anybody's must not steer the terminal
-        description.brdf.escape_debug(),
-        description.made_by.escape_debug(),
-        arealight_table::FORMAT,
-        arealight_table::VERSION,
-        arealight_table::AXES,
-        arealight_table::FRAME,
-        arealight_table::NORMALISATION,
-        size * size * 24 / 1024,
-    );
-    let _ = writeln!(text, "{:<10} {:<8} {:>11} {:>11} {:>11}", "layer", "channel", "least", "most", "step");
-    for channel in channels {
-        let Channel { layer, name, min, max, step } = channel;
-        let place = place(table, step.to);
-        let _ = writeln!(
-            text,
-            "{layer:<10} {name:<8} {min:>11.6} {max:>11.6} {:>11.6}  at {place}",
-            step.difference
-        );
-    }
-    text.push_str("\nstep: the largest difference between neighbouring nodes\n");
-    text
+/// What there is to say of a table.
+struct Summary<'a> {
+    name: &'a str,
+    table: &'a LightTable,
+    channels: &'a [Channel],
+    errors: Option<&'a [ErrorMap]>,
 }
 
-fn to_json(name: &str, table: &LightTable, channels: &[Channel]) -> String {
-    let channel = |c: &Channel| {
-        json!({
-            "layer": c.layer,
-            "channel": c.name,
-            "min": c.min,
-            "max": c.max,
-            "largest_step": { "difference": c.step.difference, "from": c.step.from, "to": c.step.to },
-        })
-    };
-    let summary = json!({
-        "table": name,
-        "brdf": table.description().brdf,
-        "made_by": table.description().made_by,
-        "format": arealight_table::FORMAT,
-        "version": arealight_table::VERSION,
-        "axes": arealight_table::AXES,
-        "frame": arealight_table::FRAME,
-        "normalisation": arealight_table::NORMALISATION,
-        "size": table.size(),
-        "channels": channels.iter().map(channel).collect::<Value>(),
-    });
-    format!("{summary:#}\n")
+impl Summary<'_> {
+    fn to_text(&self) -> String {
+        let (size, description) = (self.table.size(), self.table.description());
+        let mut text = format!(
+            "{}\n\
+             brdf           {}\n\
+             made by        {}\n\
+             format         {} {}\n\
+             axes           {}\n\
+             frame          {}\n\
+             normalisation  {}\n\
+             size           {size} x {size} nodes, {} KiB as float32\n\n",
+            self.name,
+            // Text of a file that may be anybody's must not steer the terminal
+            description.brdf.escape_debug(),
+            description.made_by.escape_debug(),
+            arealight_table::FORMAT,
+            arealight_table::VERSION,
+            arealight_table::AXES,
+            arealight_table::FRAME,
+            arealight_table::NORMALISATION,
+            size as usize * size as usize * self.channels.len() * 4 / 1024,
+        );
+        let heads = ["layer", "channel", "least", "most", "step"];
+        let [layer, channel, least, most, step] = heads;
+        let _ = writeln!(text, "{layer:<14} {channel:<8} {least:>11} {most:>11} {step:>11}");
+        for Channel { layer, name, min, max, step, .. } in self.channels {
+            let place = place(self.table, step.to);
+            let _ = writeln!(
+                text,
+                "{layer:<14} {name:<8} {min:>11.6} {max:>11.6} {:>11.6}  at {place}",
+                step.difference
+            );
+        }
+        text.push_str("\nstep: the largest difference between neighbouring nodes\n");
+        for map in self.errors.unwrap_or_default() {
+            let (cell, most) = map.worst();
+            let (roughness, view) = errors::middle(cell);
+            let label = format!("{}, {}, F0 = {}", map.name.escape_debug(), map.rung(), map.f0);
+            let _ = write!(
+                text,
+                "\n{label:<30} mean error {:.2e}, most {most:.2e} at roughness {roughness:.2}, view {view:.1}°",
+                map.mean()
+            );
+        }
+        if self.errors.is_some() {
+            text.push('\n');
+        }
+        text
+    }
+
+    fn to_json(&self) -> String {
+        let channel = |c: &Channel| {
+            json!({
+                "layer": c.layer,
+                "channel": c.name,
+                "min": c.min,
+                "max": c.max,
+                "largest_step": { "difference": c.step.difference, "from": c.step.from, "to": c.step.to },
+            })
+        };
+        let errors = |map: &ErrorMap| {
+            let (cell, most) = map.worst();
+            let (roughness, view) = errors::middle(cell);
+            json!({
+                "of": map.name,
+                "fresnel": map.rung(),
+                "f0": map.f0,
+                "mean": map.mean(),
+                "largest": { "mean": most, "roughness": roughness, "view_degrees": view },
+            })
+        };
+        let summary = json!({
+            "table": self.name,
+            "brdf": self.table.description().brdf,
+            "made_by": self.table.description().made_by,
+            "format": arealight_table::FORMAT,
+            "version": arealight_table::VERSION,
+            "axes": arealight_table::AXES,
+            "frame": arealight_table::FRAME,
+            "normalisation": arealight_table::NORMALISATION,
+            "size": self.table.size(),
+            "channels": self.channels.iter().map(channel).collect::<Value>(),
+            "errors": self.errors.map(|maps| maps.iter().map(errors).collect::<Value>()),
+        });
+        format!("{summary:#}\n")
+    }
 }
 
 #[cfg(test)]
@@ -186,23 +230,31 @@ mod tests {
     }
 
     #[test]
-    fn channels_know_their_range_and_largest_step() {
-        let channel = Channel::of(&table(), 2);
-        assert_eq!((channel.layer, channel.name, channel.min, channel.max), ("matrix", "q20", -0.5, 0.0));
-        // Texel 7 is node (1, 2); the first neighbour that differs is the one above it
-        assert_eq!(channel.step, Step { difference: 0.5, from: (1, 1), to: (1, 2) });
-        let albedo = Channel::of(&table(), 4);
-        assert_eq!((albedo.name, albedo.max, albedo.step), ("albedo", 0.5, Step::default()));
+    fn text_from_the_file_is_escaped() {
+        let table = table();
+        let channels = Channel::all(&table);
+        let summary = Summary { name: "t", table: &table, channels: &channels, errors: None };
+        let text = summary.to_text();
+        assert!(!text.contains('\u{1b}') && text.contains("size           3 x 3 nodes"), "{text}");
+        assert!(text.contains("at (1, 2), roughness 0.500, view 90.0°"), "{text}");
+        let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
+        assert_eq!(value["channels"][2]["largest_step"]["to"], json!([1, 2]));
+        assert_eq!(value["errors"], Value::Null);
     }
 
     #[test]
-    fn text_from_the_file_is_escaped() {
+    fn errors_are_told_with_their_place() {
         let table = table();
-        let channels: Vec<Channel> = (0..6).map(|i| Channel::of(&table, i)).collect();
-        let text = to_text("t", &table, &channels);
-        assert!(!text.contains('\u{1b}') && text.contains("size           3 x 3 nodes"), "{text}");
-        assert!(text.contains("at (1, 2), roughness 0.500, view 90.0°"), "{text}");
-        let value: Value = serde_json::from_str(&to_json("t", &table, &channels)).unwrap();
-        assert_eq!(value["channels"][2]["largest_step"]["to"], json!([1, 2]));
+        let mut cells = vec![1e-3; CELLS * CELLS];
+        cells[CELLS - 1] = 0.5;
+        let map = ErrorMap { name: "b\u{1b}".into(), fresnel: Fresnel::Split, f0: 0.04, cells };
+        let channels = Channel::all(&table);
+        let maps = [map];
+        let summary = Summary { name: "t", table: &table, channels: &channels, errors: Some(&maps) };
+        let text = summary.to_text();
+        assert!(!text.contains('\u{1b}') && text.contains(", split, F0 = 0.04"), "{text}");
+        assert!(text.contains("most 5.00e-1 at roughness 0.99, view 1.4°\n"), "{text}");
+        let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
+        assert_eq!(value["errors"][0]["largest"]["mean"], 0.5);
     }
 }

@@ -81,24 +81,16 @@ impl Canvas {
 
     /// Writes a line of text whose top is at `y`. A character that the font lacks becomes a question mark.
     pub fn text(&mut self, (x, y): (i32, i32), text: &str, align: Align, colour: Colour) {
-        let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16) as i32;
-        let width = advance * text.chars().count() as i32;
-        let mut left = match align {
-            Align::Left => x,
-            Align::Centre => x - width / 2,
-            Align::Right => x - width,
-        };
-        for character in text.chars() {
-            let glyph = |c| get_raster(c, FontWeight::Regular, RasterHeight::Size16);
-            if let Some(glyph) = glyph(character).or_else(|| glyph('?')) {
-                for (dy, row) in glyph.rows().enumerate() {
-                    for (dx, coverage) in row.iter().enumerate() {
-                        self.blend(left + dx as i32, y + dy as i32, colour, f64::from(*coverage) / 255.0);
-                    }
-                }
-            }
-            left += advance;
-        }
+        write_line(text, align, |along, down, coverage| {
+            self.blend(x + along, y + down, colour, coverage);
+        });
+    }
+
+    /// Writes a line of text from the bottom to the top, whose left is at `x`; aligned to the left is above `y`.
+    pub fn text_upwards(&mut self, (x, y): (i32, i32), text: &str, align: Align, colour: Colour) {
+        write_line(text, align, |along, down, coverage| {
+            self.blend(x + down, y - along, colour, coverage);
+        });
     }
 
     /// Writes a PNG.
@@ -114,6 +106,28 @@ impl Canvas {
         )
         .write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8)
         .map_err(|error| Failure::output(path, error))
+    }
+}
+
+/// Calls `dot` with the pixels of a line of text: how far along the line and below its top, and the coverage.
+fn write_line(text: &str, align: Align, mut dot: impl FnMut(i32, i32, f64)) {
+    let advance = get_raster_width(FontWeight::Regular, RasterHeight::Size16) as i32;
+    let width = advance * text.chars().count() as i32;
+    let mut left = match align {
+        Align::Left => 0,
+        Align::Centre => -width / 2,
+        Align::Right => -width,
+    };
+    for character in text.chars() {
+        let glyph = |c| get_raster(c, FontWeight::Regular, RasterHeight::Size16);
+        if let Some(glyph) = glyph(character).or_else(|| glyph('?')) {
+            for (down, row) in glyph.rows().enumerate() {
+                for (along, coverage) in row.iter().enumerate() {
+                    dot(left + along as i32, down as i32, f64::from(*coverage) / 255.0);
+                }
+            }
+        }
+        left += advance;
     }
 }
 
@@ -157,5 +171,17 @@ mod tests {
         assert!(columns(Align::Left).0 >= 30 && columns(Align::Right).1 < 30);
         let (first, last) = columns(Align::Centre);
         assert!(first < 30 && last > 30);
+    }
+
+    #[test]
+    fn text_upwards_is_text_turned_to_the_left() {
+        let mut upright = Canvas::new(60, 60, [0; 3]);
+        upright.text((20, 30), "Lg", Align::Left, [255; 3]);
+        let mut turned = Canvas::new(60, 60, [0; 3]);
+        // A quarter turn takes (x, y) to (y, 59 - x)
+        turned.text_upwards((30, 59 - 20), "Lg", Align::Left, [255; 3]);
+        let at = |canvas: &Canvas, x: usize, y: usize| canvas.pixels[3 * (y * 60 + x)];
+        assert!((0..3600).all(|i| at(&upright, i % 60, i / 60) == at(&turned, i / 60, 59 - i % 60)));
+        assert_ne!(upright.pixels, turned.pixels);
     }
 }

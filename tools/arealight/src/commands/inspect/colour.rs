@@ -1,6 +1,10 @@
-//! Colour maps.
+//! Colours of text, and colour maps.
 
 use super::canvas::Colour;
+
+pub const PAPER: Colour = [255, 255, 255];
+pub const INK: Colour = [32, 32, 36];
+pub const FAINT: Colour = [120, 120, 128];
 
 /// The map viridis (van der Walt and Smith 2015) at eighths: perceptually even, and safe for colour-blind
 /// readers.

@@ -2,12 +2,12 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, Colour, LINE};
-use super::colour::{diverging, viridis};
-use arealight::LightTable;
+use super::canvas::{Align, Canvas, LINE};
+use super::colour::{FAINT, INK, PAPER, diverging, viridis};
+use arealight::{Fresnel, LightTable, TableSample};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 const ROUGHNESSES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
@@ -19,10 +19,6 @@ const DISC: i32 = 2 * RADIUS + 6;
 const CELL: (i32, i32) = (3 * DISC + 24, DISC + 14);
 const MARGIN: (i32, i32) = (96, 84);
 const FOOTER: i32 = 74;
-
-const PAPER: Colour = [255, 255, 255];
-const INK: Colour = [32, 32, 36];
-const FAINT: Colour = [120, 120, 128];
 
 /// A difference of this share of the true lobe's peak has the full colour.
 const FULL_ERROR: f64 = 0.25;
@@ -39,8 +35,15 @@ struct Cell {
     peak: f64,
 }
 
-/// Draws the lobes of a table for materials of a reflectance `f0` at normal incidence.
-pub fn draw(table: &LightTable, f0: f64) -> Canvas {
+/// What is drawn of a table: lobes of a reflectance at normal incidence (and 1 at grazing), as a rung makes them.
+#[derive(Debug, Clone, Copy)]
+pub struct Material {
+    pub f0: f64,
+    pub fresnel: Fresnel,
+}
+
+/// Draws the lobes of a table.
+pub fn draw(table: &LightTable, material: Material) -> Canvas {
     let width = MARGIN.0 + CELL.0 * ROUGHNESSES.len() as i32;
     let height = MARGIN.1 + CELL.1 * VIEWS.len() as i32 + FOOTER;
     let mut canvas = Canvas::new(width as u32, height as u32, PAPER);
@@ -48,29 +51,25 @@ pub fn draw(table: &LightTable, f0: f64) -> Canvas {
         (0..VIEWS.len()).flat_map(|row| (0..ROUGHNESSES.len()).map(move |column| (column, row))).collect();
     let cells: Vec<Cell> = places
         .par_iter()
-        .map(|&(column, row)| Cell::new(table, ROUGHNESSES[column], VIEWS[row].to_radians().cos(), f0))
+        .map(|&(column, row)| Cell::new(table, ROUGHNESSES[column], VIEWS[row].to_radians().cos(), material))
         .collect();
     for (&(column, row), cell) in places.iter().zip(&cells) {
         let corner = (MARGIN.0 + CELL.0 * column as i32, MARGIN.1 + CELL.1 * row as i32);
         cell.draw(&mut canvas, corner);
     }
-    draw_labels(&mut canvas, table, f0);
+    draw_labels(&mut canvas, table, material);
     draw_legend(&mut canvas, height - FOOTER + 22);
     canvas
 }
 
 impl Cell {
-    fn new(table: &LightTable, roughness: f64, cos_view: f64, f0: f64) -> Self {
+    fn new(table: &LightTable, roughness: f64, cos_view: f64, material: Material) -> Self {
         let ggx = Ggx { alpha: (roughness * roughness).max(arealight::MIN_ALPHA) };
         let view = DVec3::new((1.0 - cos_view * cos_view).max(0.0).sqrt(), 0.0, cos_view);
         let truth = Lobe::sample(|light| {
-            ggx.evaluate(view, light) * (f0 + (1.0 - f0) * Ggx::schlick_weight(view, light))
+            ggx.evaluate(view, light) * (material.f0 + (1.0 - material.f0) * Ggx::schlick_weight(view, light))
         });
-        let sample = table.lookup(roughness, cos_view);
-        let scale = f0 * sample.albedo + (1.0 - f0) * sample.schlick;
-        // A table's transforms can be inverted, but its interpolated ones need not be
-        let fitted = TransformedDistribution::from_inverse(Original::ClampedCosine, sample.inverse)
-            .map_or(Lobe::sample(|_| 0.0), |lobe| Lobe::sample(|light| scale * lobe.evaluate(light)));
+        let fitted = material.fitted(&table.lookup(roughness, cos_view));
         let peak = truth.values.iter().fold(f64::MIN_POSITIVE, |peak, value| peak.max(*value));
         Self { truth, fitted, peak }
     }
@@ -86,7 +85,50 @@ impl Cell {
     }
 }
 
+impl Material {
+    /// The lobe that a table's sample makes: one between its two, or both.
+    fn fitted(self, sample: &TableSample) -> Lobe {
+        let Self { f0, fresnel } = self;
+        match fresnel {
+            Fresnel::ByF0 => {
+                Lobe::transformed(sample.inverse_by_f0(f0, 1.0)).scaled(sample.specular_albedo(f0, 1.0))
+            }
+            Fresnel::Split => {
+                let mut lobe = Lobe::transformed(sample.inverse).scaled(f0 * sample.albedo);
+                let schlick = Lobe::transformed(sample.schlick_inverse).scaled((1.0 - f0) * sample.schlick);
+                for (value, more) in lobe.values.iter_mut().zip(schlick.values) {
+                    *value += more;
+                }
+                lobe
+            }
+        }
+    }
+
+    /// For people.
+    fn name(self) -> String {
+        let fresnel = match self.fresnel {
+            Fresnel::ByF0 => "one lobe, by F0",
+            Fresnel::Split => "two lobes, split",
+        };
+        format!("F0 = {}, {fresnel}", self.f0)
+    }
+}
+
 impl Lobe {
+    /// A transformed cosine that integrates to 1, from its M⁻¹; 0 if that cannot be inverted, for a table's
+    /// transforms can, but interpolated ones need not be.
+    fn transformed(inverse: DMat3) -> Self {
+        TransformedDistribution::from_inverse(Original::ClampedCosine, inverse)
+            .map_or(Self::sample(|_| 0.0), |lobe| Self::sample(|light| lobe.evaluate(light)))
+    }
+
+    fn scaled(mut self, factor: f64) -> Self {
+        for value in &mut self.values {
+            *value *= factor;
+        }
+        self
+    }
+
     fn sample(value: impl Fn(DVec3) -> f64) -> Self {
         let values = (-RADIUS..=RADIUS)
             .flat_map(|row| (-RADIUS..=RADIUS).map(move |column| (column, row)))
@@ -112,12 +154,12 @@ fn direction(x: f64, y: f64) -> DVec3 {
     DVec3::new(-x * sine, y * sine, 1.0 - square)
 }
 
-fn draw_labels(canvas: &mut Canvas, table: &LightTable, f0: f64) {
+fn draw_labels(canvas: &mut Canvas, table: &LightTable, material: Material) {
+    let size = table.size();
     let title = format!(
-        "{}, {} x {} nodes: the lobe of F0 = {f0} and its fit",
+        "{}, {size} x {size} nodes: true lobes and their fit for {}",
         table.description().brdf,
-        table.size(),
-        table.size()
+        material.name()
     );
     canvas.text((MARGIN.0, 12), &title, Align::Left, INK);
     for (column, roughness) in ROUGHNESSES.iter().enumerate() {
@@ -176,16 +218,19 @@ mod tests {
         }
     }
 
+    /// The largest error of a cell in shares of its peak.
+    fn worst(table: &LightTable, (roughness, cos_view): (f64, f64), material: Material) -> f64 {
+        let cell = Cell::new(table, roughness, cos_view, material);
+        let pairs = cell.truth.values.iter().zip(&cell.fitted.values);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / cell.peak
+    }
+
     #[test]
     fn a_fit_looks_like_its_brdf() {
-        let worst = |table: &LightTable, roughness| {
-            let cell = Cell::new(table, roughness, 0.8, 1.0);
-            let pairs = cell.truth.values.iter().zip(&cell.fitted.values);
-            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / cell.peak
-        };
         let table = arealight_table::ggx();
+        let metal = Material { f0: 1.0, fresnel: Fresnel::ByF0 };
         // The colours' whole range
-        assert!(worst(&table, 0.75) < FULL_ERROR);
+        assert!(worst(&table, (0.75, 0.8), metal) < FULL_ERROR);
         // And a table that is wrong does not
         let mut texels = table.matrix().to_vec();
         for texel in &mut texels {
@@ -193,6 +238,25 @@ mod tests {
         }
         let wrong =
             LightTable::new(table.description().clone(), table.size(), texels, table.magnitude().to_vec());
-        assert!(worst(&wrong.unwrap(), 0.75) > FULL_ERROR);
+        assert!(worst(&wrong.unwrap(), (0.75, 0.8), metal) > FULL_ERROR);
+    }
+
+    #[test]
+    fn both_matrices_are_drawn() {
+        let table = arealight_table::ggx();
+        let (matrix, magnitude) = (table.matrix().to_vec(), table.magnitude().to_vec());
+        let first_only =
+            LightTable::new(table.description().clone(), table.size(), matrix, magnitude).unwrap();
+        let worst = |table, f0, fresnel| worst(table, (0.75, 0.5), Material { f0, fresnel });
+        let [by_f0, split] = [Fresnel::ByF0, Fresnel::Split];
+        // A metal is of the first matrix alone, whatever the rung
+        let metal = worst(&first_only, 1.0, by_f0);
+        assert_eq!([worst(&table, 1.0, by_f0), worst(&table, 1.0, split)], [metal; 2]);
+        // No reflectance at all is of the second alone, but for rounding; and that is the better one
+        let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.0, fresnel));
+        assert!((one - two).abs() < 1e-12 && two < worst(&first_only, 0.0, split), "{one} {two}");
+        // Between them the rungs differ, and are better than the first matrix alone
+        let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.02, fresnel));
+        assert!(two < one && one < worst(&first_only, 0.02, by_f0), "{one} {two}");
     }
 }

@@ -1,0 +1,185 @@
+//! How far the integrals of tables are from the truth, over roughness and view angle.
+
+use arealight::table::{ggx_formula, mirror_frame};
+use arealight::{Fresnel, Horizon, LightTable, TableSample};
+use arealight_fit::report::{Case, Family, Quad, Rung, integrate, measure_lookup, random_quads};
+use glam::{DQuat, DVec3};
+use rayon::prelude::*;
+
+/// Cells a side of a map.
+pub const CELLS: usize = 32;
+
+/// The reflectances that are measured, two of [`arealight_fit::report::REFLECTANCES`].
+pub const REFLECTANCES: [f64; 2] = [0.04, 1.0];
+
+/// The ranges of [`random_quads`], so that the mean of a map is near that of a report.
+pub const ROUGHNESS: [f64; 2] = [0.1, 1.0];
+/// In degrees.
+pub const VIEW: [f64; 2] = [0.0, 89.0];
+
+/// The seed of the quads that each cell is measured on.
+const SEED: u64 = 2;
+
+/// Where lobes come from.
+pub enum Source<'a> {
+    Table(&'a LightTable),
+    /// [`ggx_formula`].
+    Formula,
+}
+
+/// What is measured: lobes, and how they are used.
+pub struct Subject<'a> {
+    pub name: String,
+    pub lobes: Source<'a>,
+    pub fresnel: Fresnel,
+}
+
+/// Mean absolute errors over [`CELLS`] × [`CELLS`] roughnesses and view angles.
+pub struct ErrorMap {
+    pub name: String,
+    pub fresnel: Fresnel,
+    pub f0: f64,
+    /// Row after row from the normal, from the least roughness.
+    pub cells: Vec<f64>,
+}
+
+impl Source<'_> {
+    fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {
+        match self {
+            Self::Table(table) => table.lookup(roughness, cos_view),
+            Self::Formula => ggx_formula(roughness, cos_view),
+        }
+    }
+}
+
+impl ErrorMap {
+    /// How the lobes were used, for people.
+    pub fn rung(&self) -> &'static str {
+        match self.fresnel {
+            Fresnel::ByF0 => "by F0",
+            Fresnel::Split => "split",
+        }
+    }
+
+    pub fn mean(&self) -> f64 {
+        self.cells.iter().sum::<f64>() / self.cells.len().max(1) as f64
+    }
+
+    /// The largest of the cells' means, and the cell.
+    pub fn worst(&self) -> (usize, f64) {
+        self.cells.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default()
+    }
+}
+
+/// The roughness and the view angle in degrees at the middle of a cell.
+pub fn middle(cell: usize) -> (f64, f64) {
+    let at = |[from, to]: [f64; 2], i: usize| from + (to - from) * (i as f64 + 0.5) / CELLS as f64;
+    (at(ROUGHNESS, cell % CELLS), at(VIEW, cell / CELLS))
+}
+
+/// Measures all subjects on the same `quads` quads a cell; maps of the first subject at each of [`REFLECTANCES`], then of
+/// the next. `progress` is called from any thread after each cell.
+pub fn measure(subjects: &[Subject], quads: usize, progress: &(dyn Fn() + Sync)) -> Vec<ErrorMap> {
+    let quads = random_quads(quads, SEED);
+    let cells: Vec<Vec<f64>> = (0..CELLS * CELLS)
+        .into_par_iter()
+        .map(|cell| {
+            let errors = measure_cell(subjects, &quads, cell);
+            progress();
+            errors
+        })
+        .collect();
+    let labels = subjects.iter().flat_map(|subject| REFLECTANCES.map(|f0| (subject, f0)));
+    labels
+        .enumerate()
+        .map(|(map, (Subject { name, fresnel, .. }, f0))| {
+            let cells = cells.iter().map(|errors| errors[map]).collect();
+            ErrorMap { name: name.clone(), fresnel: *fresnel, f0, cells }
+        })
+        .collect()
+}
+
+/// A number for each map.
+fn measure_cell(subjects: &[Subject], quads: &[Quad], cell: usize) -> Vec<f64> {
+    let (roughness, view) = middle(cell);
+    let cos_view = view.to_radians().cos();
+    let aimed = quads.iter().map(|quad| aimed(quad, roughness, cos_view)).collect();
+    let cases: Vec<Case> = integrate(aimed, &|| ());
+    let mut means = Vec::with_capacity(subjects.len() * REFLECTANCES.len());
+    for Subject { lobes, fresnel, .. } in subjects {
+        let rung = Rung { fresnel: *fresnel, horizon: Horizon::Cosine };
+        let sample = lobes.lookup(roughness, cos_view);
+        let errors = measure_lookup(|_, _| sample, rung, &cases);
+        means.extend(
+            REFLECTANCES.map(|f0| errors.iter().find(|e| e.f0 == f0).map_or(f64::NAN, |errors| errors.mean)),
+        );
+    }
+    means
+}
+
+/// A quad of a report as it would have been drawn for another roughness and view: those about the mirror direction move
+/// with it, and their distance from it grows with alpha.
+fn aimed(quad: &Quad, roughness: f64, cos_view: f64) -> Quad {
+    let mut quad = quad.clone();
+    if quad.family == Family::Mirror {
+        let centre = quad.vertices.iter().sum::<DVec3>().normalize_or(DVec3::Z);
+        let offset = mirror_frame(quad.cos_view).transpose() * centre;
+        let growth = (roughness / quad.roughness).powi(2);
+        let scaled = DVec3::new(offset.x * growth, offset.y * growth, offset.z);
+        let target = (mirror_frame(cos_view) * scaled).normalize_or(DVec3::Z);
+        let turn = DQuat::from_rotation_arc(centre, target.with_z(target.z.abs()));
+        quad.vertices = quad.vertices.map(|vertex| turn * vertex);
+    }
+    Quad { roughness, cos_view, ..quad }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quads_about_the_mirror_direction_follow_it() {
+        let from_mirror = |quad: &Quad| {
+            let centre = quad.vertices.iter().sum::<DVec3>().normalize_or(DVec3::Z);
+            let mirror = mirror_frame(quad.cos_view).z_axis;
+            mirror.angle_between(centre)
+        };
+        let quads: Vec<Quad> =
+            random_quads(300, 7).into_iter().filter(|quad| quad.family == Family::Mirror).collect();
+        assert_eq!(quads.len(), 100);
+        for quad in &quads {
+            // At its own roughness and view a quad stays, but for rounding
+            let same = aimed(quad, quad.roughness, quad.cos_view);
+            let moved = same.vertices.iter().zip(&quad.vertices).map(|(a, b)| a.distance(*b));
+            assert!(moved.fold(0.0, f64::max) < 1e-12);
+            // At another it is as near in alphas: an offset of at most one, and asin(x) <= pi/2 x
+            let other = aimed(quad, 0.2, 0.7);
+            assert!(from_mirror(&other) < 0.04 * std::f64::consts::FRAC_PI_2 + 1e-12, "{other:?}");
+        }
+        // Those that are left as they are, are not
+        let left = quads.iter().map(|quad| Quad { roughness: 0.2, cos_view: 0.7, ..quad.clone() });
+        assert!(left.filter(|quad| from_mirror(quad) > 0.2).count() > 50);
+    }
+
+    #[test]
+    fn maps_agree_with_the_report() {
+        let table = arealight_table::ggx();
+        let rungs = [Fresnel::ByF0, Fresnel::Split];
+        let subjects =
+            rungs.map(|fresnel| Subject { name: String::new(), lobes: Source::Table(&table), fresnel });
+        let maps = measure(&subjects, 6, &|| ());
+        let cases = arealight_fit::report::cases(3000, 1, &|| ());
+        for (map, fresnel) in maps.iter().zip(rungs.into_iter().flat_map(|rung| [rung; 2])) {
+            assert_eq!((map.fresnel, map.cells.len()), (fresnel, CELLS * CELLS));
+            let report =
+                arealight_fit::report::measure(&table, Rung { fresnel, horizon: Horizon::Cosine }, &cases);
+            let expected = report.iter().find(|errors| errors.f0 == map.f0).unwrap().mean;
+            // Six quads stand for all: within a factor of three. A wrong view or roughness errs a hundredfold
+            let ratio = map.mean() / expected;
+            assert!((1.0 / 3.0..3.0).contains(&ratio), "{fresnel:?} {}: {ratio}", map.f0);
+            assert!(map.worst().1 > map.mean() && map.cells[map.worst().0] == map.worst().1);
+        }
+        // Two lobes are better than one for a dielectric, and the same for a metal
+        assert!(maps[2].mean() < maps[0].mean() && (maps[3].mean() - maps[1].mean()).abs() < 1e-12);
+    }
+}
