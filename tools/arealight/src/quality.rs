@@ -1,9 +1,11 @@
 //! The rungs of the quality ladder, as options of a command.
 
-use arealight::{FormFactor, Fresnel, Horizon, Quality};
+use crate::failure::Failure;
+use arealight::{FormFactor, Fresnel, Horizon, LightTable, Quality};
+use std::path::PathBuf;
 
 /// How lights are integrated.
-#[derive(clap::Args, Clone, Copy, Debug)]
+#[derive(clap::Args, Clone, Debug)]
 pub struct QualityArguments {
     /// How edges of lights are integrated [default: exact for render, exact-difference for eval]
     #[arg(long, value_enum, value_name = "RUNG")]
@@ -11,12 +13,15 @@ pub struct QualityArguments {
     /// Where lights are clipped
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
     horizon: Clip,
-    /// How Schlick's Fresnel term enters the glossy lobe
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lobes::ByF0)]
-    fresnel: Lobes,
+    /// How Schlick's Fresnel term enters the glossy lobe [default: by-f0 for render, split for eval]
+    #[arg(long, value_enum, value_name = "HOW")]
+    fresnel: Option<Lobes>,
     /// Take far lights from their centre alone where that is within 1e-4, relative
     #[arg(long)]
     one_point: bool,
+    /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
+    #[arg(long, value_name = "FILE")]
+    table: Option<PathBuf>,
 }
 
 /// The rungs of the form factor.
@@ -52,15 +57,15 @@ pub enum Lobes {
 
 impl Default for QualityArguments {
     fn default() -> Self {
-        Self { form_factor: None, horizon: Clip::Cosine, fresnel: Lobes::ByF0, one_point: false }
+        Self { form_factor: None, horizon: Clip::Cosine, fresnel: None, one_point: false, table: None }
     }
 }
 
 impl QualityArguments {
-    /// The rungs chosen, and `form_factor` where none is.
-    pub fn quality_or(self, form_factor: FormFactor) -> Quality {
+    /// The rungs chosen, and those of `default` where none is.
+    pub fn quality_or(&self, default: Quality) -> Quality {
         let form_factor = match self.form_factor {
-            None => form_factor,
+            None => default.form_factor,
             Some(Rung::Exact) => FormFactor::Exact,
             Some(Rung::Fast) => FormFactor::Fast,
             Some(Rung::ExactDifference) => FormFactor::ExactDifference,
@@ -71,9 +76,21 @@ impl QualityArguments {
             Clip::Both => Horizon::Both,
         };
         let fresnel = match self.fresnel {
-            Lobes::ByF0 => Fresnel::ByF0,
-            Lobes::Split => Fresnel::Split,
+            None => default.fresnel,
+            Some(Lobes::ByF0) => Fresnel::ByF0,
+            Some(Lobes::Split) => Fresnel::Split,
         };
         Quality { form_factor, horizon, fresnel, one_point: self.one_point }
+    }
+
+    /// The table chosen.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or holds no table.
+    pub fn table(&self) -> Result<LightTable, Failure> {
+        match &self.table {
+            None => Ok(arealight_table::ggx()),
+            Some(path) => arealight_table::load(path).map_err(|error| Failure::input(path, error)),
+        }
     }
 }

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
-use arealight::{FormFactor, Quality};
+use arealight::{FormFactor, Fresnel, LightTable, Quality};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
@@ -149,14 +149,16 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     // Set aside what is not supported
     let supported: Vec<_> = cases.iter().map(Case::supported).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
+    // The most precise rungs, unless others are to be seen
+    let precise =
+        Quality { form_factor: FormFactor::ExactDifference, fresnel: Fresnel::Split, ..Quality::default() };
+    let quality = arguments.quality.quality_or(precise);
     let answered = match arguments.on {
         Method::Gpu => {
-            let quality = arguments.quality.quality_or(FormFactor::ExactDifference);
-            gpu::eval::answer(&answerable, quality, arguments.device.as_deref(), &arguments.cases)?
+            let table = arguments.quality.table()?;
+            gpu::eval::answer(&answerable, quality, &table, arguments.device.as_deref(), &arguments.cases)?
         }
-        Method::Oracle => {
-            answer_by_table(&answerable, arguments.quality.quality_or(FormFactor::ExactDifference))
-        }
+        Method::Oracle => answer_by_table(&answerable, quality, &arguments.quality.table()?),
         Method::Truth => answer_in_parallel(&answerable, answer_by_cubature),
     };
     // Put the answers in between
@@ -168,10 +170,9 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     Ok(cases.iter().zip(&supported).map(answer).collect())
 }
 
-fn answer_by_table(cases: &[SupportedCase], quality: Quality) -> Vec<Answer> {
-    let table = arealight_table::ggx();
+fn answer_by_table(cases: &[SupportedCase], quality: Quality, table: &LightTable) -> Vec<Answer> {
     answer_in_parallel(cases, |case| {
-        Answer::new(&case.name, ltc_on(quality, &table, &case.surface, case.normal, case.view, &case.light))
+        Answer::new(&case.name, ltc_on(quality, table, &case.surface, case.normal, case.view, &case.light))
     })
 }
 

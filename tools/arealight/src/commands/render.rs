@@ -6,7 +6,7 @@ use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
-use arealight::{Effects, FormFactor};
+use arealight::{Effects, Quality};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -115,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let camera = choose_camera(&scene, arguments)?;
 
     // Render, save, and say so
-    let table = arealight_table::ggx();
+    let table = arguments.quality.table()?;
     let engine = gpu::engine(arguments.device.as_deref(), &table)?;
     let effects = scene.effects();
     let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
@@ -141,7 +141,7 @@ fn render(
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     let visibility = renderer.visibility()?;
     let shading = match arguments.reference {
-        None => renderer.shade(effects, arguments.quality.quality_or(FormFactor::Exact))?,
+        None => renderer.shade(effects, arguments.quality.quality_or(Quality::default()))?,
         Some(samples) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");

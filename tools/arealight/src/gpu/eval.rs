@@ -2,18 +2,19 @@
 
 use super::{engine, failure};
 use crate::failure::Failure;
-use arealight::{PolygonLight, Quality};
+use arealight::{LightTable, PolygonLight, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
 use glam::DVec3;
 use std::path::Path;
 
-/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason;
+/// One answer a case, by the GLSL of the shade pass with `table`. A case whose light float32 cannot hold gets the reason;
 /// the others are answered all the same. `input` is the file of the cases, for errors.
 pub fn answer(
     cases: &[SupportedCase],
     quality: Quality,
+    table: &LightTable,
     device: Option<&str>,
     input: &Path,
 ) -> Result<Vec<Answer>, Failure> {
@@ -26,7 +27,7 @@ pub fn answer(
     let radiance = if shaded.is_empty() {
         Vec::new()
     } else {
-        let engine = engine(device, &arealight_table::ggx())?;
+        let engine = engine(device, table)?;
         engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
