@@ -1,6 +1,6 @@
 //! Images of four channels as texture formats hold them, and tables in them.
 
-use crate::attributes::{Attributes, Value, name, printable, texts};
+use crate::attributes::{Attributes, Value, name, texts};
 use crate::{Format, Precision, ReadError, TableFile, VERSION};
 use arealight::table::MAX_SIZE;
 use half::f16;
@@ -76,8 +76,9 @@ impl Texture<'_> {
     fn attribute(&self, wanted: &str) -> Option<Value> {
         let (_, value) = KeyValueDataIterator::new(self.key_values).find(|(key, _)| *key == wanted)?;
         let value = value.strip_suffix(&[0]).unwrap_or(value);
-        let Ok(text) = std::str::from_utf8(value) else {
-            return Some(Value::Other(printable(&String::from_utf8_lossy(value))));
+        // Text ends with its zero: one that has more could not be written as it was read
+        let Some(text) = std::str::from_utf8(value).ok().filter(|text| !text.contains('\0')) else {
+            return Some(Value::Other(String::from_utf8_lossy(value).into_owned()));
         };
         // Numbers are text here
         if wanted == name::VERSION

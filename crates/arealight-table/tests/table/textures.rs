@@ -263,6 +263,8 @@ fn attributes_are_checked_as_those_of_exr() {
             message("arealight.matrices\x002", "arealight.matrices\x003"),
             "attribute `arealight.matrices` is `3`; this program reads `1 or 2`"
         );
+        let not_text = "attribute `arealight.brdf` is `a\\0test`; this program reads `a string`";
+        assert_eq!(message("arealight.brdf\0a ", "arealight.brdf\0a\0"), not_text);
         // One matrix is another table
         assert!(matches!(
             spoil("arealight.matrices\x002", "arealight.matrices\x001"),
