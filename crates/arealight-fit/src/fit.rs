@@ -1,5 +1,6 @@
 //! The fit of a whole table.
 
+use arealight::table::MIN_COS_VIEW;
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -107,14 +108,11 @@ impl Texel<'_> {
 ///
 /// The first column stands for the smallest alpha that is shaded. The last row stays off the horizon: exactly
 /// on it a lobe degenerates to a fan that is `alpha²` wide, and interpolating towards that would narrow every
-/// lobe of the last cell.
-fn node_of(size: u32, i: usize) -> (f64, f64) {
+/// lobe of the last cell. See [`MIN_COS_VIEW`].
+pub(crate) fn node_of(size: u32, i: usize) -> (f64, f64) {
     let (roughness, cos_view) = LightTable::node(size, i as u32 % size, i as u32 / size);
     ((roughness * roughness).max(MIN_ALPHA), cos_view.max(MIN_COS_VIEW))
 }
-
-/// Of the view 0.06 degrees above the horizon.
-const MIN_COS_VIEW: f64 = 1e-3;
 
 /// At the normal, GGX of a small alpha is a transformed cosine exactly: `tan theta_light = 2 alpha tan theta`.
 fn start_at_normal(alpha: f64) -> Lobe {

@@ -18,6 +18,9 @@
 //! Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`]. [`report`] measures a
 //! table at reflectances from 0.02 to 1, beside the table published with Heitz et al. 2016.
 //!
+//! # Without a table
+//! [`formula`] fits polynomials to a table's entries, for those who have no sampler to spare.
+//!
 //! # The same everywhere
 //! The table does not depend on the number of threads, and all random numbers are fixed. Between machines only
 //! the last bits of the system's sines, logarithms and powers can differ.
@@ -26,6 +29,8 @@ mod aim;
 pub mod brdf;
 mod error;
 mod fit;
+pub mod formula;
+mod linear;
 pub mod lobe;
 mod nodes;
 mod probes;

@@ -117,7 +117,17 @@ pub fn measure_lookup(
 /// Measures a table for a reflectance that has a colour. The errors of all channels count alike; `f0` of the
 /// result is their mean.
 pub fn measure_colour(table: &LightTable, rung: Rung, f0: DVec3, cases: &[Case]) -> Errors {
-    measure_f0(&|roughness, cos_view| table.lookup(roughness, cos_view), rung, f0, cases)
+    measure_lookup_colour(|roughness, cos_view| table.lookup(roughness, cos_view), rung, f0, cases)
+}
+
+/// Measures what [`measure_lookup`] does, for a reflectance that has a colour.
+pub fn measure_lookup_colour(
+    lookup: impl Fn(f64, f64) -> TableSample + Sync,
+    rung: Rung,
+    f0: DVec3,
+    cases: &[Case],
+) -> Errors {
+    measure_f0(&lookup, rung, f0, cases)
 }
 
 fn measure_f0(

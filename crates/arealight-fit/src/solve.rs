@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::error::FitError;
+use crate::linear::cholesky;
 use crate::lobe::Lobe;
 use crate::nodes::{Node, Nodes, Texel};
 use crate::probes::probe_rows;
@@ -89,6 +90,12 @@ impl Problem {
         let distance: f64 =
             (0..4).map(|i| self.anchor[i] * (lobe.texel[i] - self.guess.texel[i]).powi(2)).sum();
         misfit + distance
+    }
+
+    /// Half the loss's second derivatives by the entries of the texel about a lobe, in the manner of Gauss and Newton,
+    /// with what holds it at the guess.
+    pub fn curvature(&self, lobe: &Lobe) -> [[f64; 4]; 4] {
+        self.normal_equations(lobe, [true; 4]).0
     }
 
     /// Minimises the loss from a starting lobe over the entries of the texel that are `free`.
@@ -181,22 +188,10 @@ impl Problem {
 /// diagonal; `None` if it is not positive definite.
 fn damped_step(normal: &[[f64; 4]; 4], slope: &[f64; 4], damping: f64) -> Option<[f64; 4]> {
     let scale: [f64; 4] = std::array::from_fn(|i| 1.0 / normal[i][i].max(f64::MIN_POSITIVE).sqrt());
-    let mut lower = [[0.0; 4]; 4];
-    for i in 0..4 {
-        for j in 0..=i {
-            let damped = if i == j { damping } else { 0.0 };
-            let known: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
-            let value = normal[i][j] * scale[i] * scale[j] + damped - known;
-            lower[i][j] = if i == j {
-                if value.is_nan() || value <= 1e-14 {
-                    return None;
-                }
-                value.sqrt()
-            } else {
-                value / lower[j][j]
-            };
-        }
-    }
+    let damped = std::array::from_fn(|i| {
+        std::array::from_fn(|j| normal[i][j] * scale[i] * scale[j] + if i == j { damping } else { 0.0 })
+    });
+    let lower = cholesky(&damped, 1e-14)?;
     // Substitute forwards, then backwards
     let mut step = [0.0; 4];
     for i in 0..4 {

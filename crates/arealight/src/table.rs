@@ -30,9 +30,9 @@
 
 use glam::{DMat3, DVec3};
 
-mod ggx_formula;
+mod formula;
 
-pub use ggx_formula::ggx_formula;
+pub use formula::{Formula, MIN_COS_VIEW, ggx_formula};
 
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;

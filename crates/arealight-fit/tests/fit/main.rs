@@ -2,5 +2,6 @@
 
 mod albedo;
 mod built_in;
+mod formula;
 mod lobe;
 mod table;

@@ -3,11 +3,12 @@
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
-use arealight::{Fresnel, Horizon, LightTable};
+use arealight::table::Formula;
+use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_fit::report::{
-    COUNT, Case, Errors, METALS, PUBLISHED, Rung, SEED, cases, measure, measure_colour,
+    COUNT, Case, Errors, METALS, PUBLISHED, Rung, SEED, cases, measure_lookup, measure_lookup_colour,
 };
-use arealight_fit::{Aim, GgxBrdf, Settings};
+use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -26,6 +27,9 @@ pub struct Arguments {
     /// Two matrices, one for the lobe of F0 and one for that of Schlick's weight; or one for all reflectances.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     matrices: u8,
+    /// Fit a formula to the table as well, and print its coefficients as Rust and GLSL.
+    #[arg(long)]
+    formula: bool,
     /// Compare the table with the true BRDF on 3000 random quads, beside the published table.
     #[arg(long)]
     report: bool,
@@ -43,20 +47,27 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let table = arealight_fit::fit(&GgxBrdf, &settings, &|_, _| bar.inc(1));
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
-    let table =
-        table.map_err(|error| Failure::Argument { argument: "--size", message: error.to_string() })?;
+    let refused = |error: FitError| Failure::Argument { argument: "--size", message: error.to_string() };
+    let table = table.map_err(refused)?;
 
     // Write it before it is measured: a report that is broken off loses nothing
     if let Some(path) = &arguments.output {
         arealight_table::save(&table, path).map_err(|error| Failure::output(path, error))?;
     }
-    let report = arguments.report.then(|| Report::of(&table));
-    let summary = Summary { arguments, table: &table, seconds, report };
+    let formula = arguments.formula.then(|| formula::fit(&GgxBrdf, &table)).transpose().map_err(refused)?;
+    let report = arguments.report.then(|| Report::of(&table, formula.as_ref()));
+    let summary = Summary { arguments, table: &table, seconds, formula, report };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
-/// The errors of a table in each way of using it.
+/// The errors of a table, and of the formula that was fitted to it.
 struct Report {
+    table: Horizons,
+    formula: Option<Horizons>,
+}
+
+/// The errors in each way of using a table or a formula.
+struct Horizons {
     cosine_space: Comparison,
     both_horizons: Comparison,
 }
@@ -70,21 +81,63 @@ struct Comparison {
 }
 
 impl Report {
-    /// Measures a table, with a progress bar.
-    fn of(table: &LightTable) -> Self {
+    /// Measures a table and a formula, with a progress bar.
+    fn of(table: &LightTable, formula: Option<&Formula>) -> Self {
         let bar = progress::bar(COUNT as u64, "quads");
         let cases = cases(COUNT, SEED, &|| bar.inc(1));
         bar.finish_and_clear();
-        let at = |horizon| Comparison::of(table, horizon, &cases);
+        Self {
+            table: Horizons::of(&|roughness, cos_view| table.lookup(roughness, cos_view), &cases),
+            formula: formula.map(|formula| {
+                Horizons::of(&|roughness, cos_view| formula.lookup(roughness, cos_view), &cases)
+            }),
+        }
+    }
+
+    fn to_text(&self) -> String {
+        let mut text = format!(
+            "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about the mirror\n\
+             direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees. The published\n\
+             table is clipped in cosine space only, with one integral.\n\n{}",
+            self.table.to_text()
+        );
+        if let Some(formula) = &self.formula {
+            let _ = write!(text, "\nBy formula, without a table\n\n{}", formula.to_text());
+        }
+        text
+    }
+}
+
+/// What answers a roughness and a view's cosine with a lobe.
+type Lookup<'a> = &'a (dyn Fn(f64, f64) -> TableSample + Sync);
+
+impl Horizons {
+    fn of(lookup: Lookup, cases: &[Case]) -> Self {
+        let at = |horizon| Comparison::of(lookup, horizon, cases);
         Self { cosine_space: at(Horizon::Cosine), both_horizons: at(Horizon::Both) }
+    }
+
+    fn to_text(&self) -> String {
+        format!(
+            "Clipped in cosine space\n{}\nClipped at the surface's horizon too\n{}",
+            self.cosine_space.to_text(),
+            self.both_horizons.to_text()
+        )
+    }
+
+    fn to_json(&self) -> Value {
+        json!({
+            "cosine_space": self.cosine_space.to_json(),
+            "both_horizons": self.both_horizons.to_json(),
+        })
     }
 }
 
 impl Comparison {
-    fn of(table: &LightTable, horizon: Horizon, cases: &[Case]) -> Self {
+    fn of(lookup: Lookup, horizon: Horizon, cases: &[Case]) -> Self {
         let rungs = [Fresnel::ByF0, Fresnel::Split].map(|fresnel| Rung { fresnel, horizon });
-        let [by_f0, split] = rungs.map(|rung| measure(table, rung, cases));
-        let metal = |&(_, f0): &(_, _)| rungs.map(|rung| measure_colour(table, rung, f0, cases));
+        let [by_f0, split] = rungs.map(|rung| measure_lookup(lookup, rung, cases));
+        let metal = |&(_, f0): &(_, _)| rungs.map(|rung| measure_lookup_colour(lookup, rung, f0, cases));
         Self { by_f0, split, metals: METALS.iter().map(metal).collect() }
     }
 
@@ -141,6 +194,7 @@ struct Summary<'a> {
     arguments: &'a Arguments,
     table: &'a LightTable,
     seconds: f64,
+    formula: Option<Formula>,
     report: Option<Report>,
 }
 
@@ -151,26 +205,31 @@ impl Summary<'_> {
         if let Some(path) = &self.arguments.output {
             let _ = writeln!(text, "wrote {}", path.display());
         }
+        if let Some(formula) = &self.formula {
+            let _ = write!(text, "\n{}\n{}", formula::rust(formula), formula::glsl(formula));
+        }
         if let Some(report) = &self.report {
-            let _ = write!(
-                text,
-                "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about the mirror\n\
-                 direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees. The published\n\
-                 table is clipped in cosine space only, with one integral.\n\n\
-                 Clipped in cosine space\n{}\nClipped at the surface's horizon too\n{}",
-                report.cosine_space.to_text(),
-                report.both_horizons.to_text()
-            );
+            text.push_str(&report.to_text());
         }
         text
     }
 
     fn to_json(&self) -> String {
         let report = self.report.as_ref().map(|report| {
+            let mut errors = report.table.to_json();
+            errors["quads"] = json!(COUNT);
+            errors["formula"] = json!(report.formula.as_ref().map(Horizons::to_json));
+            errors
+        });
+        let formula = self.formula.as_ref().map(|formula| {
             json!({
-                "quads": COUNT,
-                "cosine_space": report.cosine_space.to_json(),
-                "both_horizons": report.both_horizons.to_json(),
+                "lobe": formula.lobe,
+                "schlick_lobe": formula.schlick_lobe,
+                "dip": formula.dip,
+                "albedo": formula.albedo,
+                "albedo_denominator": formula.albedo_denominator,
+                "schlick": formula.schlick,
+                "schlick_denominator": formula.schlick_denominator,
             })
         });
         let summary = json!({
@@ -179,6 +238,7 @@ impl Summary<'_> {
             "size": self.table.size(),
             "seconds": self.seconds,
             "output": self.arguments.output,
+            "formula": formula,
             "report": report,
         });
         format!("{summary:#}\n")
@@ -190,7 +250,14 @@ mod tests {
     use super::*;
 
     fn arguments() -> Arguments {
-        Arguments { output: Some("a.exr".into()), size: 2, matrices: 2, report: true, json: true }
+        Arguments {
+            output: Some("a.exr".into()),
+            size: 2,
+            matrices: 2,
+            formula: true,
+            report: true,
+            json: true,
+        }
     }
 
     fn comparison() -> Comparison {
@@ -216,8 +283,10 @@ mod tests {
     #[test]
     fn json_holds_what_the_text_says() {
         let (arguments, table) = (arguments(), arealight_table::ggx());
-        let report = Some(Report { cosine_space: comparison(), both_horizons: comparison() });
-        let summary = Summary { arguments: &arguments, table: &table, seconds: 1.5, report };
+        let horizons = || Horizons { cosine_space: comparison(), both_horizons: comparison() };
+        let report = Some(Report { table: horizons(), formula: Some(horizons()) });
+        let formula = Some(Formula::GGX);
+        let summary = Summary { arguments: &arguments, table: &table, seconds: 1.5, formula, report };
         let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
         assert_eq!(value["size"], 64);
         assert_eq!(value["output"], "a.exr");
@@ -225,8 +294,14 @@ mod tests {
         assert_eq!(lines.len(), PUBLISHED.len() + METALS.len());
         assert_eq!(lines[6]["split"]["max"], 0.234);
         assert_eq!(lines[7]["metal"], "gold");
+        assert_eq!(value["report"]["formula"]["both_horizons"][6]["by_f0"]["max"], 0.234);
+        assert_eq!(value["formula"]["lobe"][9][3], Formula::GGX.lobe[9][3]);
         let text = summary.to_text();
         assert!(text.starts_with("fitted ggx-correlated-smith, 64 x 64 nodes, in 1.5 s\nwrote a.exr\n"));
-        assert!(text.contains("\nClipped at the surface's horizon too\n"), "{text}");
+        for part in
+            ["\nFormula {\n", "\nconst vec4 ", "\nClipped at the surface's horizon too\n", "\nBy formula"]
+        {
+            assert!(text.contains(part), "{part}: {text}");
+        }
     }
 }
