@@ -8,7 +8,8 @@ use crate::Precision;
 /// A table of another number of nodes, interpolated bilinearly, as shading does. Its description says so.
 ///
 /// A new node that coincides with an old one keeps its numbers (64 nodes hold those of 22, 10, 8, 4 and 2); the others lie
-/// on chords between the old ones. A table that is fitted with the number of nodes asked for is better.
+/// on chords between the old ones. A table that is fitted with the number of nodes asked for is better, at 16 nodes by 1 %
+/// of its error.
 ///
 /// # Errors
 /// [`TableError::Size`] if `size` is no table's; [`TableError::Singular`] if lobes of opposite tilt cancel.

@@ -68,6 +68,10 @@ fn a_table_is_measured_as_it_is_written() {
     let said: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert_eq!((&said["size"], &said["matrices"], &said["bits"]), (&64.into(), &2.into(), &32.into()));
     assert_eq!(said["fit_error"], arealight_table::ggx_file().fit_error.unwrap());
+    let said = convert(folder.path(), &["built-in", "a.dds", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let written = arealight_table::load(&folder.path().join("a.dds")).unwrap();
+    assert_eq!(said["hash"], arealight_table::hash(&written));
 }
 
 /// An image of 2 x 2 texels of four floats, as the authors of the convention write it.

@@ -7,8 +7,8 @@ use arealight::{Fresnel, Horizon, LightTable};
 use arealight_fit::report::{COUNT, Errors, Rung, SEED, cases, measure};
 use arealight_fit::{Brdf, GgxBrdf};
 use arealight_table::{
-    Adjusted, FileError, MAX_GLSL_SIZE, Precision, SaveError, TableFile, Target, hash, load_published,
-    resampled,
+    Adjusted, FileError, MAX_GLSL_SIZE, Precision, SaveError, TableFile, Target, WriteError, hash,
+    load_published, resampled, rounded,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -47,7 +47,7 @@ struct Convert {
     /// The floats that are written: 16 bits unless given, in .exr always 32.
     #[arg(long, value_enum)]
     format: Option<Floats>,
-    /// Nodes a side that are written, 2 to 1024: interpolated bilinearly (`arealight fit --size` is better). A .glsl of a
+    /// Nodes a side that are written, 2 to 1024: interpolated bilinearly (`arealight fit --size` is better by a little). A .glsl of a
     /// larger table has 16 unless given, and 64 at most.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: Option<u32>,
@@ -100,6 +100,9 @@ impl Convert {
             // Its error was another table's
             file = TableFile { table, fit_error: None };
         }
+        // Round before measuring: what is said is said of the table that is written
+        file.table = rounded(&file.table, target.precision())
+            .map_err(|error| Failure::input(&self.input, WriteError::from(error)))?;
         if self.measure {
             file.fit_error = Some(measured(&file.table)?);
         }
@@ -210,7 +213,7 @@ impl Summary<'_> {
             "matrices": self.matrices(),
             "bits": self.bits(),
             "bytes": self.bytes,
-            "hash_before_rounding": hash(table),
+            "hash": hash(table),
             "fit_error": self.file.fit_error,
             "adjusted": self.adjusted.len(),
         });
