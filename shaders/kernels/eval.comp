@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The shade kernel's functions over a list of shading points: what a port can be checked against. The lights'
-// vertices are relative to the shading point that they belong to.
+// centers are relative to the shading point that they belong to.
 
 layout(local_size_x = 64) in;
 
@@ -11,6 +11,7 @@ layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int FRESNEL = 0;
+layout(constant_id = 6) const int LOBES = 0;
 
 #define LIGHTS_BINDING 1
 #include "table_image.glsl"
@@ -46,7 +47,7 @@ void main() {
     ArealightGpuCase given = cases[index];
     ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo,
                                                 given.f0, given.f90, given.roughness);
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL);
+    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES);
     ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
     vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, quality);
     results[index] = vec4(radiance, 0.0);

@@ -3,7 +3,7 @@
 
 use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
 use arealight::kernels::EVAL;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Quality, plan};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, plan};
 use arealight_tests::{Random, TestEngine};
 use arealight_vk::{ComputePass, Resource};
 
@@ -190,7 +190,12 @@ fn every_bit_pattern_gives_a_form_factor() {
                 check(&engine, &given, effects, Quality { form_factor, horizon, ..Quality::default() });
             }
         }
-        let quality = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..Quality::default() };
+        let quality = Quality {
+            fresnel: Fresnel::Split,
+            horizon: Horizon::Both,
+            lobes: Lobes::Formula,
+            ..Quality::default()
+        };
         check(&engine, &given, effects, quality);
         let quality = Quality { one_point: true, ..Quality::default() };
         check(&engine, &given, effects, quality);

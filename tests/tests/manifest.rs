@@ -4,7 +4,7 @@
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
 use arealight::plan::{Output, PositionSource};
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Quality};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
 use std::collections::BTreeMap;
@@ -443,6 +443,8 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
     let fresnel = [("BY_F0", number(Fresnel::ByF0 as u32)), ("SPLIT", number(Fresnel::Split as u32))];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_FRESNEL_", &fresnel);
+    let lobes = [("TABLE", number(Lobes::Table as u32)), ("FORMULA", number(Lobes::Formula as u32))];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_LOBES_", &lobes);
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
     assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);

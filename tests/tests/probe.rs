@@ -388,7 +388,7 @@ fn a_light_that_counts_as_far_is_taken_well_from_its_center() {
         .map(|mut given| {
             // As low as a far light may be
             let extent = given[0][3];
-            given[0][2] = extent * random.between(4.0, 8.0) as f32;
+            given[0][2] = extent * random.between(44.0, 60.0) as f32;
             given
         })
         .collect();

@@ -5,8 +5,8 @@ use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, ed
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
-use arealight::table::share_above_surface;
-use arealight::{Fresnel, Horizon, LightTable, PolygonLight, Quality, Surface};
+use arealight::table::{ggx_formula, share_above_surface};
+use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality, Surface};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
@@ -159,7 +159,7 @@ pub fn ltc(
 }
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
-/// `arealight_polygon_radiance`. Of `quality` it takes the horizon and the Fresnel rung; it integrates exactly on
+/// `arealight_polygon_radiance`. Of `quality` it takes the horizon, the Fresnel rung and where the lobes come from; it integrates exactly on
 /// every rung of the form factor, and [`Horizon::Bare`] is clipped at the lobe's horizon.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
@@ -173,7 +173,11 @@ pub fn ltc_on(
 ) -> DVec3 {
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
-    let sample = table.lookup(surface.alpha.sqrt(), frame.cos_view());
+    let roughness = surface.alpha.sqrt();
+    let sample = match quality.lobes {
+        Lobes::Table => table.lookup(roughness, frame.cos_view()),
+        Lobes::Formula => ggx_formula(roughness, frame.cos_view()),
+    };
     // Integrate the transformed cosine
     let visible = if quality.horizon == Horizon::Both { above_horizon(&vertices) } else { vertices.clone() };
     let lobe = |inverse: &DMat3| {

@@ -17,7 +17,7 @@ use glam::{DVec3, Mat4, Vec3};
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
     pub table: Resource,
-    /// [`PackedLights::lights`]. With no lights, bind any buffer of 48 bytes or more.
+    /// [`PackedLights::lights`]. With no lights, bind any buffer of 64 bytes or more.
     pub lights: Resource,
     /// [`PackedLights::vertices`].
     pub light_vertices: Resource,

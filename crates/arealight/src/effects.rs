@@ -41,7 +41,8 @@ impl Effects {
 
     /// What `lights` call for beyond this set, with the name of the first light that does.
     pub fn missing_for(self, lights: &[crate::PolygonLight]) -> Option<(Self, &str)> {
-        lights.iter().find_map(|light| {
+        // A light that is none calls for nothing: packing says what is wrong with it
+        lights.iter().filter(|light| light.validate().is_ok()).find_map(|light| {
             let missing = light.effects() - self;
             (!missing.is_empty()).then_some((missing, light.name.as_str()))
         })

@@ -87,7 +87,7 @@ pub struct GpuLightSampling {
     pub reserved: [u32; 2],
 }
 
-/// One shading point of the eval kernel. Its light's vertices are relative to the point.
+/// One shading point of the eval kernel. Its light's center is relative to the point.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuCase {

@@ -79,6 +79,8 @@ pub mod constant {
     pub const HORIZON: u32 = 4;
     /// [`crate::Fresnel`].
     pub const FRESNEL: u32 = 5;
+    /// [`crate::Lobes`].
+    pub const LOBES: u32 = 6;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -148,6 +150,7 @@ pub static SHADE: Kernel = Kernel {
         constant::OUTPUT,
         constant::HORIZON,
         constant::FRESNEL,
+        constant::LOBES,
     ],
 };
 
@@ -164,7 +167,13 @@ pub static EVAL: Kernel = Kernel {
         read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
         write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
     ],
-    constants: &[constant::EFFECTS, constant::FORM_FACTOR, constant::HORIZON, constant::FRESNEL],
+    constants: &[
+        constant::EFFECTS,
+        constant::FORM_FACTOR,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+    ],
 };
 
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:

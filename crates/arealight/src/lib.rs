@@ -41,7 +41,7 @@ pub use effects::Effects;
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
 pub use material::{Material, Surface};
-pub use quality::{FormFactor, Fresnel, Horizon, Quality};
+pub use quality::{FormFactor, Fresnel, Horizon, Lobes, Quality};
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.

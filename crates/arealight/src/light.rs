@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 /// A flat polygon that emits constant radiance.
 ///
-/// Any number of vertices from three on, convex or concave, without holes. The front is the right-hand side
+/// Any number of vertices from three on, convex or concave; its edges do not cross, and it has no holes. The front is the right-hand side
 /// of the vertex order: seen from the front, the vertices run counter-clockwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PolygonLight {
@@ -88,8 +88,11 @@ impl PolygonLight {
         offsets.zip(next).map(|(a, b)| a.cross(b)).sum::<DVec3>() * 0.5
     }
 
-    /// The middle of the area; of the vertices' box for a degenerate polygon.
+    /// The middle of the area; of the vertices' box for a degenerate polygon. Zero without finite vertices.
     pub fn center(&self) -> DVec3 {
+        if self.vertices.is_empty() || !self.vertices.iter().all(|vertex| vertex.is_finite()) {
+            return DVec3::ZERO;
+        }
         let (low, high) = self
             .vertices
             .iter()
@@ -110,8 +113,8 @@ impl PolygonLight {
         if shift.is_finite() { (middle + shift).clamp(low, high) } else { middle }
     }
 
-    /// Whether the outline is convex, flat to a ten-thousandth of its size, and has at most four vertices: what is
-    /// shaded without [`Effects::POLYGON`].
+    /// Whether the outline is convex and flat, both to a ten-thousandth of its size, and has at most four vertices:
+    /// what is shaded without [`Effects::POLYGON`], as if its vertices were moved by that much.
     pub fn is_convex_quad(&self) -> bool {
         const TOLERANCE: f64 = 1e-4;
         if self.vertices.len() > 4 {
@@ -224,6 +227,12 @@ impl PackedLights {
         let offsets: Vec<DVec3> =
             light.vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();
         self.vertices.extend(offsets.iter().map(|offset| offset.as_vec3().extend(0.0).to_array()));
+        // The middle lies between the vertices, but two of them may be farther apart than float32 reaches
+        if let Some(index) = offsets.iter().position(|offset| !(offset.length() as f32 * 2.0).is_finite()) {
+            self.vertices.truncate(first_vertex as usize);
+            let value = light.vertices[index];
+            return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
+        }
         let radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
         let area = light.area_vector() / radius.powi(2);
         self.lights.push(GpuLight {
@@ -310,6 +319,16 @@ mod tests {
         light = arrow();
         light.vertices[1].x = 1e39;
         assert!(matches!(light.validate(), Err(LightError::VertexNotFinite { index: 1, .. })));
+        assert_eq!(
+            Effects::empty().missing_for(std::slice::from_ref(&light)),
+            None,
+            "its numbers come first"
+        );
+        light = arrow();
+        light.vertices[0].x = -3e38;
+        light.vertices[2].x = 3e38;
+        let error = PackedLights::new(&[light], DVec3::ZERO).unwrap_err();
+        assert!(matches!(error, LightError::VertexNotFinite { .. }), "{error}");
         light = arrow();
         light.radiance.y = -1.0;
         assert!(matches!(light.validate(), Err(LightError::BadRadiance { .. })));

@@ -13,7 +13,8 @@ pub enum FormFactor {
     /// A shorter series for the arcs: 2.7e-5 of each edge's share, fewer instructions.
     Fast = 1,
     /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. Of a
-    /// light of area A at the distance d the error is at most 1e-6 A / (pi d²), out to any distance.
+    /// light of area A at five times its size, or any larger distance d, the error is at most 1e-6 A / (pi d²), both
+    /// as they are in the lobe's cosine space.
     ExactDifference = 2,
     /// As [`FormFactor::Fast`], with an error that shrinks with the light.
     FastDifference = 3,
@@ -29,9 +30,9 @@ pub enum Horizon {
     Cosine = 0,
     /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface.
     Both = 1,
-    /// Nowhere. For lights and points of which the host knows that the light is wholly above both horizons, and
-    /// that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL library); else the result is
-    /// wrong, though in [0, 1].
+    /// Nowhere: the result of [`Horizon::Cosine`] for lights and points of which the host knows that the light is
+    /// wholly above that horizon, and that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL
+    /// library); else the result is wrong, though in [0, 1].
     Bare = 2,
 }
 
@@ -47,6 +48,18 @@ pub enum Fresnel {
     Split = 1,
 }
 
+/// Where the glossy lobe comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Lobes {
+    /// The fitted table: twelve texel reads a pixel.
+    #[default]
+    Table = 0,
+    /// Formulas fitted to it ([`crate::table::ggx_formula`]): about a hundred multiply-adds a pixel and no texture, at 1.2
+    /// to 1.35 times the table's error. For roughness above .15; nearer to a mirror the table is far better.
+    Formula = 1,
+}
+
 /// The rungs that a pass is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {
@@ -56,8 +69,10 @@ pub struct Quality {
     pub horizon: Horizon,
     /// How the Fresnel term enters the glossy lobe.
     pub fresnel: Fresnel,
-    /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative; the
-    /// others as the other fields say.
+    /// Where the glossy lobe comes from.
+    pub lobes: Lobes,
+    /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative (2e-4 for
+    /// concave ones); the others as the other fields say.
     pub one_point: bool,
 }
 

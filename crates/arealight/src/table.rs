@@ -300,7 +300,7 @@ pub fn mirror_frame(cos_view: f64) -> DMat3 {
 pub fn share_above_surface(inverse: &DMat3) -> f64 {
     let x = inverse.x_axis;
     let length = x.x.hypot(x.z);
-    if length > 0.0 { (0.5 + 0.5 * x.x / length).max(f64::EPSILON) } else { 1.0 }
+    if length > 0.0 { (0.5 + 0.5 * x.x / length).max(1e-6) } else { 1.0 }
 }
 
 fn invertible(layer: &'static str, x: u32, y: u32, texel: &[f32; 4]) -> Result<(), TableError> {

@@ -17,7 +17,7 @@
 
 // A vertex as the arcs see it.
 struct ArealightVertex {
-    vec3 unit;    // its direction; z is exactly zero within AREALIGHT_HORIZON_WIDTH of the horizon
+    vec3 unit;    // its direction; z is exactly zero within the anchor's `horizon`
     vec3 chord;   // its direction less the anchor's, to float32's relative precision (difference form alone)
     vec3 offset;  // from the anchor's base (difference form alone)
     float square; // its squared distance; not finite where a coordinate is not
@@ -29,6 +29,7 @@ struct ArealightAnchor {
     float distance;   // its distance
     float reciprocal; // of that
     bool distant;     // the polygon lies within half its distance of it: chords are from its direction
+    float horizon;    // sine of the elevation below which a vertex counts as on the horizon
 };
 
 // What a vertex's offset is from: the anchor, or where that is not distant the shading point, so that no vertex near to
@@ -40,11 +41,12 @@ vec3 arealight_base(ArealightAnchor anchor) {
 // The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space.
 ArealightAnchor arealight_anchor(vec3 position, float extent, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
-        return ArealightAnchor(position, 0.0, 0.0, false);
+        return ArealightAnchor(position, 0.0, 0.0, false, AREALIGHT_HORIZON_WIDTH);
     }
     float square = dot(position, position);
     float reciprocal = inversesqrt(square + AREALIGHT_TINY);
-    return ArealightAnchor(position, square * reciprocal, reciprocal, 4.0 * extent * extent <= square);
+    bool distant = 4.0 * extent * extent <= square;
+    return ArealightAnchor(position, square * reciprocal, reciprocal, distant, AREALIGHT_HORIZON_WIDTH);
 }
 
 // The vertex at `offset` from the anchor.
@@ -62,7 +64,7 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) 
     vertex.unit = position * reciprocal;
     // A vertex so near to the horizon lies in it: whether a light in the plane of the surface is above or below
     // must not hang on the last bit
-    vertex.unit.z = abs(vertex.unit.z) > AREALIGHT_HORIZON_WIDTH ? vertex.unit.z : 0.0;
+    vertex.unit.z = abs(vertex.unit.z) > anchor.horizon ? vertex.unit.z : 0.0;
     vertex.chord = vertex.unit;
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
         float excess = dot(offset, anchor.position + position);
@@ -97,8 +99,7 @@ float arealight_arc_excess(float s, float y, float square, int rung) {
 // The angle from a to b times the z component of the unit normal of their plane, radians.
 //
 // Error of the exact rung: 3.6e-7 of one radian or of the angle, whichever is larger; of the fast one 2.7e-5 of the
-// result more. In the difference form, what
-// (a x b).z has from the anchor is left out: it cancels in the sum over a closed outline, and with it what would
+// result more. In the difference form, what (a x b).z has from the anchor is left out: it cancels in the sum over a closed outline, and with it what would
 // be the error of a small one. There the sum's error is relative to the square of the outline's angular size.
 float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     vec3 middle = a.unit + b.unit;

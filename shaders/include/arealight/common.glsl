@@ -25,7 +25,7 @@ const float AREALIGHT_MIN_ALPHA = 1e-4;
 const float AREALIGHT_TINY = 7.8886090522101181e-31;
 
 // The sine of the elevation below which a vertex counts as on the horizon: 1.7 x 2^-24, about what the rounding of a
-// vertex can make of zero.
+// vertex can make of zero. In the cosine space of a lobe it is as much narrower as heights are lower there.
 const float AREALIGHT_HORIZON_WIDTH = 1e-7;
 
 // The largest absolute component of v.

@@ -12,7 +12,7 @@ const uint AREALIGHT_EFFECT_GLOSSY = 2u;
 const uint AREALIGHT_EFFECT_TWO_SIDED = 4u;
 // The G-buffer has a dielectric reflectance of its own.
 const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
-// Some light is concave, or has more than four vertices.
+// Some light is concave, not quite flat, or has more than four vertices.
 const uint AREALIGHT_EFFECT_POLYGON = 16u;
 
 // Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
@@ -25,17 +25,22 @@ const int AREALIGHT_FORM_FACTOR_ONE_POINT = 4;  // far lights from their centre 
 // Where polygons are clipped. The same as arealight::Horizon.
 const int AREALIGHT_HORIZON_COSINE = 0; // at the horizon of cosine space
 const int AREALIGHT_HORIZON_BOTH = 1;   // at the surface's horizon too, before the lobe's transform
-const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds
+const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds, and the result is as COSINE's
 
 // How Schlick's Fresnel term enters. The same as arealight::Fresnel.
 const int AREALIGHT_FRESNEL_BY_F0 = 0; // one integral, of the lobe between the table's two that the reflectance calls for
 const int AREALIGHT_FRESNEL_SPLIT = 1; // two integrals, one of each lobe
+
+// Where the glossy lobe comes from. The same as arealight::Lobes.
+const int AREALIGHT_LOBES_TABLE = 0;   // the host's table
+const int AREALIGHT_LOBES_FORMULA = 1; // formulas: no texture is read; the table's bridges are not called
 
 // How a pass shades. Make the fields from specialisation constants or literals.
 struct ArealightQuality {
     int form_factor; // AREALIGHT_FORM_FACTOR_* bits
     int horizon;     // one of AREALIGHT_HORIZON_*
     int fresnel;     // one of AREALIGHT_FRESNEL_*
+    int lobes;       // one of AREALIGHT_LOBES_*
 };
 
 #endif

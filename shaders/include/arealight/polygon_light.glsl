@@ -9,11 +9,11 @@
 // light keeps its shape however far from the origin it is.
 vec3 arealight_bridge_vertex(uint index);
 
-// A flat polygon of constant radiance.
+// A flat, simple polygon of constant radiance.
 struct ArealightPolygonLight {
     vec3 radiance;     // of the front, W/(m^2 sr)
     uint first_vertex; // for arealight_bridge_vertex
-    uint vertex_count; // from 3 on; the outline is convex and has at most 4 without AREALIGHT_EFFECT_POLYGON
+    uint vertex_count; // from 3 on; the outline is flat, convex and has at most 4 without AREALIGHT_EFFECT_POLYGON
     vec3 center;       // of the area, relative to the origin of ArealightSurface.position
     float radius;      // of a sphere about the center that holds every vertex; may be generous
     vec3 area;         // area times the normal of the front, over radius^2 (one-point form alone)
@@ -45,15 +45,29 @@ struct ArealightLobeView {
     float extent;           // of the light about it; may be generous
     ArealightAnchor anchor; // at its center
     mat3 transform;         // offsets from the light's center into cosine space
-    float normal_height;    // the light's center above the surface's horizon
-    vec3 normal;            // product with an offset: the vertex's height over the center's
+    vec3 normal;            // product with an offset: the vertex's height above the center's, before the transform
+    float normal_height;    // the center's height above the surface's horizon
+    float height_width;     // heights below this count as zero
 };
 
 ArealightLobeView arealight_lobe_view(ArealightCosineSpace space, vec3 normal, ArealightSeenLight seen, int rung) {
-    vec3 center = space.to_cosine * seen.center;
-    float extent = space.stretch * seen.radius;
-    return ArealightLobeView(center, extent, arealight_anchor(center, extent, rung), space.to_cosine * seen.scale,
-                             dot(normal, seen.center), normal * seen.scale);
+    ArealightLobeView view;
+    view.center = space.to_cosine * seen.center;
+    view.extent = space.stretch * seen.radius;
+    view.anchor = arealight_anchor(view.center, view.extent, rung);
+    view.anchor.horizon = AREALIGHT_HORIZON_WIDTH * space.flatness;
+    view.transform = space.to_cosine * seen.scale;
+    view.normal = normal * seen.scale;
+    view.normal_height = dot(normal, seen.center);
+    view.height_width = 2.0 * AREALIGHT_HORIZON_WIDTH * (abs(view.normal_height) + seen.radius);
+    return view;
+}
+
+// The height of the vertex at `offset` from the light's center above the surface's horizon. A light in the surface's
+// plane has none, whatever the last bit says.
+float arealight_vertex_height(ArealightLobeView view, vec3 offset) {
+    float height = view.normal_height + dot(view.normal, offset);
+    return abs(height) > view.height_width ? height : 0.0;
 }
 
 // The form factor of a convex outline of up to four vertices; see form_factor.glsl.
@@ -65,8 +79,8 @@ float arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, bool two_s
         return arealight_quad_bare(view.anchor, cosine, two_sided, quality.form_factor);
     }
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
-        vec4 height = view.normal_height + vec4(dot(view.normal, quad.v0), dot(view.normal, quad.v1),
-                                                dot(view.normal, quad.v2), dot(view.normal, quad.v3));
+        vec4 height = vec4(arealight_vertex_height(view, quad.v0), arealight_vertex_height(view, quad.v1),
+                           arealight_vertex_height(view, quad.v2), arealight_vertex_height(view, quad.v3));
         return arealight_quad_both_horizons(view.anchor, cosine, height, two_sided, quality.form_factor);
     }
     return arealight_quad_clipped(view.anchor, cosine, two_sided, quality.form_factor);
@@ -78,11 +92,11 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
     vec3 last = arealight_bridge_vertex(end - 1u);
     int rung = quality.form_factor;
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
-        float height = view.normal_height + dot(view.normal, last);
+        float height = arealight_vertex_height(view, last);
         ArealightSurfaceWalk walk = arealight_surface_walk_begin(view.transform * last, height);
         for (uint index = light.first_vertex; index < end; index++) {
             vec3 vertex = arealight_bridge_vertex(index);
-            height = view.normal_height + dot(view.normal, vertex);
+            height = arealight_vertex_height(view, vertex);
             arealight_surface_walk_to(walk, view.anchor, view.transform * vertex, height, rung);
         }
         return arealight_surface_walk_form_factor(walk, view.anchor, light.two_sided, rung);
@@ -108,7 +122,7 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
 
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
 ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
-    uint last = min(light.vertex_count, 4u) - 1u;
+    uint last = clamp(light.vertex_count, 1u, 4u) - 1u;
     return ArealightQuad(arealight_bridge_vertex(light.first_vertex), arealight_bridge_vertex(light.first_vertex + 1u),
                          arealight_bridge_vertex(light.first_vertex + min(2u, last)),
                          arealight_bridge_vertex(light.first_vertex + last));
@@ -120,7 +134,10 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight 
                             ArealightQuad quad, uint effects, ArealightQuality quality) {
     ArealightLobeView view = arealight_lobe_view(lobe.space, normal, seen, quality.form_factor);
     float form_factor;
-    if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && arealight_is_far(view.center, view.extent)) {
+    // A far light of which the surface hides a part is no matter of one point
+    bool is_whole = quality.horizon != AREALIGHT_HORIZON_BOTH || view.normal_height > seen.radius;
+    if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && is_whole
+        && arealight_is_far(view.center, view.extent)) {
         float facing = seen.facing * lobe.space.determinant;
         form_factor = arealight_one_point_form_factor(view.center, facing, light.two_sided);
     } else if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {

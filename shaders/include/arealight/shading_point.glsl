@@ -2,6 +2,7 @@
 #define AREALIGHT_SHADING_POINT_GLSL
 
 #include "arealight/effects.glsl"
+#include "arealight/formula.glsl"
 #include "arealight/surface.glsl"
 #include "arealight/table.glsl"
 
@@ -10,6 +11,7 @@ struct ArealightCosineSpace {
     mat3 to_cosine;    // offsets from the shading point into it; keeps handedness
     float determinant; // of to_cosine
     float stretch;     // no offset becomes longer than this many times its length
+    float flatness;    // how much lower than long offsets become at most, in (0, 1]: of the height's row, over stretch
 };
 
 // A lobe of a surface's reflection: a cosine, transformed and weighed.
@@ -31,7 +33,9 @@ struct ArealightShadingPoint {
 ArealightCosineSpace arealight_cosine_space(mat3 to_cosine) {
     float square = dot(to_cosine[0], to_cosine[0]) + dot(to_cosine[1], to_cosine[1])
                  + dot(to_cosine[2], to_cosine[2]);
-    return ArealightCosineSpace(to_cosine, determinant(to_cosine), sqrt(square));
+    vec3 height = vec3(to_cosine[0].z, to_cosine[1].z, to_cosine[2].z);
+    float flatness = sqrt(dot(height, height) / (square + AREALIGHT_TINY));
+    return ArealightCosineSpace(to_cosine, determinant(to_cosine), sqrt(square), flatness);
 }
 
 // A lobe of the table, from a texel of one of its matrices.
@@ -50,19 +54,24 @@ ArealightLobe arealight_table_lobe(ArealightFrame frame, vec4 texel, float alpha
     return lobe;
 }
 
-// Prepares a surface: its frame, and one lookup in the table where `effects` has the glossy lobe.
+// Prepares a surface: its frame, and where `effects` has the glossy lobe one lookup in the table, or the formula.
 ArealightShadingPoint arealight_shading_point(ArealightSurface surface, uint effects, ArealightQuality quality) {
     ArealightShadingPoint point;
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     point.position = surface.position;
     point.normal = frame.normal;
-    ArealightCosineSpace cosine = ArealightCosineSpace(arealight_frame_matrix(frame), 1.0, 1.0);
+    ArealightCosineSpace cosine = ArealightCosineSpace(arealight_frame_matrix(frame), 1.0, 1.0, 1.0);
     point.diffuse = ArealightLobe(cosine, surface.diffuse_albedo, 1.0);
     point.glossy = ArealightLobe(cosine, vec3(0.0), 1.0);
     point.schlick = point.glossy;
     if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
         // F = f0 + (f90 - f0) (1 - cos)^5, integrated over the lobe
-        ArealightTableSample table = arealight_table_lookup(frame, surface.roughness);
+        ArealightTableSample table;
+        if (quality.lobes == AREALIGHT_LOBES_FORMULA) {
+            table = arealight_formula_sample(frame, surface.roughness);
+        } else {
+            table = arealight_table_lookup(frame, surface.roughness);
+        }
         vec3 f0_part = surface.f0 * table.albedo;
         vec3 schlick_part = (vec3(surface.f90) - surface.f0) * table.schlick;
         if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {

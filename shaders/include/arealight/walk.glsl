@@ -27,7 +27,7 @@ ArealightWalk arealight_walk_begin() {
 
 // Closes the outline along the horizon, at a crossing.
 //
-// The crossings of a flat polygon lie on one line, and the angles between them, seen from beside that line, add up to
+// The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that line, add up to
 // less than pi: so it is enough to know their sum's direction, as a product of complex numbers, whatever the number
 // of crossings. The difference form needs each arc by itself.
 void arealight_walk_close(inout ArealightWalk walk, ArealightAnchor anchor, ArealightVertex crossing, bool exits,

@@ -1,7 +1,7 @@
 //! The rungs of the quality ladder, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{FormFactor, Fresnel, Horizon, LightTable, Quality};
+use arealight::{FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
 use std::path::PathBuf;
 
 /// How lights are integrated.
@@ -15,7 +15,10 @@ pub struct QualityArguments {
     horizon: Clip,
     /// How Schlick's Fresnel term enters the glossy lobe [default: by-f0 for render, split for eval]
     #[arg(long, value_enum, value_name = "HOW")]
-    fresnel: Option<Lobes>,
+    fresnel: Option<Parts>,
+    /// Where the glossy lobe comes from
+    #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
+    lobes: Source,
     /// Take far lights from their centre alone where that is within 1e-4, relative
     #[arg(long)]
     one_point: bool,
@@ -46,9 +49,18 @@ pub enum Clip {
     Both,
 }
 
-/// How many lobes of the table are integrated.
+/// Where lobes come from.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Lobes {
+pub enum Source {
+    /// The table
+    Table,
+    /// Formulas, without a texture
+    Formula,
+}
+
+/// How many lobes are integrated.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Parts {
     /// One, chosen by the reflectance
     ByF0,
     /// Two, one for F0 and one for what grows at grazing angles: exact in the reflectance and its colour
@@ -57,7 +69,14 @@ pub enum Lobes {
 
 impl Default for QualityArguments {
     fn default() -> Self {
-        Self { form_factor: None, horizon: Clip::Cosine, fresnel: None, one_point: false, table: None }
+        Self {
+            form_factor: None,
+            horizon: Clip::Cosine,
+            fresnel: None,
+            lobes: Source::Table,
+            one_point: false,
+            table: None,
+        }
     }
 }
 
@@ -77,10 +96,14 @@ impl QualityArguments {
         };
         let fresnel = match self.fresnel {
             None => default.fresnel,
-            Some(Lobes::ByF0) => Fresnel::ByF0,
-            Some(Lobes::Split) => Fresnel::Split,
+            Some(Parts::ByF0) => Fresnel::ByF0,
+            Some(Parts::Split) => Fresnel::Split,
         };
-        Quality { form_factor, horizon, fresnel, one_point: self.one_point }
+        let lobes = match self.lobes {
+            Source::Table => Lobes::Table,
+            Source::Formula => Lobes::Formula,
+        };
+        Quality { form_factor, horizon, fresnel, lobes, one_point: self.one_point }
     }
 
     /// The table chosen.

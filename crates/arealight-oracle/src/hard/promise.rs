@@ -8,7 +8,7 @@ use serde::Serialize;
 pub const MOVE: f64 = 4.0 / (1 << 24) as f64;
 
 /// The largest offset from the anchor, as a part of the farthest vertex's distance, below which the difference
-/// form holds its relative promise: its own switch stands at the square, 0.04.
+/// form holds its relative promise: its own switch stands farther out, at a half.
 pub const SMALL: f64 = 0.2;
 
 /// What a way to compute form factors promises. All promise a finite number in [0, 1] for any bits, and 0

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
-use crate::quality::Lobes;
+use crate::quality::Parts;
 use arealight::{Fresnel, LightTable};
 use channels::Channel;
 use errors::{CELLS, ErrorMap, Source, Subject};
@@ -34,8 +34,8 @@ pub struct Arguments {
     #[arg(long, value_name = "F0", default_value_t = 1.0)]
     f0: f64,
     /// How Schlick's Fresnel term enters the lobes in the picture.
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lobes::ByF0)]
-    fresnel: Lobes,
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Parts::ByF0)]
+    fresnel: Parts,
     /// Measure the errors of the table, of the table-free formula and of other tables (by F0) over roughness and view angle,
     /// and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
@@ -79,8 +79,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 impl Arguments {
     fn material(&self) -> Material {
         let fresnel = match self.fresnel {
-            Lobes::ByF0 => Fresnel::ByF0,
-            Lobes::Split => Fresnel::Split,
+            Parts::ByF0 => Fresnel::ByF0,
+            Parts::Split => Fresnel::Split,
         };
         Material { f0: self.f0, fresnel }
     }

@@ -56,7 +56,7 @@ pub fn edge_on(stream: &mut Stream, _: &LightTable) -> HardCase {
 }
 
 pub fn switch(stream: &mut Stream, _: &LightTable) -> HardCase {
-    // The switch stands where the largest offset is a fifth of the largest distance
+    // The promise begins where the largest offset is a fifth of the distance, the form at a half
     let way = if stream.one_in(4) { level(stream) } else { upward(stream) };
     let normal = stream.direction();
     let distance = stream.between(3.0, 8.0);
