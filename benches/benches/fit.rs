@@ -1,0 +1,20 @@
+//! How long the fit of a GGX table takes, its albedos included: `cargo bench -p arealight-benches --bench fit`. Seconds of the
+//! clock; on a machine busy with other work, of little meaning.
+
+use arealight_fit::{Aim, GgxBrdf, Settings, fit};
+use std::time::Instant;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Under `cargo test` a benchmark is only to be seen to run
+    let size = if std::env::args().any(|argument| argument == "--bench") { 64 } else { 4 };
+    println!("| {size} x {size} nodes | seconds |\n|---|---|");
+    for (name, aim) in
+        [("one matrix for all F0", Aim::one_for_all()), ("two matrices", Settings::default().aim)]
+    {
+        let start = Instant::now();
+        let table = fit(&GgxBrdf, &Settings { size, aim }, &|_, _| {})?;
+        assert_eq!(table.size(), size);
+        println!("| {name} | {:.1} |", start.elapsed().as_secs_f64());
+    }
+    Ok(())
+}
