@@ -147,7 +147,7 @@ impl Stability {
         }
     }
 
-    /// A document: what is promised, every family by the methods of [`OVERVIEW`], and one table a method.
+    /// A document: what is promised, every family by the methods of `OVERVIEW`, and one table a method.
     pub fn to_markdown(&self) -> String {
         let mut text = format!(
             "# Hard cases\n\nMade by `arealight bench stability --samples {} --seed {} --markdown FILE` on {}.\n\n{PROMISES}",
@@ -175,7 +175,7 @@ impl Stability {
         text
     }
 
-    /// A line a family: what makes it hard, and the largest backward error of the methods of [`OVERVIEW`].
+    /// A line a family: what makes it hard, and the largest backward error of the methods of `OVERVIEW`.
     fn write_overview(&self, text: &mut String) {
         let methods: Vec<_> =
             self.by_method().filter(|(method, _)| OVERVIEW.contains(&method.name)).collect();
