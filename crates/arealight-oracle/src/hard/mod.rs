@@ -6,7 +6,7 @@
 //! | [`family`] | the families, and the case of each index |
 //! | [`double`] | numbers of 106 bits |
 //! | [`walk`] | the form factor in float64 or in those |
-//! | [`reference`] | the truth about a case |
+//! | [`mod@reference`] | the truth about a case |
 //! | [`promise`] | what a way to compute form factors promises |
 //! | [`nearby`] | the values that polygons nearby have: the backward error |
 //! | [`judge`] | a family's results against its promises |
