@@ -2,39 +2,31 @@
 
 use arealight::{PolygonLight, Surface};
 use arealight_engine::EvalPoint;
+use arealight_oracle::hard::stream::Stream;
 use glam::{DVec3, Vec3};
 
-/// A small generator (SplitMix64): its numbers are the same everywhere.
-pub struct Random(u64);
+/// Random numbers, the same everywhere.
+pub struct Random(Stream);
 
 impl Random {
     /// A generator of its own sequence for each seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// 64 random bits.
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(Stream::from_seed(seed))
     }
 
     /// 32 random bits.
     pub fn bits(&mut self) -> u32 {
-        (self.next() >> 32) as u32
+        self.0.bits()
     }
 
     /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 
     /// Uniform in [low, high).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
+        self.0.between(low, high)
     }
 
     /// A unit vector, uniform on the sphere.

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | [`family`] | the families, and the case of each index |
 //! | [`double`] | numbers of 106 bits |
+//! | [`stream`] | random numbers, the same on every machine |
 //! | [`walk`] | the form factor in float64 or in those |
 //! | [`mod@reference`] | the truth about a case |
 //! | [`promise`] | what a way to compute form factors promises |
@@ -18,7 +19,7 @@ pub mod nearby;
 mod outline;
 pub mod promise;
 pub mod reference;
-mod stream;
+pub mod stream;
 pub mod walk;
 
 /// A polygon in the space whose z axis is the normal, as seen from the shading point at the origin. Its vertices

@@ -7,6 +7,11 @@ use glam::DVec3;
 pub struct Stream(u64);
 
 impl Stream {
+    /// The stream of a number.
+    pub fn from_seed(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// The stream of a case: its family's name, its index, and the battery's seed.
     pub fn new(family: &str, index: u64, seed: u64) -> Self {
         // FNV-1a of the name, then one step of mixing for each number
@@ -21,7 +26,7 @@ impl Stream {
     }
 
     /// 64 random bits.
-    pub fn next(&mut self) -> u64 {
+    pub(super) fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
