@@ -99,8 +99,9 @@ float arealight_arc_excess(float s, float y, float square, int rung) {
 // The angle from a to b times the z component of the unit normal of their plane, radians.
 //
 // Error of the exact rung: 3.6e-7 of one radian or of the angle, whichever is larger; of the fast one 2.7e-5 of the
-// result more. In the difference form, what (a x b).z has from the anchor is left out: it cancels in the sum over a closed outline, and with it what would
-// be the error of a small one. There the sum's error is relative to the square of the outline's angular size.
+// result more. In the difference form, what (a x b).z has from the anchor is left out: it cancels in the sum over a
+// closed outline, and with it what would be the error of a small one. There the sum's error is relative to the square
+// of the outline's angular size.
 float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     vec3 middle = a.unit + b.unit;
     float y = sqrt(dot(middle, middle) + AREALIGHT_TINY);

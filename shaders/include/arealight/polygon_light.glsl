@@ -103,21 +103,19 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
     }
     ArealightWalk walk = arealight_walk_begin();
     ArealightVertex from = arealight_vertex(view.anchor, view.transform * last, rung);
-    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
-        for (uint index = light.first_vertex; index < end; index++) {
-            ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
-            walk.sum += arealight_acute_arc(from, to, rung);
-            walk.squares += to.square;
-            from = to;
-        }
-        return arealight_form_factor_from_arcs(walk.sum, walk.squares, light.two_sided);
-    }
+    bool bare = quality.horizon == AREALIGHT_HORIZON_BARE;
     for (uint index = light.first_vertex; index < end; index++) {
         ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
-        arealight_walk_edge(walk, view.anchor, from, to, rung);
+        if (bare) {
+            walk.sum += arealight_acute_arc(from, to, rung);
+            walk.squares += to.square;
+        } else {
+            arealight_walk_edge(walk, view.anchor, from, to, rung);
+        }
         from = to;
     }
-    return arealight_walk_form_factor(walk, view.anchor, light.two_sided, rung);
+    return bare ? arealight_form_factor_from_arcs(walk.sum, walk.squares, light.two_sided)
+                : arealight_walk_form_factor(walk, view.anchor, light.two_sided, rung);
 }
 
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
