@@ -3,13 +3,11 @@
 //! The machines that this runs on are shared: every method is run in turn, round after round, and read as a ratio to
 //! the practice in the same run.
 
-use crate::BenchError;
 use arealight::FormFactor;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
-use arealight_engine::Kept;
-use arealight_host::{Buffer, DescriptorPool, Host};
-use arealight_vk::{ComputePass, Context, HostDevice, Resource};
-use ash::vk;
+use arealight_engine::{BoundSet, EngineError, Kept, Passes};
+use arealight_host::{Buffer, Host};
+use arealight_vk::{ComputePass, Resource};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -112,35 +110,27 @@ const REPEATS: u32 = 256;
 
 struct Run {
     pass: Kept<ComputePass>,
-    set: vk::DescriptorSet,
+    set: BoundSet,
     results: Buffer,
     seconds: Vec<f64>,
-    _pool: DescriptorPool,
 }
 
 impl Run {
-    fn new(host: &Host, context: &Context, vertices: &Buffer, id: u32) -> Result<Self, BenchError> {
-        // SAFETY: Submissions are waited for, so that no use is pending when the pass is dropped; where one timed out,
-        // it is leaked.
-        let pass = unsafe { ComputePass::new(context, &FORM_FACTOR_COST, &[(0, id), (1, REPEATS)]) }?;
-        let pass = Kept::new(host, pass);
-        let results = host.storage_buffer("results", &vec![f32::NAN; WORK_ITEMS])?;
-        let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
-        // SAFETY: The layout is the pass's, and alive.
-        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+    fn new(passes: &Passes, vertices: &Buffer, id: u32) -> Result<Self, EngineError> {
+        let pass = passes.pass(&FORM_FACTOR_COST, &[(0, id), (1, REPEATS)])?;
+        let results = passes.host().storage_buffer("results", &vec![f32::NAN; WORK_ITEMS])?;
         let resources = [vertices, &results].map(|buffer| Resource::buffer(buffer.handle()));
-        // SAFETY: The set is new; the caller keeps the vertices, and this the results, until submissions are waited for.
-        unsafe { pass.write_set(set, &resources) }?;
-        Ok(Self { pass, set, results, seconds: Vec::new(), _pool: pool })
+        // SAFETY: The caller keeps the vertices, and this the results, until submissions are waited for.
+        let set = unsafe { passes.bind(&pass, &resources) }?;
+        Ok(Self { pass, set, results, seconds: Vec::new() })
     }
 
     /// One dispatch; GPU time, or wall time where the queue has no timestamps.
-    fn once(&self, host: &Host) -> Result<f64, BenchError> {
-        let groups = FORM_FACTOR_COST.groups_for([WORK_ITEMS as u32, 1, 1]);
+    fn once(&self, host: &Host) -> Result<f64, EngineError> {
         let start = Instant::now();
         let took = host.try_submit_timed(|commands| {
-            // SAFETY: `commands` is being recorded, outside a render pass; the set was written.
-            unsafe { self.pass.record(commands, self.set, &[], groups) }.map_err(BenchError::from)
+            // SAFETY: `commands` is being recorded, outside a render pass.
+            unsafe { self.set.record(&self.pass, commands, &(), [WORK_ITEMS as u32, 1, 1]) }
         })?;
         Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
     }
@@ -149,20 +139,13 @@ impl Run {
 /// Measures every method in `rounds` rounds, after one that warms up.
 ///
 /// # Errors
-/// [`BenchError`] where the device fails.
-pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, BenchError> {
-    let handles = HostDevice {
-        instance: host.instance(),
-        physical_device: host.physical_device(),
-        device: host.device(),
-        pipeline_cache: vk::PipelineCache::null(),
-    };
-    // SAFETY: The handles belong together, and the passes, which go first, keep the host alive.
-    let context = unsafe { Context::new(&handles) }?;
+/// [`EngineError`] where the device fails.
+pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
+    let passes = Passes::new(host.clone())?;
     let vertices = host.storage_buffer("vertices", &quads())?;
     let mut runs = Vec::new();
     for method in METHODS {
-        runs.push(Run::new(host, &context, &vertices, method.id)?);
+        runs.push(Run::new(&passes, &vertices, method.id)?);
     }
     for round in 0..=rounds {
         for run in &mut runs {

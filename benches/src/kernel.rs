@@ -1,13 +1,11 @@
 //! The kernel `form_factor`: hard cases go in, the bits of their form factors come out.
 
-use crate::BenchError;
 use crate::method::Method;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
-use arealight_engine::Kept;
+use arealight_engine::{EngineError, Kept, Passes};
 use arealight_host::Host;
 use arealight_oracle::hard::HardCase;
-use arealight_vk::{ComputePass, Context, HostDevice, Resource};
-use ash::vk;
+use arealight_vk::{ComputePass, Resource};
 use bytemuck::{Pod, Zeroable};
 
 /// A polygon's record: anchor, and where its offsets are.
@@ -54,61 +52,45 @@ pub static FORM_FACTOR: Kernel = Kernel {
 
 /// The kernel on a device, once for each method.
 pub struct FormFactorKernel {
-    passes: Vec<Kept<ComputePass>>,
-    host: Host,
+    pipelines: Vec<Kept<ComputePass>>,
+    passes: Passes,
 }
 
 impl FormFactorKernel {
     /// Makes the pipelines of `methods`.
     ///
     /// # Errors
-    /// [`BenchError`] where the device is too old or out of memory.
-    pub fn new(host: &Host, methods: &[&Method]) -> Result<Self, BenchError> {
-        let handles = HostDevice {
-            instance: host.instance(),
-            physical_device: host.physical_device(),
-            device: host.device(),
-            pipeline_cache: vk::PipelineCache::null(),
-        };
-        // SAFETY: The handles belong together, and the passes, which go first, keep the host alive.
-        let context = unsafe { Context::new(&handles) }?;
-        let pass = |method: &&Method| {
-            // SAFETY: Submissions are waited for, so that no use is pending when the pass is dropped; where one
-            // timed out, it is leaked.
-            let pass = unsafe { ComputePass::new(&context, &FORM_FACTOR, &[(METHOD, method.id)]) }?;
-            Ok(Kept::new(host, pass))
-        };
-        let passes = methods.iter().map(pass).collect::<Result<_, BenchError>>()?;
-        Ok(Self { passes, host: host.clone() })
+    /// [`EngineError`] where the device is too old or out of memory.
+    pub fn new(host: &Host, methods: &[&Method]) -> Result<Self, EngineError> {
+        let passes = Passes::new(host.clone())?;
+        let pass = |method: &&Method| passes.pass(&FORM_FACTOR, &[(METHOD, method.id)]);
+        let pipelines = methods.iter().map(pass).collect::<Result<_, EngineError>>()?;
+        Ok(Self { pipelines, passes })
     }
 
     /// The bits of each case's form factor, for each method in turn. Bits, since a conversion may hide a NaN.
     ///
     /// # Errors
-    /// [`BenchError`] where the device fails or is out of memory.
-    pub fn run(&self, cases: &[HardCase]) -> Result<Vec<Vec<u32>>, BenchError> {
+    /// [`EngineError`] where the device fails or is out of memory.
+    pub fn run(&self, cases: &[HardCase]) -> Result<Vec<Vec<u32>>, EngineError> {
         let (polygons, offsets) = pack(cases);
-        let polygons = self.host.storage_buffer("polygons", &polygons)?;
-        let offsets = self.host.storage_buffer("offsets", &offsets)?;
+        let host = self.passes.host();
+        let polygons = host.storage_buffer("polygons", &polygons)?;
+        let offsets = host.storage_buffer("offsets", &offsets)?;
         let constants = FormFactorConstants { polygon_count: cases.len() as u32 };
         let run = |pass: &Kept<ComputePass>| {
             // What is not written stays NaN
-            let results = self.host.storage_buffer("results", &vec![u32::MAX; cases.len()])?;
+            let results = host.storage_buffer("results", &vec![u32::MAX; cases.len()])?;
             let resources = [&polygons, &offsets, &results].map(|buffer| Resource::buffer(buffer.handle()));
-            let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
-            // SAFETY: The layout is the pass's, and alive.
-            let set = unsafe { pool.allocate(pass.set_layout()) }?;
-            // SAFETY: The set is new; the buffers live until the submission below was waited for.
-            unsafe { pass.write_set(set, &resources) }?;
-            let groups = FORM_FACTOR.groups_for([constants.polygon_count, 1, 1]);
-            self.host.try_submit(|commands| {
-                // SAFETY: `commands` is being recorded, outside a render pass; the set was written.
-                let recorded = unsafe { pass.record(commands, set, bytemuck::bytes_of(&constants), groups) };
-                recorded.map_err(BenchError::from)
+            // SAFETY: The buffers live until the submission below was waited for.
+            let set = unsafe { self.passes.bind(pass, &resources) }?;
+            host.try_submit(|commands| {
+                // SAFETY: `commands` is being recorded, outside a render pass.
+                unsafe { set.record(pass, commands, &constants, [constants.polygon_count, 1, 1]) }
             })?;
             Ok(results.download()?)
         };
-        self.passes.iter().map(run).collect()
+        self.pipelines.iter().map(run).collect()
     }
 }
 

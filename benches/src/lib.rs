@@ -15,15 +15,3 @@ pub mod kernel;
 pub mod method;
 pub mod report;
 pub mod stability;
-
-/// A failure of a benchmark: the device's, never a method's.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum BenchError {
-    /// The device, its memory or a submission.
-    #[error(transparent)]
-    Host(#[from] arealight_host::HostError),
-    /// The recorder.
-    #[error(transparent)]
-    Recorder(#[from] arealight_vk::Error),
-}

@@ -1,9 +1,9 @@
 //! The battery: every family of hard cases through every method on a device, each result judged by its bits.
 
-use crate::BenchError;
 use crate::kernel::FormFactorKernel;
 use crate::method::{METHODS, Method};
 use arealight::LightTable;
+use arealight_engine::EngineError;
 use arealight_host::Host;
 use arealight_oracle::hard::HardCase;
 use arealight_oracle::hard::family::{FAMILIES, Family, Scope};
@@ -91,13 +91,13 @@ impl Stability {
 /// many more cases are done.
 ///
 /// # Errors
-/// [`BenchError`] where the device fails.
+/// [`EngineError`] where the device fails.
 pub fn run(
     host: &Host,
     table: &LightTable,
     options: &Options,
     progress: &dyn Fn(u64),
-) -> Result<Stability, BenchError> {
+) -> Result<Stability, EngineError> {
     let kernel = FormFactorKernel::new(host, &options.methods)?;
     let mut rows = Vec::new();
     for family in &options.families {

@@ -7,6 +7,7 @@
 mod eval;
 mod g_buffer;
 mod kept;
+mod passes;
 mod render;
 mod table;
 
@@ -14,12 +15,13 @@ pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::EvalPoint;
 pub use g_buffer::GBuffer;
 pub use kept::Kept;
+pub use passes::{BoundSet, Passes};
 pub use render::SceneRenderer;
 
 use arealight::LightTable;
 use arealight::kernels::Kernel;
-use arealight_host::{Buffer, DescriptorPool};
-use arealight_vk::{ComputePass, Context, HostDevice, Resource, TableFormat};
+use arealight_host::Buffer;
+use arealight_vk::{ComputePass, Context, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
 use table::UploadedTable;
@@ -59,8 +61,7 @@ impl From<arealight::LightError> for EngineError {
 pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
-    context: Context,
-    host: Host,
+    passes: Passes,
 }
 
 impl Engine {
@@ -69,26 +70,19 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] where the device is too old, or memory or a submission fails.
     pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
-        let handles = HostDevice {
-            instance: host.instance(),
-            physical_device: host.physical_device(),
-            device: host.device(),
-            pipeline_cache: vk::PipelineCache::null(),
-        };
-        // SAFETY: The handles belong together and are kept alive by `host`, which this engine drops last.
-        let context = unsafe { Context::new(&handles) }?;
-        let table = UploadedTable::new(&host, &context, table, format)?;
-        Ok(Self { table, context, host })
+        let passes = Passes::new(host)?;
+        let table = UploadedTable::new(passes.host(), passes.context(), table, format)?;
+        Ok(Self { table, passes })
     }
 
     /// The device.
     pub fn host(&self) -> &Host {
-        &self.host
+        self.passes.host()
     }
 
     /// The recorder's context, to make passes from.
     pub fn context(&self) -> &Context {
-        &self.context
+        self.passes.context()
     }
 
     /// The light table, as a pass takes it.
@@ -99,14 +93,14 @@ impl Engine {
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
     fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
         let (bytes, limit) =
-            (size_of_val(items) as u64, self.host.properties().limits.max_storage_buffer_range);
+            (size_of_val(items) as u64, self.host().properties().limits.max_storage_buffer_range);
         if bytes > u64::from(limit) {
             return Err(EngineError::BufferTooLarge { name, bytes, limit: limit.into() });
         }
         if items.is_empty() {
-            return Ok(self.host.storage_buffer(name, &[T::zeroed()])?);
+            return Ok(self.host().storage_buffer(name, &[T::zeroed()])?);
         }
-        Ok(self.host.storage_buffer(name, items)?)
+        Ok(self.host().storage_buffer(name, items)?)
     }
 
     /// A pass of `kernel` with a descriptor set that points at `resources`.
@@ -116,23 +110,17 @@ impl Engine {
         specialization: &[(u32, u32)],
         resources: &[Resource],
     ) -> Result<BoundPass, EngineError> {
-        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed out
-        // it is leaked. The host, which `Kept` holds, outlives it.
-        let pass = Kept::new(&self.host, unsafe { ComputePass::new(&self.context, kernel, specialization) }?);
-        let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
-        // SAFETY: The layout is the pass's, and alive.
-        let set = unsafe { pool.allocate(pass.set_layout()) }?;
-        // SAFETY: The set is new. Callers keep the resources until their submission was waited for.
-        unsafe { pass.write_set(set, resources) }?;
-        Ok(BoundPass { pass, set, _pool: pool })
+        let pass = self.passes.pass(kernel, specialization)?;
+        // SAFETY: Callers keep the resources until their submission was waited for.
+        let set = unsafe { self.passes.bind(&pass, resources) }?;
+        Ok(BoundPass { pass, set })
     }
 }
 
 /// A pass with the descriptor set of its only run.
 struct BoundPass {
     pass: Kept<ComputePass>,
-    set: vk::DescriptorSet,
-    _pool: DescriptorPool,
+    set: BoundSet,
 }
 
 impl BoundPass {
@@ -143,9 +131,7 @@ impl BoundPass {
         constants: &impl Pod,
         items: [u32; 3],
     ) -> Result<(), EngineError> {
-        let groups = self.pass.kernel().groups_for(items);
         // SAFETY: `commands` is being recorded by Host::submit, outside a render pass; the set was written.
-        unsafe { self.pass.record(commands, self.set, bytemuck::bytes_of(constants), groups) }?;
-        Ok(())
+        unsafe { self.set.record(&self.pass, commands, constants, items) }
     }
 }

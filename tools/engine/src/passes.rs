@@ -1,0 +1,102 @@
+//! Passes on a host: pipelines, and descriptor sets for them.
+
+use crate::{EngineError, Kept};
+use arealight::kernels::Kernel;
+use arealight_host::{DescriptorPool, Host};
+use arealight_vk::{ComputePass, Context, HostDevice, Resource};
+use ash::vk;
+use bytemuck::Pod;
+
+/// A host, with the recorder's context on it to make passes from.
+pub struct Passes {
+    // Goes before the device
+    context: Context,
+    host: Host,
+}
+
+impl Passes {
+    /// On the device of `host`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device is too old.
+    pub fn new(host: Host) -> Result<Self, EngineError> {
+        let handles = HostDevice {
+            instance: host.instance(),
+            physical_device: host.physical_device(),
+            device: host.device(),
+            pipeline_cache: vk::PipelineCache::null(),
+        };
+        // SAFETY: The handles belong together and are kept alive by `host`, which this drops last.
+        let context = unsafe { Context::new(&handles) }?;
+        Ok(Self { context, host })
+    }
+
+    /// The device.
+    pub fn host(&self) -> &Host {
+        &self.host
+    }
+
+    /// The recorder's context.
+    pub fn context(&self) -> &Context {
+        &self.context
+    }
+
+    /// A pipeline of `kernel`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device cannot make it.
+    pub fn pass(
+        &self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+    ) -> Result<Kept<ComputePass>, EngineError> {
+        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed out
+        // it is leaked. The host, which `Kept` holds, outlives it.
+        let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
+        Ok(Kept::new(&self.host, pass))
+    }
+
+    /// A descriptor set for `pass` that points at `resources`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where a resource does not fit its binding, or memory is out.
+    ///
+    /// # Safety
+    /// The resources live until the last submission that uses the set was waited for; the pass is of this host.
+    pub unsafe fn bind(&self, pass: &ComputePass, resources: &[Resource]) -> Result<BoundSet, EngineError> {
+        let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's, and alive.
+        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+        // SAFETY: The set is new, and the caller keeps the resources.
+        unsafe { pass.write_set(set, resources) }?;
+        Ok(BoundSet { set, _pool: pool })
+    }
+}
+
+/// A written descriptor set.
+pub struct BoundSet {
+    set: vk::DescriptorSet,
+    _pool: DescriptorPool,
+}
+
+impl BoundSet {
+    /// Records `pass`, for which the set was written, over `items`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the constants or the groups are not what the kernel or the device takes.
+    ///
+    /// # Safety
+    /// `commands` is being recorded for the pass's host, outside a render pass.
+    pub unsafe fn record(
+        &self,
+        pass: &ComputePass,
+        commands: vk::CommandBuffer,
+        constants: &impl Pod,
+        items: [u32; 3],
+    ) -> Result<(), EngineError> {
+        let groups = pass.kernel().groups_for(items);
+        // SAFETY: The set was written for the pass; the commands are the caller's.
+        unsafe { pass.record(commands, self.set, bytemuck::bytes_of(constants), groups) }?;
+        Ok(())
+    }
+}
