@@ -4,7 +4,7 @@ use arealight::table::share_above_surface;
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
-use arealight_oracle::polygon::transformed_form_factor;
+use arealight_oracle::polygon::{above_horizon, transformed_form_factor};
 use arealight_oracle::shading::lobe_integrals;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
@@ -167,25 +167,10 @@ fn integral(inverse: &DMat3, horizon: Horizon, quad: &[DVec3; 4]) -> f64 {
     match horizon {
         Horizon::Cosine | Horizon::Bare => transformed_form_factor(inverse, quad).max(0.0),
         Horizon::Both => {
-            let form_factor = transformed_form_factor(inverse, &clipped(quad)).max(0.0);
+            let form_factor = transformed_form_factor(inverse, &above_horizon(quad)).max(0.0);
             form_factor / share_above_surface(inverse)
         }
     }
-}
-
-/// The part of a quad above the surface.
-fn clipped(quad: &[DVec3; 4]) -> Vec<DVec3> {
-    let mut above = Vec::with_capacity(5);
-    for (i, &a) in quad.iter().enumerate() {
-        let b = quad[(i + 1) % 4];
-        if a.z >= 0.0 {
-            above.push(a);
-        }
-        if a.z * b.z < 0.0 {
-            above.push((a + (b - a) * (a.z / (a.z - b.z))).with_z(0.0));
-        }
-    }
-    above
 }
 
 /// Mean, 95th percentile and maximum; zero for no errors at all.
