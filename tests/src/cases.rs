@@ -5,7 +5,7 @@ use arealight::PackedLights;
 use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
 use arealight::kernels::EVAL;
 use arealight::{Effects, Quality, plan};
-use arealight_engine::{EvalPoint, Kept};
+use arealight_engine::{EvalPoint, Kept, gpu_case};
 use arealight_oracle::hard::HardCase;
 use arealight_vk::{ComputePass, Resource};
 use glam::DVec3;
@@ -32,17 +32,7 @@ impl Cases {
         for point in points {
             let packed = PackedLights::new(std::slice::from_ref(&point.light), point.position)
                 .expect("the lights of tests can be shaded");
-            let surface = &point.surface;
-            cases.push(GpuCase {
-                normal: rounded(point.normal),
-                roughness: surface.alpha.sqrt() as f32,
-                view: rounded(point.view),
-                f90: surface.f90 as f32,
-                diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
-                light: lights.lights.len() as u32,
-                f0: surface.f0.as_vec3().to_array(),
-                reserved: 0,
-            });
+            cases.push(gpu_case(point, lights.lights.len() as u32));
             lights.append(packed).expect("tests have few lights");
         }
         Self { lights: lights.lights, vertices: lights.vertices, cases }
@@ -68,11 +58,6 @@ impl Cases {
         let anchor = DVec3::from_array(polygon.anchor.map(f64::from));
         polygon.offsets_exactly().into_iter().map(|o| anchor + DVec3::from_array(o)).collect()
     }
-}
-
-/// A direction of any length, as float32's unit vector; a zero or non-finite one as it is.
-fn rounded(direction: DVec3) -> [f32; 3] {
-    direction.try_normalize().unwrap_or(direction).as_vec3().to_array()
 }
 
 impl TestEngine {

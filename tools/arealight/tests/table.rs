@@ -1,16 +1,10 @@
 //! `arealight table` as a user meets it.
 
-use arealight_table::{Format, Precision, TableFile, ggx, resampled, rounded};
-use std::path::Path;
-use std::process::{Command, Output};
+mod common;
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_arealight"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .expect("the program starts")
-}
+use arealight_table::{Format, Precision, TableFile, ggx, resampled, rounded};
+use common::run;
+use std::path::Path;
 
 /// Runs `table convert` with what must succeed, and returns what it prints.
 fn convert(folder: &Path, arguments: &[&str]) -> String {

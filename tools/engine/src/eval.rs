@@ -57,7 +57,7 @@ impl Engine {
         let mut cases = Vec::with_capacity(points.len());
         for &point in points {
             let packed = PackedLights::new(std::slice::from_ref(&point.light), point.position)?;
-            cases.push(case(point, lights.lights.len() as u32));
+            cases.push(gpu_case(point, lights.lights.len() as u32));
             lights.append(packed)?;
         }
 
@@ -90,7 +90,8 @@ impl Engine {
     }
 }
 
-fn case(point: &EvalPoint, light: u32) -> GpuCase {
+/// A point as the eval kernel reads it, `light` being the index of its light.
+pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     let surface = &point.surface;
     GpuCase {
         normal: rounded(point.normal),

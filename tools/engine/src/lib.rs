@@ -12,7 +12,7 @@ mod render;
 mod table;
 
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
-pub use eval::EvalPoint;
+pub use eval::{EvalPoint, gpu_case};
 pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes};
