@@ -11,11 +11,20 @@ struct ArealightGpuLight {
     vec3 area;
     uint vertex_count;
     uint flags;
+    uint texture_layer;
     uint reserved0;
     uint reserved1;
+    vec3 texture_corner;
     uint reserved2;
+    vec3 texture_axis_u;
+    uint reserved3;
+    vec3 texture_axis_v;
+    uint reserved4;
+    vec2 texture_low;
+    vec2 texture_size;
 };
 
 const uint LIGHT_TWO_SIDED = 1u;
+const uint LIGHT_NO_TEXTURE = 0xffffffffu;
 
 #endif

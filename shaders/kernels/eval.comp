@@ -12,6 +12,7 @@ layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
+layout(constant_id = 7) const int FOOTPRINT = 0;
 
 #define LIGHTS_BINDING 1
 #include "table_image.glsl"
@@ -47,7 +48,7 @@ void main() {
     ArealightGpuCase given = cases[index];
     ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo,
                                                 given.f0, given.f90, given.roughness);
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES);
+    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
     ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
     vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, quality);
     results[index] = vec4(radiance, 0.0);

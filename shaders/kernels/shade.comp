@@ -13,6 +13,7 @@ layout(constant_id = 3) const int OUTPUT = 0;
 layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
+layout(constant_id = 7) const int FOOTPRINT = 0;
 
 const int POSITION_FROM_DEPTH = 1;
 const int OUTPUT_ADD = 1;
@@ -57,7 +58,7 @@ void main() {
     vec3 radiance = vec3(0.0);
     if (hit) {
         ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
-        ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES);
+        ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
         for (uint index = 0u; index < constants.light_count; index++) {
             radiance += arealight_polygon_radiance(point, load_light(index), EFFECTS, quality);

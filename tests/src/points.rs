@@ -77,6 +77,6 @@ pub fn point(surface: Surface, view: DVec3, vertices: Vec<DVec3>, two_sided: boo
         position: DVec3::ZERO,
         normal: DVec3::Z,
         view,
-        light: PolygonLight { name: "test".into(), vertices, radiance: Vec3::ONE, two_sided },
+        light: PolygonLight { name: "test".into(), vertices, radiance: Vec3::ONE, two_sided, texture: None },
     }
 }

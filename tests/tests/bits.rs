@@ -87,7 +87,7 @@ fn buffers() -> Buffers {
             area: sphere.vector(&mut random),
             vertex_count,
             flags: random.bits() & GpuLight::TWO_SIDED,
-            reserved: [0; 3],
+            ..bytemuck::Zeroable::zeroed()
         });
         for _ in 0..vertex_count {
             let [x, y, z] = outline.vector(&mut random);
@@ -123,6 +123,7 @@ fn answers(engine: &TestEngine, given: &Buffers, effects: Effects, quality: Qual
         Resource::buffer(vertices.handle()),
         Resource::buffer(cases.handle()),
         Resource::buffer(results.handle()),
+        engine.light_textures(),
     ];
     let constants = EvalConstants { case_count: given.cases.len() as u32 };
     // SAFETY: Host::submit waits, and everything here is dropped before the engine.

@@ -284,6 +284,7 @@ impl<'a> OnePixel<'a> {
                 base_color: sampled(&self.base_color),
                 specular: sampled(&self.base_color),
                 radiance: Resource::StorageImage { view: self.radiance.view() },
+                light_textures: self.engine.light_textures(),
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -305,7 +306,7 @@ fn lamp() -> PolygonLight {
         name: "lamp".into(),
         vertices: square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect(),
         radiance: Vec3::new(1.0, 2.0, 3.0),
-        two_sided: false,
+        ..PolygonLight::default()
     }
 }
 

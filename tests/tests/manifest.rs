@@ -90,6 +90,9 @@ fn bound_variables(module: &Module) -> BTreeMap<u32, &Instruction> {
 fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
     let kind = pointee(module, variable);
     let id = variable.result_id.expect("a variable has an id");
+    if kind.class.opcode == Op::TypeSampledImage {
+        return (BindingKind::FilteredImage, Access::Read);
+    }
     if kind.class.opcode == Op::TypeImage {
         // Operand 5: 1 is sampled, 2 is storage
         if literal(&kind.operands[5]) == 1 {
@@ -114,6 +117,9 @@ fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
 /// What the GLSL calls a binding: an image by its variable, a buffer by its block's only member.
 fn binding_name(module: &Module, variable: &Instruction) -> String {
     let kind = pointee(module, variable);
+    if kind.class.opcode == Op::TypeSampledImage {
+        return (BindingKind::FilteredImage, Access::Read);
+    }
     if kind.class.opcode == Op::TypeImage {
         return name(module, variable.result_id.expect("a variable has an id"));
     }
@@ -228,8 +234,10 @@ fn every_structure_has_the_same_offsets() {
     let eval = module(&kernels::EVAL);
     let reference = module(&kernels::REFERENCE);
     let visibility = module(&kernels::VISIBILITY);
-    let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, vertex_count, flags,
-                        reserved as "reserved0");
+    let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
+                        texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
+                        texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
+                        reserved_axis_v as "reserved4", texture_low, texture_size);
     for (kernel, structure, expected) in [
         (&shade, "ArealightGpuLight", light.clone()),
         (&reference, "ArealightGpuLight", light.clone()),
@@ -407,7 +415,11 @@ fn effects_have_the_same_bits_in_glsl() {
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
     use gpu::{GpuLight, GpuMaterial, GpuTexture};
-    assert_constants(BUFFERS_GLSL, "LIGHT_", &[("TWO_SIDED", GpuLight::TWO_SIDED.into())]);
+    assert_constants(
+        BUFFERS_GLSL,
+        "LIGHT_",
+        &[("TWO_SIDED", GpuLight::TWO_SIDED.into()), ("NO_TEXTURE", GpuLight::NO_TEXTURE.into())],
+    );
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
     assert_constants(SCENE_GLSL, "MATERIAL_", &material);

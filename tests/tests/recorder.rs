@@ -72,7 +72,7 @@ fn resources_that_do_not_fit_are_refused_by_name() {
         let set = pool.allocate(pass.set_layout()).unwrap();
         let write = |resources: &[Resource]| pass.write_set(set, resources);
         assert_eq!(field(&write(&[]).unwrap_err()), "resources");
-        let right = [engine.table(), whole, whole, whole, whole];
+        let right = [engine.table(), whole, whole, whole, whole, engine.light_textures()];
         write(&right).unwrap();
         let mut wrong = right;
         wrong[0] = whole;
@@ -111,6 +111,7 @@ fn a_light_that_calls_for_more_is_named() {
         vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
         radiance: Vec3::ONE,
         two_sided: true,
+        texture: None,
     };
     let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
     recording(&engine, options, |pass, _, _| {

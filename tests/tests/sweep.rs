@@ -58,7 +58,13 @@ fn light(concave: bool) -> PolygonLight {
     // Its front looks down, and to the far surface
     let tilt = DQuat::from_rotation_y(0.5) * DQuat::from_rotation_x(0.3);
     let vertices = flat.iter().rev().map(|&(x, y)| tilt * DVec3::new(x, y, 0.0)).collect();
-    PolygonLight { name: "sweeping".into(), vertices, radiance: Vec3::ONE, two_sided: concave }
+    PolygonLight {
+        name: "sweeping".into(),
+        vertices,
+        radiance: Vec3::ONE,
+        two_sided: concave,
+        ..PolygonLight::default()
+    }
 }
 
 /// What the pass is given: a row of pixels a frame.
@@ -147,6 +153,7 @@ impl<'a> Sweep<'a> {
                 base_color: sampled(color),
                 specular: sampled(color),
                 radiance: Resource::StorageImage { view: radiance.view() },
+                light_textures: self.engine.light_textures(),
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {

@@ -126,7 +126,7 @@ fn polygon(light: &AreaLight, node: &PlacedNode, name: String) -> Result<Polygon
         vertices.reverse();
     }
     let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT) as f32;
-    let polygon = PolygonLight { name, vertices, radiance, two_sided: false };
+    let polygon = PolygonLight { name, vertices, radiance, ..PolygonLight::default() };
     polygon.validate().map_err(|e| e.to_string())?;
     Ok(polygon)
 }

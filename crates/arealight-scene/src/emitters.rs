@@ -42,7 +42,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     for (number, vertices) in outlines.polygons.into_iter().enumerate() {
         let name =
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
-        let light = PolygonLight { name, vertices, radiance, two_sided };
+        let light = PolygonLight { name, vertices, radiance, two_sided, texture: None };
         match light.validate() {
             Ok(()) => loader.scene.lights.push(light),
             Err(problem) => loader.warn(place.as_str(), format!("{problem}: left out")),

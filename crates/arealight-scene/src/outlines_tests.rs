@@ -21,7 +21,7 @@ fn total_area(outlines: &Outlines) -> DVec3 {
             name: String::new(),
             vertices: vertices.clone(),
             radiance: glam::Vec3::ONE,
-            two_sided: false,
+            ..arealight::PolygonLight::default()
         }
         .area_vector()
     };

@@ -15,6 +15,13 @@ pub enum Resource {
         /// The layout it has when the pass runs.
         layout: vk::ImageLayout,
     },
+    /// An array image that is read with the kernel's own sampler.
+    FilteredImage {
+        /// A view of it with the levels and layers to read.
+        view: vk::ImageView,
+        /// The layout it has when the pass runs.
+        layout: vk::ImageLayout,
+    },
     /// An image that is stored to, in layout `GENERAL`.
     StorageImage {
         /// A view of one layer.
@@ -40,6 +47,7 @@ impl Resource {
     fn kind(self) -> BindingKind {
         match self {
             Self::SampledImage { .. } => BindingKind::SampledImage,
+            Self::FilteredImage { .. } => BindingKind::FilteredImage,
             Self::StorageImage { .. } => BindingKind::StorageImage,
             Self::StorageBuffer { .. } => BindingKind::StorageBuffer,
         }
@@ -47,7 +55,9 @@ impl Resource {
 
     fn is_null(self) -> bool {
         match self {
-            Self::SampledImage { view, .. } | Self::StorageImage { view } => view == vk::ImageView::null(),
+            Self::SampledImage { view, .. }
+            | Self::FilteredImage { view, .. }
+            | Self::StorageImage { view } => view == vk::ImageView::null(),
             Self::StorageBuffer { buffer, .. } => buffer == vk::Buffer::null(),
         }
     }
@@ -58,6 +68,7 @@ impl Resource {
 pub struct ComputePass {
     context: Context,
     kernel: &'static Kernel,
+    sampler: vk::Sampler,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
     pipeline: vk::Pipeline,
@@ -93,25 +104,48 @@ impl ComputePass {
         let mut pass = Self {
             context: context.clone(),
             kernel,
+            sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
             pipeline: vk::Pipeline::null(),
         };
+        if kernel.bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
+            pass.make_sampler()?;
+        }
         pass.make_layouts()?;
         pass.make_pipeline(specialization)?;
         Ok(pass)
     }
 
+    fn make_sampler(&mut self) -> Result<(), Error> {
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(vk::Filter::LINEAR)
+            .min_filter(vk::Filter::LINEAR)
+            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .max_lod(vk::LOD_CLAMP_NONE);
+        // SAFETY: the device is valid by the contract of Context::new.
+        self.sampler = unsafe { self.context.device.create_sampler(&info, None) }.call("vkCreateSampler")?;
+        Ok(())
+    }
+
     fn make_layouts(&mut self) -> Result<(), Error> {
         let device = &self.context.device;
+        let samplers = [self.sampler];
         let bindings: Vec<_> = (0u32..)
             .zip(self.kernel.bindings)
             .map(|(number, binding)| {
-                vk::DescriptorSetLayoutBinding::default()
+                let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(number)
                     .descriptor_type(descriptor_type(binding.kind))
                     .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE);
+                match binding.kind {
+                    BindingKind::FilteredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
             })
             .collect();
         let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
@@ -174,7 +208,7 @@ impl ComputePass {
 
     /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
     pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
-        [BindingKind::SampledImage, BindingKind::StorageImage, BindingKind::StorageBuffer]
+        BindingKind::ALL
             .into_iter()
             .filter_map(|kind| {
                 let count = self.kernel.bindings.iter().filter(|b| b.kind == kind).count() as u32;
@@ -235,7 +269,7 @@ impl ComputePass {
                     .descriptor_type(descriptor_type(binding.kind));
                 match binding.kind {
                     BindingKind::StorageBuffer => write.buffer_info(buffer),
-                    BindingKind::SampledImage | BindingKind::StorageImage => write.image_info(image),
+                    _ => write.image_info(image),
                 }
             })
             .collect();
@@ -315,6 +349,7 @@ impl Drop for ComputePass {
             device.destroy_pipeline(self.pipeline, None);
             device.destroy_pipeline_layout(self.pipeline_layout, None);
             device.destroy_descriptor_set_layout(self.set_layout, None);
+            device.destroy_sampler(self.sampler, None);
         }
     }
 }
@@ -322,12 +357,13 @@ impl Drop for ComputePass {
 /// Only the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
     let limits = context.limits;
-    for (kind, limit, feature) in [
-        (BindingKind::SampledImage, limits.sampled_images, "maxPerStageDescriptorSampledImages"),
-        (BindingKind::StorageImage, limits.storage_images, "maxPerStageDescriptorStorageImages"),
-        (BindingKind::StorageBuffer, limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
+    use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
+    for (kinds, limit, feature) in [
+        (&[SampledImage, FilteredImage][..], limits.sampled_images, "maxPerStageDescriptorSampledImages"),
+        (&[StorageImage], limits.storage_images, "maxPerStageDescriptorStorageImages"),
+        (&[StorageBuffer], limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
     ] {
-        let count = kernel.bindings.iter().filter(|binding| binding.kind == kind).count();
+        let count = kernel.bindings.iter().filter(|binding| kinds.contains(&binding.kind)).count();
         if count > limit as usize {
             return Err(Error::MissingFeature { feature, needed_by: kernel.name });
         }
@@ -338,6 +374,7 @@ fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error>
 fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
         BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
         BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
     }
@@ -345,7 +382,7 @@ fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
 
 fn image_info(resource: Resource) -> vk::DescriptorImageInfo {
     match resource {
-        Resource::SampledImage { view, layout } => {
+        Resource::SampledImage { view, layout } | Resource::FilteredImage { view, layout } => {
             vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
         }
         Resource::StorageImage { view } => {
@@ -360,6 +397,6 @@ fn buffer_info(resource: Resource) -> vk::DescriptorBufferInfo {
         Resource::StorageBuffer { buffer, offset, range } => {
             vk::DescriptorBufferInfo::default().buffer(buffer).offset(offset).range(range)
         }
-        Resource::SampledImage { .. } | Resource::StorageImage { .. } => vk::DescriptorBufferInfo::default(),
+        _ => vk::DescriptorBufferInfo::default(),
     }
 }

@@ -31,6 +31,9 @@ pub struct ShadeResources {
     pub specular: Resource,
     /// Where radiance goes (rgba32f).
     pub radiance: Resource,
+    /// The lights' textures, read only with [`arealight::Effects::TEXTURED`]: else any 2D array image, the table's for
+    /// instance.
+    pub light_textures: Resource,
 }
 
 /// What differs from frame to frame.
@@ -110,7 +113,7 @@ impl ShadePass {
             },
             layout: match binding.kind {
                 BindingKind::StorageImage => vk::ImageLayout::GENERAL,
-                BindingKind::SampledImage | BindingKind::StorageBuffer => vk::ImageLayout::UNDEFINED,
+                _ => vk::ImageLayout::UNDEFINED,
             },
         });
         accesses.collect()
@@ -155,6 +158,7 @@ impl ShadePass {
             resources.base_color,
             resources.specular,
             resources.radiance,
+            resources.light_textures,
         ];
         // SAFETY: the same contract.
         unsafe { self.pass.write_set(set, &resources) }

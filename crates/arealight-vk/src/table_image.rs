@@ -224,6 +224,12 @@ impl TableImage {
     pub fn resource(&self) -> Resource {
         Resource::SampledImage { view: self.view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
     }
+
+    /// The table in place of light textures, for a pass that is made without [`arealight::Effects::TEXTURED`] and
+    /// does not read them.
+    pub fn in_place_of_textures(&self) -> Resource {
+        Resource::FilteredImage { view: self.view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
+    }
 }
 
 impl Drop for TableImage {

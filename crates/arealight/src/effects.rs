@@ -21,6 +21,8 @@ bitflags::bitflags! {
         /// Some light is concave, not quite flat, or has more than four vertices
         /// ([`PolygonLight::is_convex_quad`](crate::PolygonLight::is_convex_quad) is false).
         const POLYGON = 1 << 4;
+        /// Some light shows an image ([`PolygonLight::texture`](crate::PolygonLight::texture)).
+        const TEXTURED = 1 << 5;
     }
 }
 
@@ -33,6 +35,7 @@ impl Effects {
             (Self::TWO_SIDED, "two_sided"),
             (Self::SPECULAR_INPUT, "specular_input"),
             (Self::POLYGON, "polygon"),
+            (Self::TEXTURED, "textured"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -67,6 +70,7 @@ mod tests {
             vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
             radiance: Vec3::ONE,
             two_sided,
+            ..PolygonLight::default()
         }
     }
 

@@ -20,13 +20,33 @@ pub struct GpuLight {
     pub vertex_count: u32,
     /// [`GpuLight::TWO_SIDED`] or zero.
     pub flags: u32,
+    /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
+    pub texture_layer: u32,
     /// Zero.
-    pub reserved: [u32; 3],
+    pub reserved: [u32; 2],
+    /// Where the texture coordinate `texture_low` is, from the center.
+    pub texture_corner: [f32; 3],
+    /// Zero.
+    pub reserved_corner: u32,
+    /// From the corner to where the first coordinate has grown by `texture_size[0]`.
+    pub texture_axis_u: [f32; 3],
+    /// Zero.
+    pub reserved_axis_u: u32,
+    /// From the corner to where the second coordinate has grown by `texture_size[1]`.
+    pub texture_axis_v: [f32; 3],
+    /// Zero.
+    pub reserved_axis_v: u32,
+    /// The smallest texture coordinates on the light.
+    pub texture_low: [f32; 2],
+    /// The box of its coordinates, in [0, 1].
+    pub texture_size: [f32; 2],
 }
 
 impl GpuLight {
     /// The back emits too.
     pub const TWO_SIDED: u32 = 1;
+    /// No texture.
+    pub const NO_TEXTURE: u32 = u32::MAX;
 }
 
 /// Push constants of the shade kernel.

@@ -6,10 +6,19 @@
 pub enum BindingKind {
     /// A sampled image, read by texel; no sampler.
     SampledImage,
+    /// A sampled image with a sampler that is part of the layout: trilinear, clamped to the edge, normalised
+    /// coordinates.
+    FilteredImage,
     /// A storage image.
     StorageImage,
     /// A storage buffer.
     StorageBuffer,
+}
+
+impl BindingKind {
+    /// Every kind.
+    pub const ALL: [Self; 4] =
+        [Self::SampledImage, Self::FilteredImage, Self::StorageImage, Self::StorageBuffer];
 }
 
 /// What a kernel does to a binding.
@@ -81,6 +90,8 @@ pub mod constant {
     pub const FRESNEL: u32 = 5;
     /// [`crate::Lobes`].
     pub const LOBES: u32 = 6;
+    /// [`crate::Footprint`].
+    pub const FOOTPRINT: u32 = 7;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -122,6 +133,13 @@ const G_SPECULAR: Binding = read(
      else bind any image",
 );
 
+const LIGHT_TEXTURES: Binding = read(
+    "light_textures",
+    BindingKind::FilteredImage,
+    "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only with \
+     Effects::TEXTURED, else bind any 2D array image",
+);
+
 /// Shades a G-buffer with polygon lights. Push constants: [`crate::gpu::ShadeConstants`].
 pub static SHADE: Kernel = Kernel {
     name: "shade",
@@ -142,6 +160,7 @@ pub static SHADE: Kernel = Kernel {
             Access::ReadWrite,
             "outgoing radiance in rgb, 1 in a where there is a surface (rgba32f)",
         ),
+        LIGHT_TEXTURES,
     ],
     constants: &[
         constant::EFFECTS,
@@ -151,6 +170,7 @@ pub static SHADE: Kernel = Kernel {
         constant::HORIZON,
         constant::FRESNEL,
         constant::LOBES,
+        constant::FOOTPRINT,
     ],
 };
 
@@ -166,6 +186,7 @@ pub static EVAL: Kernel = Kernel {
         LIGHT_VERTICES,
         read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
         write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
+        LIGHT_TEXTURES,
     ],
     constants: &[
         constant::EFFECTS,
@@ -173,6 +194,7 @@ pub static EVAL: Kernel = Kernel {
         constant::HORIZON,
         constant::FRESNEL,
         constant::LOBES,
+        constant::FOOTPRINT,
     ],
 };
 
@@ -198,6 +220,7 @@ pub static REFERENCE: Kernel = Kernel {
             Access::ReadWrite,
             "the dispatch's weighted mean is added (rgba32f)",
         ),
+        LIGHT_TEXTURES,
     ],
     constants: &[],
 };

@@ -18,6 +18,8 @@
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
+//! | [`light_texture`] | what a light shows |
+//! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
 //! | [`light_sampling`] | what the Monte Carlo reference needs of them |
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what a scene calls for, and nothing else |
@@ -32,16 +34,20 @@ pub mod gpu;
 pub mod kernels;
 pub mod light;
 pub mod light_sampling;
+pub mod light_texture;
 pub mod material;
 pub mod plan;
+pub mod pyramid;
 pub mod quality;
 pub mod table;
 
 pub use effects::Effects;
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
+pub use light_texture::{LightTexture, TextureError};
 pub use material::{Material, Surface};
-pub use quality::{FormFactor, Fresnel, Horizon, Lobes, Quality};
+pub use pyramid::PyramidSize;
+pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.

@@ -2,13 +2,14 @@
 
 use crate::Effects;
 use crate::gpu::GpuLight;
+use crate::light_texture::{LightTexture, TextureError};
 use glam::{DVec3, Vec3};
 
-/// A flat polygon that emits constant radiance.
+/// A flat polygon that emits constant radiance, or shows an image.
 ///
-/// Any number of vertices from three on, convex or concave; its edges do not cross, and it has no holes. The front is the right-hand side
-/// of the vertex order: seen from the front, the vertices run counter-clockwise.
-#[derive(Debug, Clone, PartialEq)]
+/// Any number of vertices from three on, convex or concave; its edges do not cross, and it has no holes. The front is the
+/// right-hand side of the vertex order: seen from the front, the vertices run counter-clockwise.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PolygonLight {
     /// A name for messages; it need not be unique.
     pub name: String,
@@ -18,6 +19,8 @@ pub struct PolygonLight {
     pub radiance: Vec3,
     /// Whether the back emits too.
     pub two_sided: bool,
+    /// An image that multiplies the radiance; the back shows it mirrored, as a slide does.
+    pub texture: Option<LightTexture>,
 }
 
 /// Why a light cannot be used. The light is named, and nothing is packed.
@@ -50,6 +53,14 @@ pub enum LightError {
         /// The radiance given.
         value: Vec3,
     },
+    /// Its texture cannot be mapped onto it.
+    #[error("light '{light}': texture: {reason}")]
+    BadTexture {
+        /// The light's name.
+        light: String,
+        /// What is wrong.
+        reason: TextureError,
+    },
     /// More vertices or lights than a 32-bit index reaches.
     #[error("{count} light vertices: at most {} fit one buffer", u32::MAX)]
     TooMany {
@@ -75,6 +86,9 @@ impl PolygonLight {
         }
         if !self.radiance.is_finite() || self.radiance.min_element() < 0.0 {
             return Err(LightError::BadRadiance { light: light(), value: self.radiance });
+        }
+        if let Some(texture) = &self.texture {
+            texture.map(self).map_err(|reason| LightError::BadTexture { light: light(), reason })?;
         }
         Ok(())
     }
@@ -138,6 +152,7 @@ impl PolygonLight {
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, self.two_sided);
         effects.set(Effects::POLYGON, !self.is_convex_quad());
+        effects.set(Effects::TEXTURED, self.texture.is_some());
         effects
     }
 
@@ -235,6 +250,17 @@ impl PackedLights {
         }
         let radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
         let area = light.area_vector() / radius.powi(2);
+        // The texture's axes keep their precision as the vertices do
+        let map = match &light.texture {
+            Some(texture) => Some(
+                texture
+                    .map(light)
+                    .map_err(|reason| LightError::BadTexture { light: light.name.clone(), reason })?,
+            ),
+            None => None,
+        };
+        let corner = map.map(|map| map.corner - origin - center.as_dvec3()).unwrap_or_default();
+        let map = map.unwrap_or_default();
         self.lights.push(GpuLight {
             radiance: light.radiance.to_array(),
             first_vertex,
@@ -243,7 +269,16 @@ impl PackedLights {
             area: if area.is_finite() { area.as_vec3().to_array() } else { [0.0; 3] },
             vertex_count: light.vertices.len() as u32,
             flags: if light.two_sided { GpuLight::TWO_SIDED } else { 0 },
-            reserved: [0; 3],
+            texture_layer: light.texture.as_ref().map_or(GpuLight::NO_TEXTURE, |texture| texture.layer),
+            reserved: [0; 2],
+            texture_corner: corner.as_vec3().to_array(),
+            reserved_corner: 0,
+            texture_axis_u: map.axis_u.as_vec3().to_array(),
+            reserved_axis_u: 0,
+            texture_axis_v: map.axis_v.as_vec3().to_array(),
+            reserved_axis_v: 0,
+            texture_low: map.low.as_vec2().to_array(),
+            texture_size: map.size.as_vec2().to_array(),
         });
         Ok(())
     }
@@ -264,7 +299,7 @@ mod tests {
                 DVec3::new(1.0, 1.0, 2.0),
             ],
             radiance: Vec3::new(1.0, 2.0, 3.0),
-            two_sided: false,
+            ..PolygonLight::default()
         }
     }
 

@@ -55,7 +55,7 @@ mod tests {
             name: "light".into(),
             vertices,
             radiance: Vec3::ONE,
-            two_sided: false,
+            ..PolygonLight::default()
         };
         let square = [DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
         let lights = [light(vec![DVec3::ONE; 3]), light(square.to_vec())];

@@ -82,6 +82,7 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
         (kernels::constant::HORIZON, options.quality.horizon as u32),
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
+        (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
     ]
 }
 
@@ -95,6 +96,7 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
             (kernels::constant::HORIZON, quality.horizon as u32),
             (kernels::constant::FRESNEL, quality.fresnel as u32),
             (kernels::constant::LOBES, quality.lobes as u32),
+            (kernels::constant::FOOTPRINT, quality.footprint as u32),
         ],
         groups: kernels::EVAL.groups_for([case_count, 1, 1]),
     }

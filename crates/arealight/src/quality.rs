@@ -60,6 +60,24 @@ pub enum Lobes {
     Formula = 1,
 }
 
+/// How the part of a light's texture that a lobe sees is looked up: its footprint on the light, an ellipse that is far
+/// from round where a glossy surface is seen at an angle. Errors against the integral of texture times lobe:
+/// docs/textures.md.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum Footprint {
+    /// One trilinear fetch with a round footprint.
+    #[default]
+    Round = 0,
+    /// Four fetches along the footprint's longer axis.
+    Ellipse = 1,
+    /// The light is split into two by two parts, each with a form factor of its own and two fetches. Lights with
+    /// more than four vertices, and concave ones, are split into triangles.
+    SplitTwo = 2,
+    /// Four by four parts.
+    SplitFour = 3,
+}
+
 /// The rungs that a pass is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {
@@ -74,6 +92,8 @@ pub struct Quality {
     /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative (2e-4 for
     /// concave ones); the others as the other fields say.
     pub one_point: bool,
+    /// How light textures are looked up.
+    pub footprint: Footprint,
 }
 
 impl Quality {

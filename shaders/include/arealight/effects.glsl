@@ -14,6 +14,8 @@ const uint AREALIGHT_EFFECT_TWO_SIDED = 4u;
 const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
 // Some light is concave, not quite flat, or has more than four vertices.
 const uint AREALIGHT_EFFECT_POLYGON = 16u;
+// Some light shows an image.
+const uint AREALIGHT_EFFECT_TEXTURED = 32u;
 
 // Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
 // arealight::Quality::form_factor_bits.
@@ -35,12 +37,19 @@ const int AREALIGHT_FRESNEL_SPLIT = 1; // two integrals, one of each lobe
 const int AREALIGHT_LOBES_TABLE = 0;   // the host's table
 const int AREALIGHT_LOBES_FORMULA = 1; // formulas: no texture is read; the table's bridges are not called
 
+// How a light's texture is looked up, see footprint.glsl. The same as arealight::Footprint.
+const int AREALIGHT_FOOTPRINT_ROUND = 0;      // one fetch
+const int AREALIGHT_FOOTPRINT_ELLIPSE = 1;    // four fetches along the longer axis
+const int AREALIGHT_FOOTPRINT_SPLIT_TWO = 2;  // two by two parts of the light, two fetches each
+const int AREALIGHT_FOOTPRINT_SPLIT_FOUR = 3; // four by four parts
+
 // How a pass shades. Make the fields from specialisation constants or literals.
 struct ArealightQuality {
     int form_factor; // AREALIGHT_FORM_FACTOR_* bits
     int horizon;     // one of AREALIGHT_HORIZON_*
     int fresnel;     // one of AREALIGHT_FRESNEL_*
     int lobes;       // one of AREALIGHT_LOBES_*
+    int footprint;   // one of AREALIGHT_FOOTPRINT_*
 };
 
 #endif

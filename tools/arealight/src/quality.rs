@@ -1,7 +1,7 @@
 //! The rungs of the quality ladder, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
+use arealight::{Footprint, FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
 use std::path::PathBuf;
 
 /// How lights are integrated.
@@ -22,6 +22,9 @@ pub struct QualityArguments {
     /// Take far lights from their centre alone where that is within 1e-4, relative
     #[arg(long)]
     one_point: bool,
+    /// How light textures are looked up
+    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lookup::Round)]
+    footprint: Lookup,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
@@ -67,6 +70,19 @@ pub enum Parts {
     Split,
 }
 
+/// How the part of a texture that a lobe sees is looked up.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Lookup {
+    /// One fetch with a round footprint
+    Round,
+    /// Four fetches along the footprint's longer axis
+    Ellipse,
+    /// The light in two by two parts, two fetches each
+    SplitTwo,
+    /// The light in four by four parts
+    SplitFour,
+}
+
 impl Default for QualityArguments {
     fn default() -> Self {
         Self {
@@ -75,6 +91,7 @@ impl Default for QualityArguments {
             fresnel: None,
             lobes: Source::Table,
             one_point: false,
+            footprint: Lookup::Round,
             table: None,
         }
     }
@@ -103,7 +120,13 @@ impl QualityArguments {
             Source::Table => Lobes::Table,
             Source::Formula => Lobes::Formula,
         };
-        Quality { form_factor, horizon, fresnel, lobes, one_point: self.one_point }
+        let footprint = match self.footprint {
+            Lookup::Round => Footprint::Round,
+            Lookup::Ellipse => Footprint::Ellipse,
+            Lookup::SplitTwo => Footprint::SplitTwo,
+            Lookup::SplitFour => Footprint::SplitFour,
+        };
+        Quality { form_factor, horizon, fresnel, lobes, one_point: self.one_point, footprint }
     }
 
     /// The table chosen.

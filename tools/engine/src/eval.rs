@@ -76,6 +76,7 @@ impl Engine {
                 Resource::buffer(vertex_buffer.handle()),
                 Resource::buffer(case_buffer.handle()),
                 Resource::buffer(results.handle()),
+                self.light_textures(),
             ];
             let case_count = cases.len() as u32;
             let dispatch = plan::eval(effects, quality, case_count);

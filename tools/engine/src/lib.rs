@@ -90,6 +90,11 @@ impl Engine {
         self.table.resource()
     }
 
+    /// The lights' textures, as a pass takes them.
+    pub fn light_textures(&self) -> Resource {
+        self.table.filtered()
+    }
+
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
     fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
         let (bytes, limit) =

@@ -114,6 +114,7 @@ impl<'a> SceneRenderer<'a> {
             base_color,
             specular,
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            light_textures: self.engine.light_textures(),
         };
         // SAFETY: The set is new, and the resources live until the submission was waited for.
         unsafe { pass.write_set(set, &resources) }?;
@@ -151,7 +152,10 @@ impl<'a> SceneRenderer<'a> {
             .into_iter()
             .map(|buffer| Resource::buffer(buffer.handle()))
             .chain(self.g_buffer.sampled())
-            .chain([Resource::StorageImage { view: self.g_buffer.radiance.view() }])
+            .chain([
+                Resource::StorageImage { view: self.g_buffer.radiance.view() },
+                self.engine.light_textures(),
+            ])
             .collect();
         let pass = self.engine.pass(&REFERENCE, &[], &resources)?;
 

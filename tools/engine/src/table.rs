@@ -65,4 +65,9 @@ impl UploadedTable {
     pub fn resource(&self) -> Resource {
         self.allocated.image.resource()
     }
+
+    /// As an array image with a sampler: what is bound where no light has a texture.
+    pub fn filtered(&self) -> Resource {
+        self.allocated.image.in_place_of_textures()
+    }
 }

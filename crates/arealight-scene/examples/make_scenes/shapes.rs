@@ -49,7 +49,7 @@ pub fn polygon(outline: &[[f64; 2]]) -> Shape {
         name: String::new(),
         vertices,
         radiance: glam::Vec3::ONE,
-        two_sided: false,
+        ..arealight::PolygonLight::default()
     };
     let mut shape = Shape { indices: light.triangles(), ..Shape::default() };
     for vertex in light.vertices {

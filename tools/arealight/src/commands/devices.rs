@@ -42,8 +42,10 @@ struct Limit {
 
 /// The limits that the kernels come near, by what the kernels' manifest says.
 fn limits(device: &PhysicalDeviceLimits) -> [Limit; 5] {
-    let most = |kind| {
-        let count = |kernel: &&kernels::Kernel| kernel.bindings.iter().filter(|one| one.kind == kind).count();
+    let most = |kinds: &[BindingKind]| {
+        let count = |kernel: &&kernels::Kernel| {
+            kernel.bindings.iter().filter(|one| kinds.contains(&one.kind)).count()
+        };
         kernels::ALL.iter().map(count).max().unwrap_or(0) as u32
     };
     let group = kernels::ALL.iter().map(|kernel| kernel.local_size.iter().product()).max();
@@ -58,17 +60,17 @@ fn limits(device: &PhysicalDeviceLimits) -> [Limit; 5] {
         limit("maxPushConstantsSize", constants.unwrap_or(0), device.max_push_constants_size),
         limit(
             "maxPerStageDescriptorSampledImages",
-            most(BindingKind::SampledImage),
+            most(&[BindingKind::SampledImage, BindingKind::FilteredImage]),
             device.max_per_stage_descriptor_sampled_images,
         ),
         limit(
             "maxPerStageDescriptorStorageImages",
-            most(BindingKind::StorageImage),
+            most(&[BindingKind::StorageImage]),
             device.max_per_stage_descriptor_storage_images,
         ),
         limit(
             "maxPerStageDescriptorStorageBuffers",
-            most(BindingKind::StorageBuffer),
+            most(&[BindingKind::StorageBuffer]),
             device.max_per_stage_descriptor_storage_buffers,
         ),
     ]

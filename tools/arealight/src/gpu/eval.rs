@@ -54,6 +54,7 @@ fn point(case: &SupportedCase) -> EvalPoint {
             vertices: case.light.vertices.clone(),
             radiance: case.light.radiance.as_vec3(),
             two_sided: case.light.two_sided,
+            texture: None,
         },
     }
 }

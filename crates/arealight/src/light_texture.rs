@@ -1,0 +1,195 @@
+//! What a light shows: a layer of the light textures, mapped onto its polygon.
+
+use crate::PolygonLight;
+use glam::{DMat2, DVec2, DVec3};
+
+/// An image that multiplies a polygon light's radiance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LightTexture {
+    /// The layer of the light textures (see [`crate::pyramid`]).
+    pub layer: u32,
+    /// A texture coordinate for each vertex, in [0, 1]; (0, 0) is the outer corner of the first texel of the top row.
+    /// They are an affine function of the vertices' positions, as those of a triangle always are.
+    ///
+    /// What lies outside of an image, when it is repeated, is loaded into a layer of its own.
+    pub uvs: Vec<DVec2>,
+}
+
+/// Why a texture cannot be mapped onto a light.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TextureError {
+    /// There must be one coordinate a vertex.
+    #[error("uvs: {uvs} given for {vertices} vertices; give one each")]
+    Count {
+        /// Coordinates.
+        uvs: usize,
+        /// Vertices.
+        vertices: usize,
+    },
+    /// A coordinate is NaN or outside of the image.
+    #[error(
+        "uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the light shows \
+         into a layer of its own"
+    )]
+    Outside {
+        /// The vertex.
+        index: usize,
+        /// Its coordinate.
+        value: DVec2,
+    },
+    /// The coordinates bend: they are no affine function of the positions.
+    #[error(
+        "uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its mapping bends"
+    )]
+    Bent {
+        /// The vertex that is farthest off.
+        index: usize,
+        /// How far, in texture coordinates.
+        off: f64,
+    },
+    /// The coordinates lie on a line, or the polygon's vertices do.
+    #[error("uvs: they span no area; a light of one colour needs no texture")]
+    Flat,
+}
+
+/// A texture's place in the world: `corner + axis_u s + axis_v t` shows the texture coordinate `low + size (s, t)`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct TextureMap {
+    pub(crate) corner: DVec3,
+    pub(crate) axis_u: DVec3,
+    pub(crate) axis_v: DVec3,
+    pub(crate) low: DVec2,
+    pub(crate) size: DVec2,
+}
+
+/// How far a coordinate may be off the affine map: a quarter of a texel of the largest texture.
+const STRAIGHT: f64 = 0.25 / crate::pyramid::PyramidSize::LARGEST as f64;
+
+/// How far a coordinate may be outside of [0, 1], from rounding in files.
+const OUTSIDE: f64 = 1e-5;
+
+impl LightTexture {
+    /// Checks the coordinates, and maps them onto `light`, whose vertices are valid.
+    pub(crate) fn map(&self, light: &PolygonLight) -> Result<TextureMap, TextureError> {
+        let (uvs, vertices) = (&self.uvs, &light.vertices);
+        if uvs.len() != vertices.len() {
+            return Err(TextureError::Count { uvs: uvs.len(), vertices: vertices.len() });
+        }
+        let inside = |uv: &DVec2| uv.min_element() >= -OUTSIDE && uv.max_element() <= 1.0 + OUTSIDE;
+        if let Some(index) = uvs.iter().position(|uv| !inside(uv)) {
+            return Err(TextureError::Outside { index, value: uvs[index] });
+        }
+
+        // Work in the polygon's plane, in units of its size
+        let center = light.center();
+        let scale = vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
+        let normal = light.area_vector().try_normalize().ok_or(TextureError::Flat)?;
+        let (tangent, bitangent) = normal.any_orthonormal_pair();
+        let flat = |vertex: &DVec3| {
+            let offset = (*vertex - center) / scale;
+            DVec2::new(offset.dot(tangent), offset.dot(bitangent))
+        };
+
+        // Fit uv = mean_uv + to_uv (p - mean_p) by least squares
+        let count = vertices.len() as f64;
+        let mean_p = vertices.iter().map(flat).sum::<DVec2>() / count;
+        let mean_uv = uvs.iter().sum::<DVec2>() / count;
+        let (mut spread, mut cross) = (DMat2::ZERO, DMat2::ZERO);
+        for (vertex, uv) in vertices.iter().zip(uvs) {
+            let (p, uv) = (flat(vertex) - mean_p, *uv - mean_uv);
+            spread += DMat2::from_cols(p * p.x, p * p.y);
+            cross += DMat2::from_cols(uv * p.x, uv * p.y);
+        }
+        let to_uv = cross * spread.inverse();
+        let from_uv = to_uv.inverse();
+        if !to_uv.is_finite() || !from_uv.is_finite() || to_uv.determinant().abs() < 1e-12 {
+            return Err(TextureError::Flat);
+        }
+        let off = |index: usize| (mean_uv + to_uv * (flat(&vertices[index]) - mean_p)).distance(uvs[index]);
+        let worst = (0..uvs.len()).max_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0);
+        if off(worst) > STRAIGHT {
+            return Err(TextureError::Bent { index: worst, off: off(worst) });
+        }
+
+        // The box around the coordinates, back in the world
+        let low = uvs.iter().copied().fold(DVec2::INFINITY, DVec2::min).clamp(DVec2::ZERO, DVec2::ONE);
+        let high = uvs.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max).clamp(DVec2::ZERO, DVec2::ONE);
+        let world = |flat: DVec2| (tangent * flat.x + bitangent * flat.y) * scale;
+        let size = high - low;
+        Ok(TextureMap {
+            corner: center + world(mean_p + from_uv * (low - mean_uv)),
+            axis_u: world(from_uv * DVec2::new(size.x, 0.0)),
+            axis_v: world(from_uv * DVec2::new(0.0, size.y)),
+            low,
+            size,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn screen() -> PolygonLight {
+        let corner = |x: f64, y: f64| DVec3::new(x, y, 3.0);
+        PolygonLight {
+            name: "screen".into(),
+            vertices: vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(2.0, 1.0), corner(0.0, 1.0)],
+            radiance: Vec3::ONE,
+            texture: Some(LightTexture {
+                layer: 0,
+                uvs: vec![DVec2::new(0.0, 1.0), DVec2::ONE, DVec2::new(1.0, 0.5), DVec2::new(0.0, 0.5)],
+            }),
+            ..PolygonLight::default()
+        }
+    }
+
+    fn map(light: &PolygonLight) -> Result<TextureMap, TextureError> {
+        light.texture.as_ref().unwrap().map(light)
+    }
+
+    #[test]
+    fn a_rectangle_shows_the_part_that_its_coordinates_say() {
+        let map = map(&screen()).unwrap();
+        assert!((map.corner - DVec3::new(0.0, 1.0, 3.0)).length() < 1e-12, "{map:?}");
+        assert!((map.axis_u - DVec3::new(2.0, 0.0, 0.0)).length() < 1e-12, "{map:?}");
+        assert!((map.axis_v - DVec3::new(0.0, -1.0, 0.0)).length() < 1e-12, "{map:?}");
+        assert_eq!((map.low, map.size), (DVec2::new(0.0, 0.5), DVec2::new(1.0, 0.5)));
+    }
+
+    #[test]
+    fn a_triangle_has_the_box_around_its_coordinates() {
+        let mut light = screen();
+        light.vertices.pop();
+        light.texture.as_mut().unwrap().uvs = vec![DVec2::ZERO, DVec2::X, DVec2::new(0.5, 1.0)];
+        let map = map(&light).unwrap();
+        // The apex, (2, 1), is half way along u and all along v
+        let apex = map.corner + map.axis_u * 0.5 + map.axis_v;
+        assert!((apex - DVec3::new(2.0, 1.0, 3.0)).length() < 1e-12, "{map:?}");
+    }
+
+    #[test]
+    fn what_cannot_be_mapped_is_named() {
+        let with = |uvs: &[[f64; 2]]| {
+            let mut light = screen();
+            light.texture.as_mut().unwrap().uvs = uvs.iter().map(|uv| DVec2::from_array(*uv)).collect();
+            light
+        };
+        let light = with(&[[0.0, 0.0]]);
+        assert_eq!(map(&light), Err(TextureError::Count { uvs: 1, vertices: 4 }));
+        assert_eq!(
+            light.validate().unwrap_err().to_string(),
+            "light 'screen': texture: uvs: 1 given for 4 vertices; give one each"
+        );
+        let outside = with(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
+        assert!(matches!(map(&outside), Err(TextureError::Outside { index: 1, .. })));
+        let not_a_number = with(&[[0.0, 0.0], [1.0, 0.0], [1.0, f64::NAN], [0.0, 1.0]]);
+        assert!(matches!(map(&not_a_number), Err(TextureError::Outside { index: 2, .. })));
+        let bent = with(&[[0.0, 0.0], [1.0, 0.0], [0.7, 0.7], [0.0, 1.0]]);
+        assert!(matches!(map(&bent), Err(TextureError::Bent { .. })));
+        let line = with(&[[0.0, 0.0], [1.0, 1.0], [1.0, 1.0], [0.0, 0.0]]);
+        assert_eq!(map(&line), Err(TextureError::Flat));
+    }
+}

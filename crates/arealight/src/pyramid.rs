@@ -1,0 +1,277 @@
+//! The pyramid of a light's texture: how large each level is, and how blurred.
+//!
+//! A light's texture is a layer of one array image that all lights share, so that no shader indexes an array of images.
+//! Level 0 is the image itself, in linear light; each further level has half the texels a side and about twice the
+//! blur, and is made from the one before with a separable Gaussian. Around the content of every level is a margin of an
+//! eighth of its size, into which the image's edge is extended. A blurred lookup is one trilinear fetch
+//! ([`PyramidSize::level_of`]).
+//!
+//! # Why so
+//! - Levels are twice apart: three times, as is common, doubles the error between them.
+//! - The blur of a level is 0.85 of its texels: less, and bilinear lookup shows the texels; more, and the kernel needs more
+//!   than six taps.
+//! - The last three levels are 2.29 times apart instead, so that the last, whose content is four texels a side, has
+//!   [`WIDEST_BLUR`]: no footprint is wider. A level of two texels cannot show a gradient.
+//! - Level 0 is sharp: a mirror shows the image, and updating it costs one copy.
+//! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a Gaussian than
+//!   mixing by the logarithm of the blur.
+//!
+//! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/pyramid.rs`).
+
+/// The standard deviation of the last level, in texture coordinates: the blur of a light seen from far away, that of
+/// a cap of all footprints at `sqrt(1/8)`.
+pub const WIDEST_BLUR: f64 = 0.353_553_390_593_273_8;
+
+/// The variance of a level's blur, in squares of its own texels, but for the last three.
+const VARIANCE: f64 = 0.85 * 0.85;
+
+/// The variance that bilinear lookup adds, in squares of a level's texels.
+const TENT: f64 = 1.0 / 6.0;
+
+/// How much larger `VARIANCE + TENT` is in each of the last three levels than in the one before: the cube root of
+/// `2 / (VARIANCE + TENT)`, as the last has `(4 WIDEST_BLUR)^2 = 2`.
+const WIDENING: f64 = 1.310_209_9;
+
+/// Levels that are widened.
+const WIDENED: u32 = 3;
+
+/// How much the level's fraction is lowered in its middle, times four.
+const EASE: f64 = 0.25;
+
+/// The exponent of the level between 0 and 1, as a power of the blur.
+const FIRST_POWER: f64 = 1.6;
+
+/// The size of a light texture: content of `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`] to
+/// [`PyramidSize::LARGEST`].
+///
+/// Images of any other size are resampled when they are loaded. The blur is equally wide in both directions *in texels*, so
+/// a size whose aspect is near that of the lights is best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct PyramidSize {
+    width: u32,
+    height: u32,
+}
+
+/// A size that no pyramid has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "light texture size {width} x {height}: each must be a power of two from {} to {}",
+    PyramidSize::SMALLEST,
+    PyramidSize::LARGEST
+)]
+pub struct BadPyramidSize {
+    /// The width given.
+    pub width: u32,
+    /// The height given.
+    pub height: u32,
+}
+
+/// How a level is made from the one before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelKernel {
+    /// Half of a symmetric kernel, the innermost tap first: a texel is the sum of `weights[i]` times the texels at
+    /// `i + 1/2` texels of the finer level to both sides of its centre. The whole kernel sums to one. Zero beyond
+    /// `radius`.
+    pub weights: [f32; LevelKernel::MAX_RADIUS as usize],
+    /// Taps to a side.
+    pub radius: u32,
+}
+
+impl LevelKernel {
+    /// The most taps to a side.
+    pub const MAX_RADIUS: u32 = 6;
+}
+
+impl PyramidSize {
+    /// The smallest width and height of the content.
+    pub const SMALLEST: u32 = 64;
+    /// The largest.
+    pub const LARGEST: u32 = 4096;
+
+    /// A size, checked.
+    ///
+    /// # Errors
+    /// [`BadPyramidSize`] where a side is not a power of two within the limits.
+    pub fn new(width: u32, height: u32) -> Result<Self, BadPyramidSize> {
+        let fits = |side: u32| side.is_power_of_two() && (Self::SMALLEST..=Self::LARGEST).contains(&side);
+        if fits(width) && fits(height) {
+            Ok(Self { width, height })
+        } else {
+            Err(BadPyramidSize { width, height })
+        }
+    }
+
+    /// The size for an image: each side rounded up to what is allowed.
+    pub fn for_image(width: u32, height: u32) -> Self {
+        let side = |texels: u32| texels.clamp(Self::SMALLEST, Self::LARGEST).next_power_of_two();
+        Self { width: side(width), height: side(height) }
+    }
+
+    /// Width and height of the content of level 0, in texels.
+    pub fn content(self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// How many levels there are, level 0 included.
+    pub fn levels(self) -> u32 {
+        self.width.min(self.height).ilog2() - 1
+    }
+
+    /// Width and height of a level with its margins: 5/4 of the content's, a whole number.
+    pub fn extent(self, level: u32) -> [u32; 2] {
+        [self.width, self.height].map(|side| (side / 4 * 5) >> level)
+    }
+
+    /// The margin to each side of a level's content, in its texels; half a texel in the last.
+    pub fn margin(self, level: u32) -> [f64; 2] {
+        [self.width, self.height].map(|side| f64::from(side) / f64::from(8u32 << level))
+    }
+
+    /// Texels of all levels of a layer: 2.08 times the content's.
+    pub fn texels(self) -> u64 {
+        (0..self.levels()).map(|level| self.extent(level).map(u64::from).iter().product::<u64>()).sum()
+    }
+
+    /// The variance of a level's blur, in squares of its own texels; zero for level 0.
+    pub fn variance(self, level: u32) -> f64 {
+        if level == 0 {
+            return 0.0;
+        }
+        let widened = (level + 1 + WIDENED).saturating_sub(self.levels());
+        (VARIANCE + TENT) * WIDENING.powi(widened as i32) - TENT
+    }
+
+    /// The blur of a bilinear lookup in a level beyond that of a bilinear lookup in level 0: a standard deviation in
+    /// level 0's texels.
+    pub fn blur(self, level: u32) -> f64 {
+        let texel = f64::from(1u32 << level);
+        ((self.variance(level) + if level == 0 { 0.0 } else { TENT }) * texel * texel
+            - if level == 0 { 0.0 } else { TENT })
+        .sqrt()
+    }
+
+    /// How `level`, from 1 on, is made from the level before.
+    pub fn kernel(self, level: u32) -> LevelKernel {
+        // The variance to add, in squares of the finer level's texels
+        let added = 4.0 * self.variance(level) - self.variance(level - 1);
+        // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape
+        let radius = match added {
+            ..=2.9 => 3,
+            ..=3.6 => 4,
+            ..=4.6 => 5,
+            _ => 6,
+        };
+        // The Gaussian whose samples have that variance
+        let (mut low, mut high) = (0.1, 1e4);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if discrete_variance(&gaussian(middle, radius)) < added {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        LevelKernel { weights: gaussian(low, radius).map(|weight| weight as f32), radius }
+    }
+
+    /// The level, between two, at which a trilinear lookup is blurred with a standard deviation of `blur` texels of
+    /// level 0 (of the geometric mean of both axes); from 0 to the last.
+    pub fn level_of(self, blur: f64) -> f64 {
+        let square = blur.max(0.0).powi(2);
+        let last = f64::from(self.levels() - 1);
+        // Regular levels: 4^level (VARIANCE + TENT) - TENT
+        let octaves = 0.5 * ((square + TENT) / (VARIANCE + TENT)).log2();
+        if octaves < 1.0 {
+            return (square / (4.0 * (VARIANCE + TENT) - TENT)).powf(0.5 * FIRST_POWER);
+        }
+        let widened = last - f64::from(WIDENED);
+        let level = octaves.min(widened) + (octaves - widened).max(0.0) / (1.0 + 0.5 * WIDENING.log2());
+        let level = level.min(last);
+        let fraction = level.fract();
+        level - EASE * fraction * (1.0 - fraction)
+    }
+}
+
+/// Half of a normalised kernel of samples of a Gaussian of the variance `variance` at half texels.
+fn gaussian(variance: f64, radius: u32) -> [f64; LevelKernel::MAX_RADIUS as usize] {
+    let sample = |i: usize| {
+        let x = i as f64 + 0.5;
+        if i < radius as usize { (-x * x / (2.0 * variance)).exp() } else { 0.0 }
+    };
+    let samples: [f64; LevelKernel::MAX_RADIUS as usize] = std::array::from_fn(sample);
+    let sum = 2.0 * samples.iter().sum::<f64>();
+    samples.map(|sample| sample / sum)
+}
+
+/// The variance of a whole kernel, of which this is half.
+fn discrete_variance(half: &[f64]) -> f64 {
+    2.0 * half.iter().enumerate().map(|(i, weight)| weight * (i as f64 + 0.5).powi(2)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_size_is_a_power_of_two_within_limits() {
+        assert!(PyramidSize::new(256, 128).is_ok());
+        for (width, height) in [(0, 64), (32, 64), (64, 96), (8192, 64)] {
+            let error = PyramidSize::new(width, height).unwrap_err();
+            assert!(error.to_string().contains(&format!("{width} x {height}")), "{error}");
+        }
+        assert_eq!(PyramidSize::for_image(1920, 1080).content(), [2048, 2048]);
+        assert_eq!(PyramidSize::for_image(1, 100_000).content(), [64, 4096]);
+    }
+
+    #[test]
+    fn levels_halve_down_to_five_texels_with_the_margins() {
+        let size = PyramidSize::new(256, 256).unwrap();
+        assert_eq!(size.levels(), 7);
+        assert_eq!(size.extent(0), [320, 320]);
+        assert_eq!(size.extent(6), [5, 5]);
+        assert_eq!(size.margin(6), [0.5, 0.5]);
+        // A wide one stops where its height does
+        let wide = PyramidSize::new(512, 64).unwrap();
+        assert_eq!(wide.extent(wide.levels() - 1), [40, 5]);
+        // 1.25^2 times a geometric series
+        let ratio = size.texels() as f64 / (256.0 * 256.0);
+        assert!(ratio < 2.084, "{ratio}");
+    }
+
+    #[test]
+    fn the_last_level_has_the_widest_blur() {
+        for side in [64, 256, 4096] {
+            let size = PyramidSize::new(side, side).unwrap();
+            let blur = size.blur(size.levels() - 1) / f64::from(side);
+            assert!((blur - WIDEST_BLUR).abs() < 2e-4, "{side}: {blur}");
+        }
+    }
+
+    #[test]
+    fn kernels_add_up_to_the_blur_of_their_level() {
+        let size = PyramidSize::new(256, 256).unwrap();
+        let mut variance = 0.0;
+        for level in 1..size.levels() {
+            let kernel = size.kernel(level);
+            let half = kernel.weights.map(f64::from);
+            assert!((2.0 * half.iter().sum::<f64>() - 1.0).abs() < 1e-6, "level {level} keeps the mean");
+            assert!(half.windows(2).all(|pair| pair[1] <= pair[0]), "level {level} falls to the sides");
+            assert!(half[kernel.radius as usize..].iter().all(|weight| *weight == 0.0));
+            variance = (variance + discrete_variance(&half)) / 4.0;
+            assert!((variance - size.variance(level)).abs() < 1e-6, "level {level}: {variance}");
+        }
+    }
+
+    #[test]
+    fn a_levels_own_blur_is_found_at_it() {
+        let size = PyramidSize::new(512, 256).unwrap();
+        for level in 0..size.levels() {
+            let found = size.level_of(size.blur(level));
+            assert!((found - f64::from(level)).abs() < 1e-4, "level {level}: {found}");
+        }
+        assert_eq!(size.level_of(1e9), f64::from(size.levels() - 1), "clamped");
+        // Rises without steps
+        let levels: Vec<f64> = (0..4000).map(|i| size.level_of(f64::from(i) * 0.05)).collect();
+        assert!(levels.windows(2).all(|pair| pair[1] >= pair[0] && pair[1] - pair[0] < 0.06));
+    }
+}
