@@ -117,9 +117,6 @@ fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
 /// What the GLSL calls a binding: an image by its variable, a buffer by its block's only member.
 fn binding_name(module: &Module, variable: &Instruction) -> String {
     let kind = pointee(module, variable);
-    if kind.class.opcode == Op::TypeSampledImage {
-        return (BindingKind::FilteredImage, Access::Read);
-    }
     if kind.class.opcode == Op::TypeImage {
         return name(module, variable.result_id.expect("a variable has an id"));
     }
