@@ -4,6 +4,7 @@
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
 use arealight::plan::{Output, PositionSource};
+use arealight::pyramid::LevelKernel;
 use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
@@ -117,7 +118,7 @@ fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
 /// What the GLSL calls a binding: an image by its variable, a buffer by its block's only member.
 fn binding_name(module: &Module, variable: &Instruction) -> String {
     let kind = pointee(module, variable);
-    if kind.class.opcode == Op::TypeImage {
+    if matches!(kind.class.opcode, Op::TypeImage | Op::TypeSampledImage) {
         return name(module, variable.result_id.expect("a variable has an id"));
     }
     assert_eq!(kind.operands.len(), 1, "a buffer's block has one member");
@@ -196,8 +197,10 @@ fn the_comparison_can_fail() {
     // One kernel's manifest against another's module
     assert!(compare(&kernels::SHADE, &module(&kernels::EVAL)).is_err());
     // The right module, one binding's kind changed
-    let swapped =
-        Kernel { bindings: Box::leak(Box::new([kernels::EVAL.bindings[1]; 5])), ..copy(&kernels::EVAL) };
+    let swapped = Kernel {
+        bindings: vec![kernels::EVAL.bindings[1]; kernels::EVAL.bindings.len()].leak(),
+        ..copy(&kernels::EVAL)
+    };
     assert!(compare(&swapped, &module(&kernels::EVAL)).unwrap_err().contains("SampledImage"));
     // Two bindings of one kind in each other's place: buffers, then images
     for (kernel, one, other) in [(&kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
@@ -231,6 +234,8 @@ fn every_structure_has_the_same_offsets() {
     let eval = module(&kernels::EVAL);
     let reference = module(&kernels::REFERENCE);
     let visibility = module(&kernels::VISIBILITY);
+    let texture_load = module(&kernels::TEXTURE_LOAD);
+    let texture_blur = module(&kernels::TEXTURE_BLUR);
     let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
                         texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
                         texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
@@ -263,6 +268,16 @@ fn every_structure_has_the_same_offsets() {
             "ArealightGpuLightTriangle",
             layout!(gpu::GpuLightTriangle, vertices as "vertex0",
                                                           cumulative),
+        ),
+        (
+            &texture_load,
+            "TextureLoadConstants",
+            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
+        ),
+        (
+            &texture_blur,
+            "TextureBlurConstants",
+            layout!(gpu::TextureBlurConstants, weights, radius, first_layer),
         ),
         (
             &visibility,
@@ -399,6 +414,8 @@ const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
 const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
 const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
+const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
+const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
 const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
 
 #[test]
@@ -429,6 +446,8 @@ fn flags_have_the_same_bits_in_glsl() {
         ("MIRROR_V", GpuTexture::MIRROR_V.into()),
     ];
     assert_constants(SCENE_GLSL, "TEXTURE_", &texture);
+    // A texture is loaded by the same bits
+    assert_constants(TEXTURE_LOAD_COMP, "LOAD_", &texture);
 }
 
 #[test]
@@ -457,5 +476,6 @@ fn choices_have_the_same_numbers_in_glsl() {
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
     assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
+    assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
     assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
 }

@@ -1,5 +1,6 @@
 //! Data laid out as the GPU reads it (std430). A test compares every offset with the SPIR-V.
 
+use crate::pyramid::LevelKernel;
 use bytemuck::{Pod, Zeroable};
 
 /// A polygon light: `ArealightGpuLight` in `shaders/kernels/buffers.glsl`.
@@ -135,6 +136,49 @@ pub struct GpuCase {
 pub struct EvalConstants {
     /// How many cases there are.
     pub case_count: u32,
+}
+
+/// Push constants of the kernel that loads an image into a layer of the light textures, made by
+/// [`crate::TexturePart::load_constants`].
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TextureLoadConstants {
+    /// Where the middle of the content's first texel is in the image: in texels from the middle of texel 0, rounded
+    /// down. Where the image repeats, so large that no texel that is read has a negative index.
+    pub first_texel: [i32; 2],
+    /// What was rounded off, 0 to 1.
+    pub first_offset: [f32; 2],
+    /// Texels of the image from one texel of the content to the next.
+    pub stride: [f32; 2],
+    /// [`TextureLoadConstants::SRGB`], and a wrap mode for each axis.
+    pub flags: u32,
+    /// The layer that is written.
+    pub layer: u32,
+}
+
+impl TextureLoadConstants {
+    /// The image holds sRGB in a format that does not decode by itself.
+    pub const SRGB: u32 = GpuTexture::SRGB;
+    /// u is clamped to the edge (else repeated).
+    pub const CLAMP_U: u32 = GpuTexture::CLAMP_U;
+    /// v is clamped to the edge (else repeated).
+    pub const CLAMP_V: u32 = GpuTexture::CLAMP_V;
+    /// u is mirrored at every repeat.
+    pub const MIRROR_U: u32 = GpuTexture::MIRROR_U;
+    /// v is mirrored at every repeat.
+    pub const MIRROR_V: u32 = GpuTexture::MIRROR_V;
+}
+
+/// Push constants of the kernel that makes a level of the light textures from the one before.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TextureBlurConstants {
+    /// [`crate::pyramid::LevelKernel::weights`].
+    pub weights: [f32; LevelKernel::MAX_RADIUS as usize],
+    /// [`crate::pyramid::LevelKernel::radius`], at least 1.
+    pub radius: u32,
+    /// The layer of the first group in z.
+    pub first_layer: u32,
 }
 
 /// A node of a binary bounding volume hierarchy; the root is node 0. The children of an inner node are

@@ -225,6 +225,38 @@ pub static REFERENCE: Kernel = Kernel {
     constants: &[],
 };
 
+/// Loads a part of an image into level 0 of a layer of the light textures, margin included; an item a texel of the
+/// level. Push constants: [`crate::gpu::TextureLoadConstants`].
+pub static TEXTURE_LOAD: Kernel = Kernel {
+    name: "texture_load",
+    spirv: include_bytes!("../spirv/texture_load.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::TextureLoadConstants>() as u32,
+    bindings: &[
+        read(
+            "source",
+            BindingKind::SampledImage,
+            "the image: linear light or sRGB, in any format that is sampled as numbers (not integers)",
+        ),
+        write("out_level", BindingKind::StorageImage, Access::Write, "level 0, every layer (rgba16f)"),
+    ],
+    constants: &[],
+};
+
+/// Makes a level of the light textures from the one before; an item a texel of the level and layer. Push constants:
+/// [`crate::gpu::TextureBlurConstants`].
+pub static TEXTURE_BLUR: Kernel = Kernel {
+    name: "texture_blur",
+    spirv: include_bytes!("../spirv/texture_blur.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::TextureBlurConstants>() as u32,
+    bindings: &[
+        read("finer_level", BindingKind::SampledImage, "the level before, every layer (rgba16f)"),
+        write("out_level", BindingKind::StorageImage, Access::Write, "the level, every layer (rgba16f)"),
+    ],
+    constants: &[],
+};
+
 /// Finds the surface that each pixel sees, by walking a hierarchy of triangles, and writes a G-buffer. For
 /// our own tools and tests: a host brings its own. Push constants: [`crate::gpu::VisibilityConstants`].
 pub static VISIBILITY: Kernel = Kernel {
@@ -258,7 +290,7 @@ pub static VISIBILITY: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 4] = [&SHADE, &EVAL, &REFERENCE, &VISIBILITY];
+pub static ALL: [&Kernel; 6] = [&SHADE, &EVAL, &REFERENCE, &TEXTURE_LOAD, &TEXTURE_BLUR, &VISIBILITY];
 
 #[cfg(test)]
 mod tests {

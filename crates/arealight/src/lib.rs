@@ -19,6 +19,7 @@
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
 //! | [`light_texture`] | what a light shows |
+//! | [`texture_part`] | which part of an image becomes one |
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
 //! | [`light_sampling`] | what the Monte Carlo reference needs of them |
 //! | [`material`] | metallic-roughness materials and the surface they make |
@@ -40,6 +41,7 @@ pub mod plan;
 pub mod pyramid;
 pub mod quality;
 pub mod table;
+pub mod texture_part;
 
 pub use effects::Effects;
 pub use light::{LightError, PackedLights, PolygonLight};
@@ -49,6 +51,7 @@ pub use material::{Material, Surface};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 pub use table::{LightTable, TableDescription, TableError, TableSample};
+pub use texture_part::{TexturePart, TexturePartError, Wrap};
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.
 ///

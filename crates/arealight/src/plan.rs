@@ -1,7 +1,9 @@
 //! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
 //! recorder of this project or for one of your own.
 
+use crate::gpu::TextureBlurConstants;
 use crate::kernels::{self, Kernel};
+use crate::pyramid::PyramidSize;
 use crate::{Effects, Quality};
 
 /// Where the shade kernel takes positions from.
@@ -102,6 +104,34 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
     }
 }
 
+/// The pass that loads an image into a layer of light textures of `size`. Its constants are made by
+/// [`crate::TexturePart::load_constants`].
+pub fn texture_load(size: PyramidSize) -> Dispatch {
+    let [width, height] = size.extent(0);
+    Dispatch {
+        kernel: &kernels::TEXTURE_LOAD,
+        specialization: vec![],
+        groups: kernels::TEXTURE_LOAD.groups_for([width, height, 1]),
+    }
+}
+
+/// The pass that makes `level`, from 1 on, of `layers` layers of light textures of `size`, and its constants.
+pub fn texture_blur(
+    size: PyramidSize,
+    level: u32,
+    layers: std::ops::Range<u32>,
+) -> (Dispatch, TextureBlurConstants) {
+    let ([width, height], kernel) = (size.extent(level), size.kernel(level));
+    let dispatch = Dispatch {
+        kernel: &kernels::TEXTURE_BLUR,
+        specialization: vec![],
+        groups: kernels::TEXTURE_BLUR.groups_for([width, height, layers.end - layers.start]),
+    };
+    let constants =
+        TextureBlurConstants { weights: kernel.weights, radius: kernel.radius, first_layer: layers.start };
+    (dispatch, constants)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -111,5 +141,9 @@ mod tests {
         let dispatch = shade(ShadeOptions::all(), 17, 8);
         assert_eq!(dispatch.groups, [3, 1, 1]);
         assert_eq!(eval(Effects::all(), Quality::default(), 65).groups, [2, 1, 1]);
+        let size = PyramidSize::new(128, 64).unwrap();
+        assert_eq!(texture_load(size).groups, [20, 10, 1]);
+        let (last, constants) = texture_blur(size, 4, 2..5);
+        assert_eq!((last.groups, constants.first_layer), ([2, 1, 3], 2));
     }
 }

@@ -138,7 +138,7 @@ impl PyramidSize {
             return 0.0;
         }
         let widened = (level + 1 + WIDENED).saturating_sub(self.levels());
-        (VARIANCE + TENT) * WIDENING.powi(widened as i32) - TENT
+        (VARIANCE + TENT) * WIDENING.powi(widened.cast_signed()) - TENT
     }
 
     /// The blur of a bilinear lookup in a level beyond that of a bilinear lookup in level 0: a standard deviation in

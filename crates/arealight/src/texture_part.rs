@@ -1,0 +1,202 @@
+//! Which part of an image becomes a layer of the light textures, and how it is sampled.
+
+use crate::gpu::TextureLoadConstants;
+use crate::pyramid::PyramidSize;
+use glam::{DVec2, IVec2};
+
+/// What texture coordinates beyond 0 to 1 read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Wrap {
+    /// The image again.
+    #[default]
+    Repeat,
+    /// The image again, every other one mirrored.
+    Mirror,
+    /// The image's edge.
+    Clamp,
+}
+
+/// The part of an image that a layer shows: the whole, a piece, or many repeats.
+///
+/// It is resampled to the layer's size by a tent two texels wide, of the image's or of the layer's, whichever are
+/// larger: a copy where they are equal, bilinear where the layer has more.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexturePart {
+    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    pub low: DVec2,
+    /// What is added to them at (1, 1). Positive.
+    pub size: DVec2,
+    /// What the image is beyond 0 to 1, along u and v.
+    pub wrap: [Wrap; 2],
+}
+
+impl Default for TexturePart {
+    /// The whole image.
+    fn default() -> Self {
+        Self { low: DVec2::ZERO, size: DVec2::ONE, wrap: [Wrap::Clamp; 2] }
+    }
+}
+
+/// Why a part of an image cannot be loaded.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TexturePartError {
+    /// The image has no texels, or too many.
+    #[error(
+        "source of {width} x {height} texels: each must be from 1 to {}; scale it down",
+        TexturePart::LARGEST_SOURCE
+    )]
+    Source {
+        /// The image's width.
+        width: u32,
+        /// The image's height.
+        height: u32,
+    },
+    /// The part begins nowhere, or too far away to be resolved.
+    #[error("low: {low} must be within {} repeats of the image", TexturePart::FARTHEST)]
+    Low {
+        /// The coordinates given.
+        low: DVec2,
+    },
+    /// The part is empty, or so many repeats that reading it would take seconds.
+    #[error(
+        "size: {size} of {width} x {height} texels must be positive and cover at most {} texels a side; load fewer \
+         repeats",
+        TexturePart::MOST_TEXELS
+    )]
+    Size {
+        /// The size given.
+        size: DVec2,
+        /// The image's width.
+        width: u32,
+        /// The image's height.
+        height: u32,
+    },
+}
+
+impl TexturePart {
+    /// The largest width and height of an image.
+    pub const LARGEST_SOURCE: u32 = 4096;
+    /// The most repeats that `low` may be away.
+    pub const FARTHEST: f64 = 4096.0;
+    /// The most texels of the image, repeats included, that a part may cover along an axis.
+    pub const MOST_TEXELS: f64 = 16384.0;
+
+    /// The push constants that load the part of an image of `source` texels into `layer` of textures of `size`.
+    /// `decode` tells that the image holds sRGB in a format that does not decode by itself.
+    ///
+    /// # Errors
+    /// [`TexturePartError`] where the image or the part is empty, too large, or not a number.
+    pub fn load_constants(
+        &self,
+        source: [u32; 2],
+        size: PyramidSize,
+        layer: u32,
+        decode: bool,
+    ) -> Result<TextureLoadConstants, TexturePartError> {
+        let [width, height] = source;
+        if !source.iter().all(|side| (1..=Self::LARGEST_SOURCE).contains(side)) {
+            return Err(TexturePartError::Source { width, height });
+        }
+        if !(self.low.is_finite() && self.low.abs().max_element() <= Self::FARTHEST) {
+            return Err(TexturePartError::Low { low: self.low });
+        }
+        let texels = DVec2::new(width.into(), height.into());
+        let covered = self.size * texels;
+        if !(covered.is_finite() && covered.min_element() > 0.0 && covered.max_element() <= Self::MOST_TEXELS)
+        {
+            return Err(TexturePartError::Size { size: self.size, width, height });
+        }
+
+        // From one texel of the layer to the next, and the first, from the middle of texel 0
+        let content = DVec2::from_array(size.content().map(f64::from));
+        let stride = covered / content;
+        let mut first = self.low * texels + 0.5 * stride - 0.5;
+        // A repeated image begins where no tent reaches before texel 0, so that the kernel needs no sign
+        for axis in 0..2 {
+            let period = match self.wrap[axis] {
+                Wrap::Clamp => continue,
+                Wrap::Repeat => texels[axis],
+                Wrap::Mirror => 2.0 * texels[axis],
+            };
+            let reach = stride[axis].max(1.0) + 1.0;
+            first[axis] -= ((first[axis] - reach) / period).floor() * period;
+        }
+        let clamp = [TextureLoadConstants::CLAMP_U, TextureLoadConstants::CLAMP_V];
+        let mirror = [TextureLoadConstants::MIRROR_U, TextureLoadConstants::MIRROR_V];
+        let wrap = [0, 1].map(|axis| match self.wrap[axis] {
+            Wrap::Clamp => clamp[axis],
+            Wrap::Repeat => 0,
+            Wrap::Mirror => mirror[axis],
+        });
+        let srgb = if decode { TextureLoadConstants::SRGB } else { 0 };
+        let first_texel: IVec2 = first.floor().as_ivec2();
+        Ok(TextureLoadConstants {
+            first_texel: first_texel.to_array(),
+            first_offset: (first - first.floor()).as_vec2().to_array(),
+            stride: stride.as_vec2().to_array(),
+            flags: srgb | wrap[0] | wrap[1],
+            layer,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn constants(part: TexturePart, source: [u32; 2]) -> Result<TextureLoadConstants, TexturePartError> {
+        part.load_constants(source, PyramidSize::new(128, 64).unwrap(), 3, false)
+    }
+
+    #[test]
+    fn an_image_of_the_layers_size_is_copied() {
+        let whole = constants(TexturePart::default(), [128, 64]).unwrap();
+        assert_eq!((whole.first_texel, whole.first_offset, whole.stride), ([0, 0], [0.0, 0.0], [1.0, 1.0]));
+        assert_eq!(
+            (whole.layer, whole.flags),
+            (3, TextureLoadConstants::CLAMP_U | TextureLoadConstants::CLAMP_V)
+        );
+        // So is a piece of that size, whatever the whole
+        let low = DVec2::new(22.0 / 300.0, 5.0 / 77.0);
+        let size = DVec2::new(128.0 / 300.0, 64.0 / 77.0);
+        let piece = constants(TexturePart { low, size, ..TexturePart::default() }, [300, 77]).unwrap();
+        assert_eq!(piece.stride, [1.0, 1.0]);
+        for (axis, expected) in [22.0, 5.0].into_iter().enumerate() {
+            assert_eq!(piece.first_texel[axis] as f32 + piece.first_offset[axis], expected);
+        }
+    }
+
+    #[test]
+    fn a_repeated_image_is_read_from_texels_that_are_not_negative() {
+        for wrap in [Wrap::Repeat, Wrap::Mirror] {
+            for (low, size, source) in
+                [(-0.5, 1.0, 7), (-4096.0, 3.0, 100), (17.3, 16384.0, 1), (0.0, 0.01, 4096)]
+            {
+                let part = TexturePart { low: DVec2::splat(low), size: DVec2::splat(size), wrap: [wrap; 2] };
+                let found = constants(part, [source; 2]).unwrap();
+                let period = source.cast_signed() * if wrap == Wrap::Mirror { 2 } else { 1 };
+                for axis in 0..2 {
+                    let reach = found.stride[axis].max(1.0).ceil() as i32;
+                    assert!(found.first_texel[axis] >= reach, "{found:?}");
+                    assert!(found.first_texel[axis] <= reach + 2 + period, "{found:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_loaded_is_named() {
+        let part = TexturePart::default();
+        assert_eq!(constants(part, [0, 4]), Err(TexturePartError::Source { width: 0, height: 4 }));
+        assert_eq!(constants(part, [4, 4097]), Err(TexturePartError::Source { width: 4, height: 4097 }));
+        for low in [DVec2::new(0.0, f64::NAN), DVec2::new(1e9, 0.0), DVec2::splat(f64::INFINITY)] {
+            let error = constants(TexturePart { low, ..part }, [4, 4]);
+            assert!(matches!(error, Err(TexturePartError::Low { .. })), "{error:?}");
+        }
+        for size in [DVec2::ZERO, DVec2::new(1.0, -1.0), DVec2::new(f64::NAN, 1.0), DVec2::splat(5000.0)] {
+            let error = constants(TexturePart { size, ..part }, [4, 4]).unwrap_err();
+            assert!(error.to_string().contains("of 4 x 4 texels"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Resamples a part of an image into level 0 of a layer of the light textures, and extends its edge into the margin.
+// crates/arealight/src/texture_part.rs makes the constants.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "half.glsl"
+
+layout(set = 0, binding = 0) uniform texture2D source;
+layout(set = 0, binding = 1, rgba16f) uniform writeonly image2DArray out_level;
+
+layout(push_constant, std430) uniform TextureLoadConstants {
+    ivec2 first_texel;  // of the source: where the middle of the content's first texel is, from the middle of texel 0;
+    vec2 first_offset;  // and what is left of it, within 0 to 1
+    vec2 stride;        // texels of the source from one texel of the content to the next
+    uint flags;
+    uint layer;
+} constants;
+
+const uint LOAD_SRGB = 1u;
+const uint LOAD_CLAMP_U = 2u;
+const uint LOAD_CLAMP_V = 4u;
+const uint LOAD_MIRROR_U = 8u;
+const uint LOAD_MIRROR_V = 16u;
+
+vec3 linear_from_srgb(vec3 encoded) {
+    vec3 high = pow((encoded + 0.055) / 1.055, vec3(2.4));
+    return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
+}
+
+// The texel of a row or column of `size` that stands at `texel`, which is not negative unless clamped.
+int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
+    int wrapped = texel % (mirrored ? 2 * size : size);
+    wrapped = wrapped < size ? wrapped : 2 * size - 1 - wrapped;
+    return clamped ? clamp(texel, 0, size - 1) : wrapped;
+}
+
+// A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they can.
+vec3 fetch_linear(ivec2 texel) {
+    vec3 color = texelFetch(source, texel, 0).rgb;
+    if ((constants.flags & LOAD_SRGB) != 0u) {
+        color = linear_from_srgb(color);
+    }
+    return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
+}
+
+void main() {
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 extent = imageSize(out_level).xy;
+    if (any(greaterThanEqual(texel, extent))) {
+        return;
+    }
+    // The margin, a tenth of the extent at each side, repeats the content's edge
+    ivec2 margin = extent / 10;
+    ivec2 content = clamp(texel - margin, ivec2(0), extent - 2 * margin - 1);
+
+    // Place a tent on the source, as wide as two of its texels or, where it is minified, of ours
+    vec2 place = constants.first_offset + vec2(content) * constants.stride;
+    vec2 middle = place - floor(place);
+    ivec2 base = constants.first_texel + ivec2(floor(place));
+    vec2 radius = max(constants.stride, vec2(1.0));
+    ivec2 first = ivec2(floor(middle - radius)) + 1;
+    ivec2 last = ivec2(ceil(middle + radius)) - 1;
+
+    // Sum the texels under the tent
+    ivec2 size = textureSize(source, 0);
+    bool clamp_u = (constants.flags & LOAD_CLAMP_U) != 0u;
+    bool clamp_v = (constants.flags & LOAD_CLAMP_V) != 0u;
+    bool mirror_u = (constants.flags & LOAD_MIRROR_U) != 0u;
+    bool mirror_v = (constants.flags & LOAD_MIRROR_V) != 0u;
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int y = first.y; y <= last.y; y++) {
+        int row = wrap_texel(base.y + y, size.y, clamp_v, mirror_v);
+        float row_weight = 1.0 - abs(float(y) - middle.y) / radius.y;
+        for (int x = first.x; x <= last.x; x++) {
+            int column = wrap_texel(base.x + x, size.x, clamp_u, mirror_u);
+            float weight = row_weight * (1.0 - abs(float(x) - middle.x) / radius.x);
+            sum += weight * fetch_linear(ivec2(column, row));
+            weights += weight;
+        }
+    }
+    vec3 color = min(sum / weights, LARGEST_HALF);
+    imageStore(out_level, ivec3(texel, constants.layer), vec4(round_to_half(color), 1.0));
+}
