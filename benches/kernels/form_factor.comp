@@ -70,9 +70,9 @@ ArealightQuad polygon_quad(uint count, vec3 shift) {
 float library_quad(ArealightAnchor anchor, uint count, bool bare, int rung) {
     ArealightQuad quad = polygon_quad(count, vec3(0.0));
     if (bare) {
-        return arealight_quad_bare(anchor, quad, true, rung);
+        return arealight_form_factor(arealight_quad_bare(anchor, quad, rung), true);
     }
-    return arealight_quad_clipped(anchor, quad, true, rung);
+    return arealight_form_factor(arealight_quad_clipped(anchor, quad, rung), true);
 }
 
 // The library's form factor of any polygon.
@@ -90,9 +90,9 @@ float library_walk(ArealightAnchor anchor, uint count, bool bare, int rung) {
         from = to;
     }
     if (bare) {
-        return arealight_form_factor_from_arcs(walk.sum, walk.squares, true);
+        return arealight_form_factor(ArealightArcs(walk.sum, walk.squares), true);
     }
-    return arealight_walk_form_factor(walk, anchor, true, rung);
+    return arealight_form_factor(arealight_walk_end(walk, anchor, rung), true);
 }
 
 // The library's one-point form of a convex polygon of up to four vertices, where it is enough; else -1.
@@ -110,7 +110,7 @@ float library_one_point(vec3 anchor, uint count) {
     float square = max(max(dot(quad.v0, quad.v0), dot(quad.v1, quad.v1)),
                        max(dot(quad.v2, quad.v2), dot(quad.v3, quad.v3)));
     if (arealight_is_far(center, sqrt(square))) {
-        return arealight_one_point_form_factor(center, -0.5 * dot(area_a + area_b, center), true);
+        return arealight_form_factor(arealight_one_point(center, -0.5 * dot(area_a + area_b, center)), true);
     }
     return -1.0;
 }

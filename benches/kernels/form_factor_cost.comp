@@ -32,7 +32,7 @@ ArealightQuad moved(ArealightQuad quad, vec3 shift) {
     return ArealightQuad(quad.v0 + shift, quad.v1 + shift, quad.v2 + shift, quad.v3 + shift);
 }
 
-float walk(ArealightAnchor anchor, ArealightQuad quad, int rung) {
+ArealightArcs walk(ArealightAnchor anchor, ArealightQuad quad, int rung) {
     ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
     ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
     ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
@@ -42,27 +42,31 @@ float walk(ArealightAnchor anchor, ArealightQuad quad, int rung) {
     arealight_walk_edge(walk, anchor, v0, v1, rung);
     arealight_walk_edge(walk, anchor, v1, v2, rung);
     arealight_walk_edge(walk, anchor, v2, v3, rung);
-    return arealight_walk_form_factor(walk, anchor, false, rung);
+    return arealight_walk_end(walk, anchor, rung);
 }
 
-// The library's, of a quad given as offsets from `center`.
-float library(vec3 center, ArealightQuad quad) {
+// The library's arcs around a quad given as offsets from `center`.
+ArealightArcs library_arcs(vec3 center, ArealightQuad quad) {
     int rung = METHOD & METHOD_RUNG;
     int shape = METHOD & ~METHOD_RUNG;
     ArealightAnchor anchor = arealight_anchor(center, 1.0, rung);
     if (shape == METHOD_BARE) {
-        return arealight_quad_bare(anchor, quad, false, rung);
+        return arealight_quad_bare(anchor, quad, rung);
     }
     if (shape == METHOD_BOTH) {
         vec3 normal = vec3(0.6, 0.0, 0.8);
         vec4 height = dot(normal, center)
                     + vec4(dot(normal, quad.v0), dot(normal, quad.v1), dot(normal, quad.v2), dot(normal, quad.v3));
-        return arealight_quad_both_horizons(anchor, quad, height, false, rung);
+        return arealight_quad_both_horizons(anchor, quad, height, rung);
     }
     if (shape == METHOD_WALK) {
         return walk(anchor, quad, rung);
     }
-    return arealight_quad_clipped(anchor, quad, false, rung);
+    return arealight_quad_clipped(anchor, quad, rung);
+}
+
+float library(vec3 center, ArealightQuad quad) {
+    return arealight_form_factor(library_arcs(center, quad), false);
 }
 
 // The practice's, as its users write it for four vertices; see yardsticks.glsl for the source.

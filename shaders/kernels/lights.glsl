@@ -2,8 +2,9 @@
 #define LIGHTS_GLSL
 
 // The light buffers as the library sees them. The including kernel defines LIGHTS_BINDING (the vertices are at
-// the binding after it).
+// the binding after it) and LIGHT_TEXTURES_BINDING.
 
+#define AREALIGHT_LIGHT_TEXTURES 1
 #include "arealight/polygon_light.glsl"
 #include "buffers.glsl"
 
@@ -14,14 +15,26 @@ layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVerti
     vec4 light_vertices[];
 };
 
+layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform sampler2DArray light_textures;
+
 vec3 arealight_bridge_vertex(uint index) {
     return light_vertices[index].xyz;
 }
 
+vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
+    return textureLod(light_textures, vec3(coordinate, float(layer)), level).rgb;
+}
+
+ivec2 arealight_bridge_light_texture_size() {
+    return textureSize(light_textures, 0).xy;
+}
+
 ArealightPolygonLight load_light(uint index) {
     ArealightGpuLight record = lights[index];
+    ArealightImage image = ArealightImage(record.texture_layer, record.texture_corner, record.texture_axis_u,
+                                          record.texture_axis_v, record.texture_low, record.texture_size);
     return ArealightPolygonLight(record.radiance, record.first_vertex, record.vertex_count, record.center,
-                                 record.radius, record.area, (record.flags & LIGHT_TWO_SIDED) != 0u);
+                                 record.radius, record.area, (record.flags & LIGHT_TWO_SIDED) != 0u, image);
 }
 
 #endif

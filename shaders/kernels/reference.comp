@@ -10,6 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 #define LIGHTS_BINDING 0
 #define G_BUFFER_BINDING 4
+#define LIGHT_TEXTURES_BINDING 9
 #include "arealight/ggx.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"
@@ -127,6 +128,12 @@ bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
     return inside;
 }
 
+// The radiance of a light's point, relative to its center.
+vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
+    return light.image.layer == AREALIGHT_NO_IMAGE ? light.radiance
+                                                   : light.radiance * arealight_image_color(light.image, point);
+}
+
 // The light's density in solid angle at a point of it: distance^2 / (area |cosine|); 0 where it does not emit
 // towards the surface.
 float light_density(ArealightPolygonLight light, ArealightGpuLightSampling sampling, vec3 offset) {
@@ -139,13 +146,14 @@ float light_density(ArealightPolygonLight light, ArealightGpuLightSampling sampl
 // One sample of one light: a point of it, weighed against the BRDF's density.
 vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLightSampling sampling,
                        inout RandomState random) {
-    vec3 offset = sample_point(sampling, random) + (light.center - lobes.position);
+    vec3 point = sample_point(sampling, random);
+    vec3 offset = point + (light.center - lobes.position);
     float by_light = light_density(light, sampling, offset);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
     if (by_light <= 0.0 || direction.z <= 0.0) {
         return vec3(0.0);
     }
-    return light.radiance * evaluate(lobes, direction) / (by_light + density(lobes, direction));
+    return light_radiance(light, point) * evaluate(lobes, direction) / (by_light + density(lobes, direction));
 }
 
 // The sample's BRDF direction, where it meets the light, weighed against the light's density.
@@ -164,7 +172,7 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
     if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center)) {
         return vec3(0.0);
     }
-    return light.radiance * evaluate(lobes, direction) / (by_light + by_brdf);
+    return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 vec3 estimate(Lobes lobes, inout RandomState random) {

@@ -20,6 +20,7 @@ const int OUTPUT_ADD = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
+#define LIGHT_TEXTURES_BINDING 8
 #include "table_image.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"

@@ -78,7 +78,7 @@ ProbeResults arc_of(vec3 from, vec3 to, int rung) {
     ArealightVertex b = arealight_vertex(nowhere, to, rung);
     ArealightCrossing crossing = arealight_crossing(nowhere, a, b, rung);
     ArealightVertex on_horizon = arealight_horizon_vertex(nowhere, crossing, a.unit.z > 0.0 ? 1.0 : -1.0, rung);
-    return ProbeResults(vec4(a.unit, arealight_arc(a, b, rung)), vec4(b.unit, arealight_acute_arc(a, b, rung)),
+    return ProbeResults(vec4(a.unit, arealight_arc(a, b, rung).z), vec4(b.unit, arealight_acute_arc(a, b, rung).z),
                         vec4(on_horizon.unit, 0.0), vec4(0.0));
 }
 

@@ -28,7 +28,7 @@ void main() {
     float sum = 0.0;
     for (uint i = 0u; i < 4u; i++) {
         ArealightVertex to = arealight_vertex(nowhere, vertices[4u * index + i].xyz, AREALIGHT_FORM_FACTOR_EXACT);
-        sum += arealight_arc(from, to, AREALIGHT_FORM_FACTOR_EXACT);
+        sum += arealight_arc(from, to, AREALIGHT_FORM_FACTOR_EXACT).z;
         from = to;
     }
     float form_factor = -sum * AREALIGHT_INVERSE_TWO_PI;

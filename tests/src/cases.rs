@@ -80,6 +80,7 @@ impl TestEngine {
             Resource::buffer(vertices.handle()),
             Resource::buffer(cases.handle()),
             Resource::buffer(results.handle()),
+            self.light_textures(),
         ];
         let constants = EvalConstants { case_count: given.cases.len() as u32 };
         let mut passes = self.passes.borrow_mut();

@@ -69,7 +69,7 @@ impl Expression<'_> {
 
 /// The fast and the exact expression that a function returns.
 fn returned(function: &str) -> [String; 2] {
-    let (_, body) = ARC_GLSL.split_once(&format!("float {function}(")).expect("the function");
+    let (_, body) = ARC_GLSL.split_once(&format!("vec3 {function}(")).expect("the function");
     let (body, _) = body.split_once("\n}").expect("its end");
     let expressions: Vec<String> = body
         .split("return ")

@@ -87,6 +87,7 @@ fn buffers() -> Buffers {
             area: sphere.vector(&mut random),
             vertex_count,
             flags: random.bits() & GpuLight::TWO_SIDED,
+            texture_layer: GpuLight::NO_TEXTURE,
             ..bytemuck::Zeroable::zeroed()
         });
         for _ in 0..vertex_count {

@@ -14,6 +14,9 @@
 //
 // G is smooth on [0, 1], so one rational function serves every angle up to pi, and rounding costs a few 2^-24 at
 // every angle: both (a x m).z and y are as small as each other where a and b are nearly opposite. Nothing branches.
+//
+// Arcs are vectors, of which the form factor takes z; all of it points to where the light comes from (Arvo 1995). What a
+// caller does not read costs nothing: compilers take vectors apart.
 
 // A vertex as the arcs see it.
 struct ArealightVertex {
@@ -77,7 +80,7 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) 
 
 // s theta / sin(theta) of an arc with y = 2 cos(theta / 2): relative error of exact 7e-8, of fast 2.7e-5, both
 // before rounding. For y from sqrt(AREALIGHT_TINY) to 2.
-float arealight_arc_weight(float s, float y, int rung) {
+vec3 arealight_arc_weight(vec3 s, float y, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
         return s * (3.1415105 + y * (0.26598448 - y * 0.015983904)) / (y + y * y * 0.40240955);
     }
@@ -87,8 +90,8 @@ float arealight_arc_weight(float s, float y, int rung) {
 
 // s (theta / sin(theta) - 1) of an arc whose chord has the squared length `square`: relative error of exact 1.5e-7,
 // of fast 7e-5.
-float arealight_arc_excess(float s, float y, float square, int rung) {
-    float scaled = 0.25 * square * s;
+vec3 arealight_arc_excess(vec3 s, float y, float square, int rung) {
+    vec3 scaled = 0.25 * square * s;
     if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
         return scaled * (3.1418085 + y * (-0.15366498 + y * 0.017586168)) / (y + y * y * 0.58923405);
     }
@@ -96,26 +99,25 @@ float arealight_arc_excess(float s, float y, float square, int rung) {
          / (y + y * y * (0.893227518 + y * 0.192593366));
 }
 
-// The angle from a to b times the z component of the unit normal of their plane, radians.
+// The angle from a to b times the unit normal of their plane, radians.
 //
 // Error of the exact rung: 3.6e-7 of one radian or of the angle, whichever is larger; of the fast one 2.7e-5 of the
-// result more. In the difference form, what (a x b).z has from the anchor is left out: it cancels in the sum over a
+// result more. In the difference form, what a x b has from the anchor is left out: it cancels in the sum over a
 // closed outline, and with it what would be the error of a small one. There the sum's error is relative to the square
 // of the outline's angular size.
-float arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
+vec3 arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     vec3 middle = a.unit + b.unit;
     float y = sqrt(dot(middle, middle) + AREALIGHT_TINY);
-    float s = a.unit.x * middle.y - a.unit.y * middle.x;
+    vec3 s = cross(a.unit, middle);
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
         vec3 chord = b.chord - a.chord;
-        return a.chord.x * chord.y - a.chord.y * chord.x
-             + arealight_arc_excess(s, y, dot(chord, chord), rung);
+        return cross(a.chord, chord) + arealight_arc_excess(s, y, dot(chord, chord), rung);
     }
     return arealight_arc_weight(s, y, rung);
 }
 
 // s theta / sin(theta) of an angle of at most a right one with the cosine x: errors as arealight_arc_weight's.
-float arealight_acute_weight(float s, float x, int rung) {
+vec3 arealight_acute_weight(vec3 s, float x, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
         return s * (1.5707552 + x * (0.26598448 - x * 0.031967809)) / (1.0 + x * 0.80481912);
     }
@@ -124,28 +126,27 @@ float arealight_acute_weight(float s, float x, int rung) {
 }
 
 // As arealight_arc, for an angle of at most a right one. The difference form gains nothing from that, and is the same.
-float arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
+vec3 arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
         return arealight_arc(a, b, rung);
     }
-    float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
-    return arealight_acute_weight(s, dot(a.unit, b.unit), rung);
+    return arealight_acute_weight(cross(a.unit, b.unit), dot(a.unit, b.unit), rung);
 }
 
-// The arc along the horizon from a to b, both on it: the angle between them, in (-pi, pi].
+// The arc along the horizon from a to b, both on it: its z is the angle between them, in (-pi, pi].
 //
 // An obtuse angle is pi less the one to the opposite direction. arealight_arc would have the rounding of their lengths in
 // the y of nearly opposite ends, which for an edge is as if a vertex had moved, but not here. The series is the exact
 // one on every rung: it is taken once.
-float arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
+vec3 arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
     // Seen from a distance no angle is obtuse; else chords are the directions themselves
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0 && anchor.distant) {
         return arealight_arc(a, b, rung);
     }
     float x = dot(a.unit.xy, b.unit.xy);
     float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
-    float acute = arealight_acute_weight(s, abs(x), AREALIGHT_FORM_FACTOR_EXACT);
-    return x < 0.0 ? (s < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute;
+    float acute = arealight_acute_weight(vec3(0.0, 0.0, s), abs(x), AREALIGHT_FORM_FACTOR_EXACT).z;
+    return vec3(0.0, 0.0, x < 0.0 ? (s < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }
 
 // Where an edge meets the horizon, as a multiple of the point: for the difference form of its offset from the
@@ -187,17 +188,23 @@ ArealightVertex arealight_select(bool condition, ArealightVertex a, ArealightVer
                            condition ? a.offset : b.offset, condition ? a.square : b.square);
 }
 
-// The form factor of a sum of arcs around an outline, in [0, 1]: 0 for a light seen from its back, and where the sum
-// is NaN or `squares`, the sum of the vertices' squared distances, is not finite.
+// The arcs around a closed outline.
+struct ArealightArcs {
+    vec3 sum;      // of the arcs: -2 pi times the vector form factor of a light seen from its front
+    float squares; // of the vertices' distances, summed: not finite where a vertex is not
+};
+
+// The form factor of the arcs around an outline, in [0, 1]: 0 for a light seen from its back, and where a vertex is not
+// finite.
 //
 // The guard works on the bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
 // up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
-float arealight_form_factor_from_arcs(float sum, float squares, bool two_sided) {
+float arealight_form_factor(ArealightArcs arcs, bool two_sided) {
     // Counter-clockwise from the front is clockwise about the direction to the light
-    float form_factor = -sum * AREALIGHT_INVERSE_TWO_PI;
+    float form_factor = -arcs.sum.z * AREALIGHT_INVERSE_TWO_PI;
     form_factor = two_sided ? abs(form_factor) : form_factor;
     uint bits = floatBitsToUint(form_factor);
-    bool finite = bits < 0x7f800000u && floatBitsToUint(squares) < 0x7f800000u;
+    bool finite = bits < 0x7f800000u && floatBitsToUint(arcs.squares) < 0x7f800000u;
     return finite ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
 }
 

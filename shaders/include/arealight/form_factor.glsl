@@ -43,14 +43,13 @@ bool arealight_is_far(vec3 center, float extent) {
     return center.z > 45.0 * extent && dot(center, center) > 8e4 * extent * extent;
 }
 
-// The form factor of a far light from its centre alone, in [0, 1]. `facing` is the negative product of the light's area
+// The arcs around a far light, from its centre alone. `facing` is the negative product of the light's area
 // vector (normal of the front times area) and its centre, times the determinant of the transform into this space.
 // Error: see arealight_is_far.
-float arealight_one_point_form_factor(vec3 center, float facing, bool two_sided) {
+ArealightArcs arealight_one_point(vec3 center, float facing) {
     float square = dot(center, center) + AREALIGHT_TINY;
-    // facing z / (pi d^4), in the form of a sum of arcs
-    float sum = -2.0 * (facing / square) * (center.z / square);
-    return arealight_form_factor_from_arcs(sum, square, two_sided);
+    // The form factor is facing z / (pi d^4), and the light comes from the centre
+    return ArealightArcs(-2.0 * (facing / square) * (center / square), square);
 }
 
 #endif

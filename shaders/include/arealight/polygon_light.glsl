@@ -2,6 +2,7 @@
 #define AREALIGHT_POLYGON_LIGHT_GLSL
 
 #include "arealight/effects.glsl"
+#include "arealight/footprint.glsl"
 #include "arealight/form_factor.glsl"
 #include "arealight/shading_point.glsl"
 
@@ -9,7 +10,7 @@
 // light keeps its shape however far from the origin it is.
 vec3 arealight_bridge_vertex(uint index);
 
-// A flat, simple polygon of constant radiance.
+// A flat, simple polygon of constant radiance, or that shows an image.
 struct ArealightPolygonLight {
     vec3 radiance;     // of the front, W/(m^2 sr)
     uint first_vertex; // for arealight_bridge_vertex
@@ -18,6 +19,7 @@ struct ArealightPolygonLight {
     float radius;      // of a sphere about the center that holds every vertex; may be generous
     vec3 area;         // area times the normal of the front, over radius^2 (one-point form alone)
     bool two_sided;    // the back emits too
+    ArealightImage image; // multiplies the radiance (AREALIGHT_EFFECT_TEXTURED alone)
 };
 
 // A light before a shading point: scaled by a power of two, so that squares neither overflow nor vanish. That rounds
@@ -70,24 +72,24 @@ float arealight_vertex_height(ArealightLobeView view, vec3 offset) {
     return abs(height) > view.height_width ? height : 0.0;
 }
 
-// The form factor of a convex outline of up to four vertices; see form_factor.glsl.
-float arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, bool two_sided, ArealightQuality quality) {
+// The arcs around a convex outline of up to four vertices, clipped as `quality` says; see form_factor.glsl.
+ArealightArcs arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, ArealightQuality quality) {
     mat3 transform = view.transform;
     ArealightQuad cosine =
         ArealightQuad(transform * quad.v0, transform * quad.v1, transform * quad.v2, transform * quad.v3);
     if (quality.horizon == AREALIGHT_HORIZON_BARE) {
-        return arealight_quad_bare(view.anchor, cosine, two_sided, quality.form_factor);
+        return arealight_quad_bare(view.anchor, cosine, quality.form_factor);
     }
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         vec4 height = vec4(arealight_vertex_height(view, quad.v0), arealight_vertex_height(view, quad.v1),
                            arealight_vertex_height(view, quad.v2), arealight_vertex_height(view, quad.v3));
-        return arealight_quad_both_horizons(view.anchor, cosine, height, two_sided, quality.form_factor);
+        return arealight_quad_both_horizons(view.anchor, cosine, height, quality.form_factor);
     }
-    return arealight_quad_clipped(view.anchor, cosine, two_sided, quality.form_factor);
+    return arealight_quad_clipped(view.anchor, cosine, quality.form_factor);
 }
 
-// The form factor of any outline.
-float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, ArealightQuality quality) {
+// The arcs around any outline.
+ArealightArcs arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, ArealightQuality quality) {
     uint end = light.first_vertex + light.vertex_count;
     vec3 last = arealight_bridge_vertex(end - 1u);
     int rung = quality.form_factor;
@@ -99,7 +101,7 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
             height = arealight_vertex_height(view, vertex);
             arealight_surface_walk_to(walk, view.anchor, view.transform * vertex, height, rung);
         }
-        return arealight_surface_walk_form_factor(walk, view.anchor, light.two_sided, rung);
+        return arealight_surface_walk_end(walk, view.anchor, rung);
     }
     ArealightWalk walk = arealight_walk_begin();
     ArealightVertex from = arealight_vertex(view.anchor, view.transform * last, rung);
@@ -114,8 +116,7 @@ float arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight light, A
         }
         from = to;
     }
-    return bare ? arealight_form_factor_from_arcs(walk.sum, walk.squares, light.two_sided)
-                : arealight_walk_form_factor(walk, view.anchor, light.two_sided, rung);
+    return bare ? ArealightArcs(walk.sum, walk.squares) : arealight_walk_end(walk, view.anchor, rung);
 }
 
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
@@ -126,24 +127,119 @@ ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
                          arealight_bridge_vertex(light.first_vertex + last));
 }
 
-// What a lobe reflects of a polygon light of unit radiance, a channel: its albedo times the form factor in its cosine space;
-// error: see form_factor.glsl. `quad` is read without AREALIGHT_EFFECT_POLYGON, the light's vertices with it.
-vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight seen, ArealightPolygonLight light,
-                            ArealightQuad quad, uint effects, ArealightQuality quality) {
-    ArealightLobeView view = arealight_lobe_view(lobe.space, normal, seen, quality.form_factor);
-    float form_factor;
+// The arcs around a polygon light in a lobe's cosine space. `quad` is read without AREALIGHT_EFFECT_POLYGON, the light's
+// vertices with it.
+ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen,
+                                  ArealightPolygonLight light, ArealightQuad quad, uint effects,
+                                  ArealightQuality quality) {
     // A far light of which the surface hides a part is no matter of one point
     bool is_whole = quality.horizon != AREALIGHT_HORIZON_BOTH || view.normal_height > seen.radius;
     if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && is_whole
         && arealight_is_far(view.center, view.extent)) {
-        float facing = seen.facing * lobe.space.determinant;
-        form_factor = arealight_one_point_form_factor(view.center, facing, light.two_sided);
-    } else if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
-        form_factor = arealight_lobe_walk(view, light, quality);
-    } else {
-        form_factor = arealight_lobe_quad(view, quad, light.two_sided, quality);
+        return arealight_one_point(view.center, seen.facing * lobe.space.determinant);
     }
-    return lobe.albedo * min(form_factor * lobe.gain, 1.0);
+    if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
+        return arealight_lobe_walk(view, light, quality);
+    }
+    return arealight_lobe_quad(view, quad, quality);
+}
+
+#if AREALIGHT_LIGHT_TEXTURES
+
+// A convex part of a light, of up to four vertices (offsets from the light's center), and where on its image they are.
+struct ArealightPart {
+    ArealightQuad quad;
+    vec4 u;
+    vec4 v;
+};
+
+// The part in column `x` and row `y` of `count` by `count` that a part is split into.
+ArealightPart arealight_split_part(ArealightPart whole, vec2 cell, float count) {
+    vec4 s = vec4(cell.x, cell.x + 1.0, cell.x + 1.0, cell.x) / count;
+    vec4 t = vec4(cell.y, cell.y, cell.y + 1.0, cell.y + 1.0) / count;
+    ArealightQuad quad = whole.quad;
+    ArealightPart part;
+    part.quad = ArealightQuad(mix(mix(quad.v0, quad.v1, s.x), mix(quad.v3, quad.v2, s.x), t.x),
+                              mix(mix(quad.v0, quad.v1, s.y), mix(quad.v3, quad.v2, s.y), t.y),
+                              mix(mix(quad.v0, quad.v1, s.z), mix(quad.v3, quad.v2, s.z), t.z),
+                              mix(mix(quad.v0, quad.v1, s.w), mix(quad.v3, quad.v2, s.w), t.w));
+    part.u = mix(mix(whole.u.xxxx, whole.u.yyyy, s), mix(whole.u.wwww, whole.u.zzzz, s), t);
+    part.v = mix(mix(whole.v.xxxx, whole.v.yyyy, s), mix(whole.v.wwww, whole.v.zzzz, s), t);
+    return part;
+}
+
+// What a lobe sees of a part of a light in `count` by `count` pieces, each with a form factor and a footprint of its own:
+// the sum of form factors times colours.
+vec3 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, ArealightPart whole, float count,
+                          float parts, bool two_sided, ArealightQuality quality) {
+    vec3 sum = vec3(0.0);
+    for (float y = 0.0; y < count; y += 1.0) {
+        for (float x = 0.0; x < count; x += 1.0) {
+            ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
+            ArealightArcs arcs = arealight_lobe_quad(view, part.quad, quality);
+            vec2 low = vec2(min(min(part.u.x, part.u.y), min(part.u.z, part.u.w)),
+                            min(min(part.v.x, part.v.y), min(part.v.z, part.v.w)));
+            vec2 high = vec2(max(max(part.u.x, part.u.y), max(part.u.z, part.u.w)),
+                             max(max(part.v.x, part.v.y), max(part.v.z, part.v.w)));
+            sum += arealight_form_factor(arcs, two_sided)
+                 * arealight_footprint_of_part(image, arcs.sum, low, high, parts);
+        }
+    }
+    return sum;
+}
+
+// What a lobe sees of a light that shows an image, by parts: those of a convex quad, or the triangles about the center of any
+// other outline.
+vec3 arealight_lobe_parts(ArealightLobeView view, ArealightSeenImage image, ArealightPolygonLight light,
+                          ArealightSeenLight seen, ArealightQuad quad, uint effects, ArealightQuality quality) {
+    float parts = quality.footprint == AREALIGHT_FOOTPRINT_SPLIT_FOUR ? 4.0 : 2.0;
+    ArealightPart part;
+    if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
+        part.quad = quad;
+        arealight_image_coordinates(light.image, quad, part.u, part.v);
+        return arealight_part_color(view, image, part, parts, parts, light.two_sided, quality);
+    }
+    if (seen.facing <= 0.0 && !light.two_sided) {
+        return vec3(0.0);
+    }
+    // Triangles that run against the outline are taken away again
+    vec3 sum = vec3(0.0);
+    uint end = light.first_vertex + light.vertex_count;
+    vec3 last = arealight_bridge_vertex(end - 1u);
+    for (uint index = light.first_vertex; index < end; index++) {
+        vec3 next = arealight_bridge_vertex(index);
+        part.quad = ArealightQuad(vec3(0.0), last, next, next);
+        arealight_image_coordinates(light.image, part.quad, part.u, part.v);
+        vec3 color = arealight_part_color(view, image, part, 0.5 * parts, parts, true, quality);
+        sum += dot(cross(last, next), light.area) < 0.0 ? -color : color;
+        last = next;
+    }
+    return max(sum, vec3(0.0));
+}
+
+#endif
+
+// What a lobe reflects of a polygon light of unit radiance, a channel: its albedo times the form factor in its cosine space
+// (error: form_factor.glsl), times what it sees of the light's image (error: footprint.glsl).
+vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight seen, ArealightPolygonLight light,
+                            ArealightQuad quad, uint effects, ArealightQuality quality) {
+    ArealightLobeView view = arealight_lobe_view(lobe.space, normal, seen, quality.form_factor);
+#if AREALIGHT_LIGHT_TEXTURES
+    bool textured = (effects & AREALIGHT_EFFECT_TEXTURED) != 0u && light.image.layer != AREALIGHT_NO_IMAGE;
+    ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
+    if (textured && quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO) {
+        vec3 color = arealight_lobe_parts(view, image, light, seen, quad, effects, quality);
+        return lobe.albedo * color * lobe.gain;
+    }
+#endif
+    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, quad, effects, quality);
+    vec3 color = vec3(min(arealight_form_factor(arcs, light.two_sided) * lobe.gain, 1.0));
+#if AREALIGHT_LIGHT_TEXTURES
+    if (textured) {
+        color *= arealight_footprint(image, arcs.sum, quality.footprint);
+    }
+#endif
+    return lobe.albedo * color;
 }
 
 // Outgoing radiance towards the viewer from one polygon light, W/(m^2 sr), without visibility.

@@ -4,7 +4,7 @@
 #include "arealight/arc.glsl"
 #include "arealight/walk.glsl"
 
-// The form factor of a convex polygon with four vertices (or three: repeat one), clipped at the horizon without a
+// The arcs around a convex polygon with four vertices (or three: repeat one), clipped at the horizon without a
 // branch, an array or a table of cases. Five arcs: one an edge, shortened to its part above the horizon, and one
 // along the horizon from where the outline goes down to where it comes up.
 
@@ -42,8 +42,8 @@ void arealight_quad_note(inout ArealightCrossings crossings, ArealightAnchor anc
 
 // The arc of the edge from a to b, as far as it is above the horizon. An edge below it becomes an arc of no length
 // at the entry.
-float arealight_quad_edge(ArealightVertex a, ArealightVertex b, ArealightVertex exit, ArealightVertex entry,
-                          int rung) {
+vec3 arealight_quad_edge(ArealightVertex a, ArealightVertex b, ArealightVertex exit, ArealightVertex entry,
+                         int rung) {
     bool a_above = a.unit.z > 0.0;
     bool b_above = b.unit.z > 0.0;
     ArealightVertex from = arealight_select(a_above, a, entry);
@@ -51,8 +51,8 @@ float arealight_quad_edge(ArealightVertex a, ArealightVertex b, ArealightVertex 
     return arealight_arc(from, to, rung);
 }
 
-// The form factor of a convex quad clipped at the horizon of its space.
-float arealight_quad_clipped(ArealightAnchor anchor, ArealightQuad quad, bool two_sided, int rung) {
+// A convex quad clipped at the horizon of its space.
+ArealightArcs arealight_quad_clipped(ArealightAnchor anchor, ArealightQuad quad, int rung) {
     ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
     ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
     ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
@@ -69,29 +69,29 @@ float arealight_quad_clipped(ArealightAnchor anchor, ArealightQuad quad, bool tw
     ArealightVertex entry = arealight_horizon_vertex(anchor, crossings.entry, -1.0, rung);
 
     // Sum the edges, and close the outline along the horizon
-    float sum = arealight_quad_edge(v0, v1, exit, entry, rung)
-              + arealight_quad_edge(v1, v2, exit, entry, rung)
-              + arealight_quad_edge(v2, v3, exit, entry, rung)
-              + arealight_quad_edge(v3, v0, exit, entry, rung)
-              + arealight_horizon_arc(anchor, exit, entry, rung);
+    vec3 sum = arealight_quad_edge(v0, v1, exit, entry, rung)
+             + arealight_quad_edge(v1, v2, exit, entry, rung)
+             + arealight_quad_edge(v2, v3, exit, entry, rung)
+             + arealight_quad_edge(v3, v0, exit, entry, rung)
+             + arealight_horizon_arc(anchor, exit, entry, rung);
 
     // What goes down twice lies in the horizon: nothing of it is above
-    sum = arealight_alternates(v0.unit.z > 0.0, v1.unit.z > 0.0, v2.unit.z > 0.0, v3.unit.z > 0.0) ? 0.0 : sum;
+    sum = arealight_alternates(v0.unit.z > 0.0, v1.unit.z > 0.0, v2.unit.z > 0.0, v3.unit.z > 0.0) ? vec3(0.0) : sum;
     float squares = v0.square + v1.square + v2.square + v3.square;
-    return arealight_form_factor_from_arcs(sum, squares, two_sided);
+    return ArealightArcs(sum, squares);
 }
 
-// The form factor of a quad that is wholly above the horizon and has no edge that subtends more than a right angle,
+// A quad that is wholly above the horizon and has no edge that subtends more than a right angle,
 // convex or not: arealight_is_bare tells where that is so.
-float arealight_quad_bare(ArealightAnchor anchor, ArealightQuad quad, bool two_sided, int rung) {
+ArealightArcs arealight_quad_bare(ArealightAnchor anchor, ArealightQuad quad, int rung) {
     ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
     ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
     ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
     ArealightVertex v3 = arealight_vertex(anchor, quad.v3, rung);
-    float sum = arealight_acute_arc(v0, v1, rung) + arealight_acute_arc(v1, v2, rung)
-              + arealight_acute_arc(v2, v3, rung) + arealight_acute_arc(v3, v0, rung);
+    vec3 sum = arealight_acute_arc(v0, v1, rung) + arealight_acute_arc(v1, v2, rung)
+             + arealight_acute_arc(v2, v3, rung) + arealight_acute_arc(v3, v0, rung);
     float squares = v0.square + v1.square + v2.square + v3.square;
-    return arealight_form_factor_from_arcs(sum, squares, two_sided);
+    return ArealightArcs(sum, squares);
 }
 
 #endif

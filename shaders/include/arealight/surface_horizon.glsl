@@ -26,10 +26,9 @@ void arealight_surface_note(inout vec3 exit, inout vec3 entry, vec3 a, float a_h
     }
 }
 
-// The form factor of a convex quad clipped at the surface's horizon and at that of its space. The first clip leaves
+// A convex quad clipped at the surface's horizon and at that of its space. The first clip leaves
 // up to five edges.
-float arealight_quad_both_horizons(ArealightAnchor anchor, ArealightQuad quad, vec4 height, bool two_sided,
-                                   int rung) {
+ArealightArcs arealight_quad_both_horizons(ArealightAnchor anchor, ArealightQuad quad, vec4 height, int rung) {
     vec3 exit = vec3(0.0);
     vec3 entry = vec3(0.0);
     arealight_surface_note(exit, entry, quad.v0, height.x, quad.v1, height.y);
@@ -54,8 +53,10 @@ float arealight_quad_both_horizons(ArealightAnchor anchor, ArealightQuad quad, v
 
     // What is wholly below is not there, nor what lies in the horizon
     walk.squares += dot(quad.v0, quad.v0) + dot(quad.v1, quad.v1) + dot(quad.v2, quad.v2) + dot(quad.v3, quad.v3);
-    float form_factor = arealight_walk_form_factor(walk, anchor, two_sided, rung);
-    return any(above) && !arealight_alternates(above.x, above.y, above.z, above.w) ? form_factor : 0.0;
+    ArealightArcs arcs = arealight_walk_end(walk, anchor, rung);
+    bool visible = any(above) && !arealight_alternates(above.x, above.y, above.z, above.w);
+    arcs.sum = visible ? arcs.sum : vec3(0.0);
+    return arcs;
 }
 
 // A walk (walk.glsl) behind a clip at the surface's horizon: vertices go in with their height.
@@ -101,13 +102,12 @@ void arealight_surface_walk_to(inout ArealightSurfaceWalk clip, ArealightAnchor 
     clip.height = height;
 }
 
-// Ends the walk, as arealight_walk_form_factor.
-float arealight_surface_walk_form_factor(ArealightSurfaceWalk clip, ArealightAnchor anchor, bool two_sided,
-                                         int rung) {
+// Ends the walk, as arealight_walk_end.
+ArealightArcs arealight_surface_walk_end(ArealightSurfaceWalk clip, ArealightAnchor anchor, int rung) {
     if (clip.begun) {
         arealight_walk_edge(clip.walk, anchor, clip.last, clip.first, rung);
     }
-    return arealight_walk_form_factor(clip.walk, anchor, two_sided, rung);
+    return arealight_walk_end(clip.walk, anchor, rung);
 }
 
 #endif

@@ -9,9 +9,9 @@
 //
 //     ArealightWalk walk = arealight_walk_begin();
 //     for each edge: arealight_walk_edge(walk, anchor, from, to, rung);
-//     float f = arealight_walk_form_factor(walk, anchor, two_sided, rung);
+//     float f = arealight_form_factor(arealight_walk_end(walk, anchor, rung), two_sided);
 struct ArealightWalk {
-    float sum;             // 2 pi times the form factor of a light seen from its back
+    vec3 sum;              // of the arcs so far
     float squares;         // of the vertices' distances
     vec2 turn;             // how far the outline has to turn along the horizon to be closed, as a unit complex number
     ArealightVertex exit;  // where it last went down (difference form alone, as the rest)
@@ -22,7 +22,7 @@ struct ArealightWalk {
 
 ArealightWalk arealight_walk_begin() {
     ArealightVertex nowhere = ArealightVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return ArealightWalk(0.0, 0.0, vec2(1.0, 0.0), nowhere, nowhere, false, false);
+    return ArealightWalk(vec3(0.0), 0.0, vec2(1.0, 0.0), nowhere, nowhere, false, false);
 }
 
 // Closes the outline along the horizon, at a crossing.
@@ -61,9 +61,9 @@ void arealight_walk_edge(inout ArealightWalk walk, ArealightAnchor anchor, Areal
     walk.sum += arealight_arc(arealight_select(a_above, a, crossing), arealight_select(b_above, b, crossing), rung);
 }
 
-// Ends the walk. One-sided: 0 for a light seen from its back. In [0, 1]; 0 where a vertex is not finite.
-float arealight_walk_form_factor(ArealightWalk walk, ArealightAnchor anchor, bool two_sided, int rung) {
-    float sum = walk.sum;
+// Ends the walk: the arcs around the whole outline.
+ArealightArcs arealight_walk_end(ArealightWalk walk, ArealightAnchor anchor, int rung) {
+    vec3 sum = walk.sum;
     if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
         ArealightVertex begin = walk.exit;
         ArealightVertex end = walk.exit;
@@ -73,7 +73,7 @@ float arealight_walk_form_factor(ArealightWalk walk, ArealightAnchor anchor, boo
     } else if (walk.exited && walk.entered) {
         sum += arealight_horizon_arc(anchor, walk.exit, walk.entry, rung);
     }
-    return arealight_form_factor_from_arcs(sum, walk.squares, two_sided);
+    return ArealightArcs(sum, walk.squares);
 }
 
 #endif

@@ -1,0 +1,222 @@
+#ifndef AREALIGHT_FOOTPRINT_GLSL
+#define AREALIGHT_FOOTPRINT_GLSL
+
+#include "arealight/common.glsl"
+#include "arealight/effects.glsl"
+#include "arealight/quad.glsl"
+
+// What a lobe sees of the image that a light shows.
+//
+// A lobe in its cosine space weighs the points of the light's plane with (cosine of the lobe) x (cosine of the light) /
+// distance^2: a bump around a point, which we take for a Gaussian. So the image is blurred beforehand, by ever wider
+// Gaussians (arealight::pyramid in Rust), and looked up where the mean direction of the clipped light meets its plane, at
+// the level whose blur is that of the bump. With the distance d to that point and the area A of the image in cosine
+// space, in units where A is 1, the variance is
+//
+//     d^2 / (2 A + 8 d^2)
+//
+// d^2 / 2 of Heitz et al. 2016 (eq. 35) at the point seen instead of the plane's foot, and no more than an eighth: as the
+// light ends there, so must the footprint. The bump is longer than wide where the plane is seen at an angle; better rungs
+// fetch along its longer axis, and split the light. Error against the integral of image times lobe: docs/textures.md.
+
+// Whether lights may show images. A host that says so defines the two bridges below, and sets AREALIGHT_EFFECT_TEXTURED
+// where a light does.
+#ifndef AREALIGHT_LIGHT_TEXTURES
+#define AREALIGHT_LIGHT_TEXTURES 0
+#endif
+
+// The layer of a light without an image.
+const uint AREALIGHT_NO_IMAGE = 0xffffffffu;
+
+// An image's place on a light: GpuLight in Rust. The box of the image that the light shows is spanned by two axes; box
+// coordinates run from 0 to 1 along them.
+struct ArealightImage {
+    uint layer;  // of the light textures, or AREALIGHT_NO_IMAGE
+    vec3 corner; // where the box begins, from the light's center
+    vec3 axis_u; // along its rows
+    vec3 axis_v; // along its columns
+    vec2 low;    // texture coordinates of the box's corner
+    vec2 size;   // and its extent in them
+};
+
+#if AREALIGHT_LIGHT_TEXTURES
+
+// The host's bridge to the light textures: layer `layer`, trilinear and clamped to the edge, at normalised coordinates,
+// level explicit; textureLod of an array image.
+vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
+// Width and height of level 0 with its margins, in texels.
+ivec2 arealight_bridge_light_texture_size();
+
+// An image as a lobe sees it, in its cosine space.
+struct ArealightSeenImage {
+    uint layer;
+    vec2 low;
+    vec2 size;
+    vec3 corner; // from the shading point
+    vec3 axis_u;
+    vec3 axis_v;
+    vec3 normal;  // axis_u x axis_v
+    vec2 texels;  // of the box
+    float last;   // level
+};
+
+// `center` and `transform` as ArealightLobeView has them.
+ArealightSeenImage arealight_see_image(ArealightImage image, vec3 center, mat3 transform) {
+    ArealightSeenImage seen;
+    seen.layer = image.layer;
+    seen.low = image.low;
+    seen.size = image.size;
+    seen.corner = center + transform * image.corner;
+    seen.axis_u = transform * image.axis_u;
+    seen.axis_v = transform * image.axis_v;
+    seen.normal = cross(seen.axis_u, seen.axis_v);
+    // Content is four fifths of the size with margins
+    ivec2 size = arealight_bridge_light_texture_size();
+    seen.texels = vec2(size) * 0.8 * image.size;
+    seen.last = float(findMSB(min(size.x, size.y) / 5));
+    return seen;
+}
+
+// x clamped to [low, high]; low for NaN.
+vec2 arealight_clamp_coordinate(vec2 x, vec2 low, vec2 high) {
+    return vec2(x.x > low.x ? min(x.x, high.x) : low.x, x.y > low.y ? min(x.y, high.y) : low.y);
+}
+
+// The level of the pyramid whose blur is `square`, a variance in squares of level 0's texels, between two levels;
+// PyramidSize::level_of in Rust.
+float arealight_texture_level(float square, float last) {
+    const float REGULAR = 0.8891666667; // variance of a level's blur and of bilinear lookup, in its own texels
+    const float TENT = 0.1666666667;    // of bilinear lookup alone
+    float octaves = 0.5 * log2((square + TENT) / REGULAR);
+    if (!(octaves >= 1.0)) {
+        return square > 0.0 ? pow(square / (4.0 * REGULAR - TENT), 0.8) : 0.0;
+    }
+    float widened = last - 3.0;
+    float level = min(min(octaves, widened) + max(octaves - widened, 0.0) * 0.83687, last);
+    float fraction = fract(level);
+    return level - 0.25 * fraction * (1.0 - fraction);
+}
+
+// The image at box coordinates, blurred by `variance`, in units of the box's area.
+vec3 arealight_image_blurred(ArealightSeenImage image, vec2 box, float variance) {
+    // A margin of an eighth of the content is on every side
+    vec2 coordinate = (image.low + image.size * box) * 0.8 + 0.1;
+    float level = arealight_texture_level(variance * image.texels.x * image.texels.y, image.last);
+    return arealight_bridge_light_texture(image.layer, coordinate, level);
+}
+
+// The point of the image's plane that the light comes from.
+struct ArealightSeenPoint {
+    vec2 box;     // its box coordinates, not clamped
+    float square; // its squared distance
+};
+
+// `sum` is the light's arcs' (ArealightArcs).
+ArealightSeenPoint arealight_seen_point(ArealightSeenImage image, vec3 sum) {
+    // Meet the plane along the mean direction; either way along it
+    vec3 direction = sum / max(arealight_max_component(sum), 1e-30);
+    float speed = dot(direction, image.normal);
+    float reciprocal = abs(speed) > 1e-30 ? 1.0 / speed : 0.0;
+    ArealightSeenPoint point;
+    point.box = reciprocal * vec2(dot(direction, cross(image.axis_v, image.corner)),
+                                  dot(direction, cross(image.corner, image.axis_u)));
+    float time = dot(image.corner, image.normal) * reciprocal;
+    float square = time * time * dot(direction, direction);
+    point.square = square < 1e30 ? square : 1e30;
+    return point;
+}
+
+// The footprint's ellipse, in units of the box's area: box coordinates that are stretched so that texels are as long in both
+// directions.
+struct ArealightEllipse {
+    vec2 axis;   // the longer one's direction, in box coordinates
+    float major; // variances
+    float minor;
+};
+
+// `parts` is how many of the light's parts go on a side of it: the footprint ends where a part does.
+ArealightEllipse arealight_footprint_ellipse(ArealightSeenImage image, float square, float parts) {
+    float stretch = sqrt(image.texels.x / image.texels.y);
+    vec3 u = image.axis_u / stretch;
+    vec3 v = image.axis_v * stretch;
+    // The inverse of the covariance: of the bump, and of the part's end
+    float end = 8.0 * parts * parts;
+    float bump = 2.0 / max(square, AREALIGHT_TINY);
+    float xx = bump * dot(u, u) + end / (stretch * stretch);
+    float yy = bump * dot(v, v) + end * (stretch * stretch);
+    float xy = bump * dot(u, v);
+    // Its eigenvalues, the smaller one by the determinant
+    float mean = 0.5 * (xx + yy);
+    float skew = 0.5 * (xx - yy);
+    float spread = sqrt(skew * skew + xy * xy);
+    float largest = mean + spread;
+    float smallest = max((xx * yy - xy * xy) / largest, 1e-6 * largest);
+    vec2 axis = skew < 0.0 ? vec2(spread - skew, -xy) : vec2(-xy, spread + skew);
+    ArealightEllipse ellipse;
+    ellipse.axis = axis * inversesqrt(dot(axis, axis) + AREALIGHT_TINY) / vec2(stretch, 1.0 / stretch);
+    ellipse.major = 1.0 / smallest;
+    ellipse.minor = 1.0 / largest;
+    return ellipse;
+}
+
+// The mean colour that a lobe sees of a light's image: `sum` is the light's arcs'. Rungs ROUND and ELLIPSE; finite and not
+// negative for any input, if the image is.
+vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
+    ArealightSeenPoint point = arealight_seen_point(image, sum);
+    vec2 box = arealight_clamp_coordinate(point.box, vec2(0.0), vec2(1.0));
+    if (footprint == AREALIGHT_FOOTPRINT_ROUND) {
+        float area = sqrt(dot(image.normal, image.normal));
+        return arealight_image_blurred(image, box, point.square / (2.0 * area + 8.0 * point.square));
+    }
+    // Four taps along the longer axis, with the variance that is missing to it between them
+    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.0);
+    float variance = min(ellipse.major, max(ellipse.minor, 0.08265625 * ellipse.major));
+    vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
+    vec3 color = vec3(0.0);
+    for (int tap = 0; tap < 4; tap++) {
+        float offset = (tap & 1) == 0 ? 0.378 : 1.363;
+        vec2 place = box + step * (tap < 2 ? offset : -offset);
+        color += arealight_image_blurred(image, arealight_clamp_coordinate(place, vec2(0.0), vec2(1.0)), variance);
+    }
+    return 0.25 * color;
+}
+
+// As arealight_footprint, of one of `parts` by `parts` parts of the light, which is within the box from `low` to `high`: two
+// taps.
+vec3 arealight_footprint_of_part(ArealightSeenImage image, vec3 sum, vec2 low, vec2 high, float parts) {
+    ArealightSeenPoint point = arealight_seen_point(image, sum);
+    vec2 box = arealight_clamp_coordinate(point.box, low, high);
+    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, parts);
+    float variance = min(ellipse.major, max(ellipse.minor, 0.330625 * ellipse.major));
+    vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
+    vec3 color = arealight_image_blurred(image, arealight_clamp_coordinate(box + step, low, high), variance)
+               + arealight_image_blurred(image, arealight_clamp_coordinate(box - step, low, high), variance);
+    return 0.5 * color;
+}
+
+// Box coordinates of an offset from the light's center, in its plane.
+vec2 arealight_image_coordinate(ArealightImage image, vec3 offset) {
+    vec3 normal = cross(image.axis_u, image.axis_v);
+    vec3 from_corner = offset - image.corner;
+    float square = max(dot(normal, normal), 1e-37);
+    return vec2(dot(cross(from_corner, image.axis_v), normal), dot(cross(image.axis_u, from_corner), normal)) / square;
+}
+
+// Those of a quad's vertices.
+void arealight_image_coordinates(ArealightImage image, ArealightQuad quad, out vec4 u, out vec4 v) {
+    vec2 c0 = arealight_image_coordinate(image, quad.v0);
+    vec2 c1 = arealight_image_coordinate(image, quad.v1);
+    vec2 c2 = arealight_image_coordinate(image, quad.v2);
+    vec2 c3 = arealight_image_coordinate(image, quad.v3);
+    u = vec4(c0.x, c1.x, c2.x, c3.x);
+    v = vec4(c0.y, c1.y, c2.y, c3.y);
+}
+
+// The image itself at an offset from the light's center, in its plane.
+vec3 arealight_image_color(ArealightImage image, vec3 offset) {
+    vec2 box = arealight_clamp_coordinate(arealight_image_coordinate(image, offset), vec2(0.0), vec2(1.0));
+    return arealight_bridge_light_texture(image.layer, (image.low + image.size * box) * 0.8 + 0.1, 0.0);
+}
+
+#endif
+#endif
