@@ -37,6 +37,7 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::TWO_SIDED),
         material(Effects::SPECULAR_INPUT, has_specular_input),
         light(Effects::POLYGON),
+        light(Effects::TEXTURED),
     ];
     calls.into_iter().flatten().collect()
 }

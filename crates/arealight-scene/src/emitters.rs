@@ -1,10 +1,10 @@
 //! Emissive geometry to polygon lights.
 
-use crate::images;
+use crate::light_textures::{self, TexturedLight};
 use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
-use crate::outlines::outlines;
+use crate::outlines::{Coordinates, outlines};
 use arealight::PolygonLight;
 use glam::Vec3;
 
@@ -15,37 +15,42 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
         return;
     }
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());
+    let (radiance, texture) = (material.emission, material.emission_texture);
     let place = format!("light '{}' (node {})", instance.name, node.index);
-    // A texture lights by its mean
-    let mut radiance = material.emission;
-    if let Some(texture) = material.emission_texture {
-        let image = &loader.scene.images[loader.scene.textures[texture as usize].image as usize];
-        radiance *= images::linear_mean(image);
-        loader.warn(place.as_str(), "emissiveTexture: the light has the texture's mean colour everywhere");
-        if radiance == Vec3::ZERO {
-            return;
-        }
-    }
     if masked {
         loader.warn(place.as_str(), "alphaMode MASK: the light shines where the mask is transparent, too");
     }
-    // Merge what is flat
-    let outlines = outlines(&instance.positions, &instance.triangles, instance.rounding);
+    // Merge what is flat, and mapped alike
+    let coordinates = texture.map(|texture| Coordinates {
+        uvs: instance.uvs,
+        tolerance: light_textures::tolerance(&loader.scene, texture),
+    });
+    let outlines = outlines(&instance.positions, &instance.triangles, instance.rounding, coordinates);
     let count = outlines.polygons.len();
     if outlines.bent {
         loader.warn(place.as_str(), format!("is not flat: {count} polygon lights, one a flat part"));
+    }
+    if outlines.seams {
+        let text = format!("its texture has seams or bends: {count} polygon lights, one a straight part");
+        loader.warn(place.as_str(), text);
     }
     if outlines.split > 0 {
         let text = format!("has holes or touches itself: {} more polygon lights make it up", outlines.split);
         loader.warn(place.as_str(), text);
     }
+    let mut uvs = outlines.uvs.into_iter();
     for (number, vertices) in outlines.polygons.into_iter().enumerate() {
+        let uvs = uvs.next().unwrap_or_default();
         let name =
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
         let light = PolygonLight { name, vertices, radiance, two_sided, texture: None };
-        match light.validate() {
-            Ok(()) => loader.scene.lights.push(light),
-            Err(problem) => loader.warn(place.as_str(), format!("{problem}: left out")),
+        if let Err(problem) = light.validate() {
+            loader.warn(place.as_str(), format!("{problem}: left out"));
+            continue;
         }
+        if let Some(texture) = texture {
+            loader.textured.push(TexturedLight { light: loader.scene.lights.len(), texture, uvs });
+        }
+        loader.scene.lights.push(light);
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::load::Loader;
 use crate::{Image, SceneError, Texture, Wrap};
+use glam::{DVec2, DVec3};
 use gltf::json;
 use gltf::json::texture::WrappingMode;
 use std::io::Cursor;
@@ -84,13 +85,45 @@ fn decoded(loader: &mut Loader, index: usize) -> Result<u32, SceneError> {
 }
 
 /// The mean of an sRGB image's linear colours.
-pub(crate) fn linear_mean(image: &Image) -> glam::Vec3 {
+pub(crate) fn linear_mean(image: &Image) -> DVec3 {
     let linear: Vec<f64> = (0..=255_u8).map(|byte| srgb_to_linear(f64::from(byte) / 255.0)).collect();
-    let sum = image.texels.iter().fold(glam::DVec3::ZERO, |sum, texel| {
+    let sum = image.texels.iter().fold(DVec3::ZERO, |sum, texel| {
         let [r, g, b, _] = texel.to_le_bytes().map(|byte| linear[usize::from(byte)]);
-        sum + glam::DVec3::new(r, g, b)
+        sum + DVec3::new(r, g, b)
     });
-    (sum / image.texels.len().max(1) as f64).as_vec3()
+    sum / image.texels.len().max(1) as f64
+}
+
+/// The linear colour of `image`, read by `texture`, at finite coordinates; bilinear, decoded before it is filtered.
+pub(crate) fn sample(image: &Image, texture: Texture, uv: DVec2) -> DVec3 {
+    let size = DVec2::new(f64::from(image.width), f64::from(image.height));
+    let position = uv * size - 0.5;
+    let (node, weight) = (position.floor(), position - position.floor());
+    let texel = |x: f64, y: f64| {
+        let x = wrapped(node.x + x, image.width, texture.wrap_u);
+        let y = wrapped(node.y + y, image.height, texture.wrap_v);
+        let bytes = image.texels[y * image.width as usize + x].to_le_bytes();
+        let [r, g, b, _] = bytes.map(|byte| f64::from(byte) / 255.0);
+        let decode = |x: f64| if texture.srgb { srgb_to_linear(x) } else { x };
+        DVec3::new(decode(r), decode(g), decode(b))
+    };
+    let top = texel(0.0, 0.0).lerp(texel(1.0, 0.0), weight.x);
+    let bottom = texel(0.0, 1.0).lerp(texel(1.0, 1.0), weight.x);
+    top.lerp(bottom, weight.y)
+}
+
+/// The texel that is read at a whole number, which may be outside of the image.
+fn wrapped(texel: f64, side: u32, wrap: Wrap) -> usize {
+    let (side, last) = (f64::from(side), f64::from(side - 1));
+    let inside = match wrap {
+        Wrap::Clamp => texel,
+        Wrap::Repeat => texel.rem_euclid(side),
+        Wrap::Mirror => {
+            let along = texel.rem_euclid(2.0 * side);
+            along.min(2.0 * side - 1.0 - along)
+        }
+    };
+    inside.clamp(0.0, last) as usize
 }
 
 /// The decoding of IEC 61966-2-1.
@@ -108,6 +141,24 @@ mod tests {
         let image = Image { name: String::new(), width: 2, height: 1, texels };
         let mean = linear_mean(&image);
         // sRGB 188 of 255 is 0.503 linear; as encoded values the mean of green would be 0.37
-        assert!((mean - glam::Vec3::new(0.5, 0.2514, 0.0)).length() < 1e-3, "{mean}");
+        assert!((mean - DVec3::new(0.5, 0.2514, 0.0)).length() < 1e-3, "{mean}");
+    }
+
+    #[test]
+    fn samples_wrap_and_are_bilinear() {
+        // Texels of 0, 0.2, 0.4, 0.6 side by side, not sRGB
+        let texels = [0_u8, 51, 102, 153].map(|v| u32::from_le_bytes([v, 0, 0, 255])).to_vec();
+        let image = Image { name: String::new(), width: 4, height: 1, texels };
+        let at = |wrap, u: f64| {
+            let texture = Texture { image: 0, srgb: false, wrap_u: wrap, wrap_v: Wrap::Repeat };
+            (sample(&image, texture, DVec2::new(u, 0.3)).x * 1e6).round() / 1e6
+        };
+        assert_eq!([0.125, 0.25, 0.375].map(|u| at(Wrap::Repeat, u)), [0.0, 0.1, 0.2]);
+        // At the left edge: between the last and the first, of the first, of the first and its mirror image
+        let edge = |wrap| [0.0, -0.125, 1.125, -1.0e6].map(|u| at(wrap, u));
+        assert_eq!(edge(Wrap::Repeat), [0.3, 0.6, 0.0, 0.3]);
+        assert_eq!(edge(Wrap::Clamp), [0.0, 0.0, 0.6, 0.0]);
+        assert_eq!(edge(Wrap::Mirror), [0.0, 0.0, 0.6, 0.0]);
+        assert_eq!([-0.375, 1.375, 2.125].map(|u| at(Wrap::Mirror, u)), [0.2, 0.4, 0.0]);
     }
 }

@@ -8,7 +8,9 @@
 //! # What becomes a light
 //! - Flat geometry with an emissive material: coplanar neighbours merge into one outline, so a quad is one
 //!   light of four vertices. Its radiance is emissiveFactor × `KHR_materials_emissive_strength`, as numbers
-//!   in W/(m² sr), times the mean of emissiveTexture. A double-sided material makes a two-sided light.
+//!   in W/(m² sr). A double-sided material makes a two-sided light. An emissiveTexture is shown where it is mapped onto
+//!   the outline by one affine map: a part of it is a layer of the light textures ([`Scene::light_textures`]), and
+//!   where the mapping has a seam, another light begins. Parts that are black are no lights.
 //! - `EXT_lights_area` rectangles, which have no visible geometry: radiance = colour × intensity in nits /
 //!   [`LUMENS_PER_WATT`].
 //!
@@ -26,18 +28,25 @@ mod emitters;
 mod error;
 mod gpu;
 mod images;
+mod light_textures;
+mod lit_texels;
 mod load;
 mod materials;
 mod meshes;
 mod nodes;
 mod outlines;
 mod scene;
+mod shown;
+mod uv_map;
 
 pub use area_lights::LUMENS_PER_WATT;
 pub use camera::Camera;
 pub use effects::{Call, required_effects};
 pub use error::SceneError;
 pub use gpu::{BufferError, Hit, SceneBuffers};
+pub use light_textures::{
+    LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, MAX_REPEATS, SceneLightTexture,
+};
 pub use scene::{
     Bounds, Image, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneMaterial, Texture, Triangle, Warning, Wrap,
 };

@@ -1,6 +1,7 @@
 //! From a document to a scene, step by step.
 
 use crate::document::Document;
+use crate::light_textures::{self, TexturedLight};
 use crate::{Bounds, Scene, SceneError, Warning, area_lights, emitters, materials, meshes, nodes};
 use std::path::Path;
 
@@ -14,6 +15,8 @@ pub(crate) struct Loader {
     pub materials: Vec<Option<u32>>,
     /// The scene's index of each of the file's images that has been used.
     pub images: Vec<Option<u32>>,
+    /// The lights that a texture shines through, until all are known.
+    pub textured: Vec<TexturedLight>,
 }
 
 impl Loader {
@@ -39,7 +42,7 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let materials = vec![None; document.root.materials.len() + 1];
     let images = vec![None; document.root.images.len()];
     let scene = Scene { name, ..Scene::default() };
-    let mut loader = Loader { document, scene, materials, images };
+    let mut loader = Loader { document, scene, materials, images, textured: Vec::new() };
     warn_of_what_is_ignored(&mut loader);
     // Place the nodes in the world
     let placed = nodes::place(&mut loader)?;
@@ -52,6 +55,7 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
             emitters::add(&mut loader, node, &instance);
         }
     }
+    light_textures::assign(&mut loader);
     // Lights and cameras that hang on nodes
     area_lights::add(&mut loader, &placed)?;
     let Loader { scene, .. } = &mut loader;

@@ -29,13 +29,15 @@ pub(crate) struct Primitive {
 }
 
 /// A primitive's shape in the world.
-pub(crate) struct Instance {
+pub(crate) struct Instance<'a> {
     /// The node's name, else the mesh's.
     pub name: String,
     /// Index into the scene's materials.
     pub material: u32,
     /// World positions.
     pub positions: Vec<DVec3>,
+    /// Texture coordinates, as many as positions; zero where the file has none.
+    pub uvs: &'a [Vec2],
     /// Counter-clockwise from the front, without those that have no area.
     pub triangles: Vec<[u32; 3]>,
     /// How far a position may be off because the file's numbers are `f32`, in the world's unit.
@@ -165,12 +167,12 @@ fn assemble(mode: Mode, corners: &[u32]) -> (Vec<[u32; 3]>, usize) {
 }
 
 /// Adds a primitive's triangles to the scene, as its node places them.
-pub(crate) fn place(
+pub(crate) fn place<'a>(
     loader: &mut Loader,
     node: &PlacedNode,
-    primitive: &Primitive,
+    primitive: &'a Primitive,
     material: u32,
-) -> Result<Instance, SceneError> {
+) -> Result<Instance<'a>, SceneError> {
     let total = loader.scene.triangles.len() + primitive.triangles.len();
     if total > MAX_TRIANGLES {
         return Err(loader.document.too_large("triangles", total as u64, MAX_TRIANGLES as u64));
@@ -210,6 +212,7 @@ pub(crate) fn place(
         name: name.map_or_else(|| format!("node {}", node.index), Clone::clone),
         material,
         positions,
+        uvs: &primitive.uvs,
         triangles: kept,
         rounding: largest * stretch * f64::from(f32::EPSILON),
     })

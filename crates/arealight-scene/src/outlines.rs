@@ -4,9 +4,13 @@
 //! way: a triangle that would close a ring around a hole, or make the loop touch itself, waits, and what
 //! still waits at the end starts a polygon of its own. A part without holes always becomes one polygon
 //! (planar discs can be shelled from any start); a ring becomes two.
+//!
+//! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the mapping bends,
+//! another part begins.
 
 use crate::Bounds;
-use glam::{DVec2, DVec3};
+use crate::uv_map::{UvMap, UvTolerance};
+use glam::{DVec2, DVec3, Vec2};
 use std::collections::{HashMap, HashSet, VecDeque};
 
 /// How far vertices may be apart to be one, relative to the diagonal of all: below what is visible, above the
@@ -26,17 +30,37 @@ const SHARED: usize = 4;
 pub(crate) struct Outlines {
     /// In the orientation of the triangles; without vertices in the middle of straight edges.
     pub polygons: Vec<Vec<DVec3>>,
+    /// Texture coordinates of the polygons' vertices; empty if none were given.
+    pub uvs: Vec<Vec<DVec2>>,
     /// Whether some neighbours are not coplanar.
     pub bent: bool,
+    /// Whether some coplanar neighbours differ in how the texture is mapped.
+    pub seams: bool,
     /// How many polygons there are beyond one a flat part.
     pub split: usize,
 }
 
+/// Texture coordinates that the triangles of a part must agree in.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Coordinates<'a> {
+    /// As many as positions.
+    pub uvs: &'a [Vec2],
+    /// How far a vertex's coordinates may be off the map of its part.
+    pub tolerance: DVec2,
+}
+
 /// Merges triangles. `rounding` is how far positions may be off in any case.
-pub(crate) fn outlines(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Outlines {
+pub(crate) fn outlines(
+    positions: &[DVec3],
+    triangles: &[[u32; 3]],
+    rounding: f64,
+    coordinates: Option<Coordinates>,
+) -> Outlines {
     let size = triangles.iter().flatten().map(|&i| positions[i as usize]).collect::<Bounds>().diagonal();
-    let mesh = Mesh::new(positions, triangles, size * WELD + rounding);
+    let weld = size * WELD + rounding;
+    let mesh = Mesh::new(positions, triangles, weld, coordinates.map(|c| c.uvs));
     let flat = size * FLAT + rounding;
+    let tolerance = UvTolerance { uv: coordinates.map_or(DVec2::ZERO, |c| c.tolerance), position: weld };
     let mut outlines = Outlines::default();
     let mut part = vec![usize::MAX; mesh.triangles.len()];
     // Start from large triangles: they know their plane best
@@ -47,24 +71,62 @@ pub(crate) fn outlines(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f6
         if part[seed] != usize::MAX {
             continue;
         }
-        let members = mesh.flat_part(seed, flat, parts, &mut part, &mut outlines.bent);
+        let plane = Plane::of(&mesh, seed, flat, tolerance);
+        let members = mesh.flat_part(seed, &plane, parts, &mut part, &mut outlines);
         parts += 1;
         let before = outlines.polygons.len();
         for outline in mesh.simple_loops(&members) {
             let outline: Vec<DVec3> = outline.into_iter().map(|i| mesh.positions[i as usize]).collect();
-            outlines.polygons.extend(straightened(&outline, flat));
+            let Some(polygon) = straightened(&outline, flat) else { continue };
+            if let Some(map) = &plane.map {
+                outlines.uvs.push(polygon.iter().map(|vertex| map.at(*vertex)).collect());
+            }
+            outlines.polygons.push(polygon);
         }
         outlines.split += (outlines.polygons.len() - before).saturating_sub(1);
     }
     outlines
 }
 
+/// What the triangles of a part share.
+struct Plane {
+    normal: DVec3,
+    anchor: DVec3,
+    /// How far a corner may be off the plane.
+    flat: f64,
+    /// How a texture is mapped, if there is one.
+    map: Option<UvMap>,
+    tolerance: UvTolerance,
+}
+
+impl Plane {
+    fn of(mesh: &Mesh, triangle: usize, flat: f64, tolerance: UvTolerance) -> Self {
+        let corners = mesh.corners(triangle);
+        let map = mesh.uvs.get(triangle).map(|uvs| UvMap::new(corners, *uvs));
+        let normal = mesh.areas[triangle].normalize_or_zero();
+        Self { normal, anchor: corners[0], flat, map, tolerance }
+    }
+
+    fn holds(&self, corners: [DVec3; 3]) -> bool {
+        corners.iter().all(|p| (*p - self.anchor).dot(self.normal).abs() <= self.flat)
+    }
+
+    fn maps(&self, mesh: &Mesh, triangle: usize) -> bool {
+        let Some(map) = &self.map else { return true };
+        let mut corners = mesh.corners(triangle).into_iter().zip(mesh.uvs[triangle]);
+        corners.all(|(position, uv)| map.agrees(position, uv, self.tolerance))
+    }
+}
+
 /// Triangles whose vertices are shared where they are at the same place.
+#[derive(Default)]
 struct Mesh {
     positions: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
     /// Area times normal of each triangle.
     areas: Vec<DVec3>,
+    /// Texture coordinates of each triangle's corners; empty if there are none.
+    uvs: Vec<[DVec2; 3]>,
     /// The triangles on the left of a directed edge, at most [`SHARED`].
     by_edge: HashMap<(u32, u32), Vec<usize>>,
 }
@@ -75,9 +137,14 @@ fn edges([a, b, c]: [u32; 3]) -> [(u32, u32, u32); 3] {
 }
 
 impl Mesh {
-    fn new(positions: &[DVec3], triangles: &[[u32; 3]], tolerance: f64) -> Self {
+    fn new(
+        positions: &[DVec3],
+        triangles: &[[u32; 3]],
+        tolerance: f64,
+        coordinates: Option<&[Vec2]>,
+    ) -> Self {
         let (positions, index) = weld(positions, triangles, tolerance);
-        let mut mesh = Self { positions, triangles: Vec::new(), areas: Vec::new(), by_edge: HashMap::new() };
+        let mut mesh = Self { positions, ..Self::default() };
         let mut known = HashSet::new();
         for triangle in triangles {
             let [a, b, c] = triangle.map(|i| index[&i]);
@@ -97,6 +164,7 @@ impl Mesh {
             }
             mesh.triangles.push([a, b, c]);
             mesh.areas.push(area);
+            mesh.uvs.extend(coordinates.map(|uvs| triangle.map(|i| uvs[i as usize].as_dvec2())));
         }
         mesh
     }
@@ -110,26 +178,31 @@ impl Mesh {
             .copied()
     }
 
-    /// The triangles that are connected to `seed` and in its plane; they are marked with `number`.
+    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|i| self.positions[i as usize])
+    }
+
+    /// The triangles that are connected to `seed`, in its plane, and mapped as it is; they are marked with `number`.
     fn flat_part(
         &self,
         seed: usize,
-        flat: f64,
+        plane: &Plane,
         number: usize,
         part: &mut [usize],
-        bent: &mut bool,
+        found: &mut Outlines,
     ) -> Vec<usize> {
-        let normal = self.areas[seed].normalize_or_zero();
-        let anchor = self.positions[self.triangles[seed][0] as usize];
         let mut members = vec![seed];
         part[seed] = number;
         let mut next = 0;
         while next < members.len() {
             for neighbor in self.neighbors(members[next]) {
-                let corners = self.triangles[neighbor].map(|i| self.positions[i as usize]);
-                if corners.iter().any(|p| (*p - anchor).dot(normal).abs() > flat) {
-                    *bent = true;
-                } else if part[neighbor] == usize::MAX && self.areas[neighbor].dot(normal) > 0.0 {
+                if !plane.holds(self.corners(neighbor)) {
+                    found.bent = true;
+                } else if part[neighbor] == number || self.areas[neighbor].dot(plane.normal) <= 0.0 {
+                    // A member already, or the back of one
+                } else if !plane.maps(self, neighbor) {
+                    found.seams = true;
+                } else if part[neighbor] == usize::MAX {
                     part[neighbor] = number;
                     members.push(neighbor);
                 }

@@ -35,18 +35,18 @@ fn counts(outlines: &Outlines) -> Vec<usize> {
 #[test]
 fn a_quad_is_one_outline_of_four_vertices() {
     let (positions, triangles) = grid(1, 1, |_, _| true);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4], false, 0));
     assert_eq!(total_area(&merged), DVec3::Z);
     // The twin: turned around, it faces down
     let turned: Vec<_> = triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
-    assert_eq!(total_area(&outlines(&positions, &turned, 0.0)), DVec3::NEG_Z);
+    assert_eq!(total_area(&outlines(&positions, &turned, 0.0, None)), DVec3::NEG_Z);
 }
 
 #[test]
 fn vertices_inside_and_on_straight_edges_go() {
     let (positions, triangles) = grid(7, 5, |_, _| true);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!(counts(&merged), [4]);
     assert_eq!(total_area(&merged), DVec3::Z * 35.0);
 }
@@ -54,7 +54,7 @@ fn vertices_inside_and_on_straight_edges_go() {
 #[test]
 fn concave_outlines_stay_whole() {
     let (positions, triangles) = grid(4, 4, |x, y| x == 0 || y == 0);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((counts(&merged), merged.split), (vec![6], 0), "an L");
     assert_eq!(total_area(&merged), DVec3::Z * 7.0);
 
@@ -65,7 +65,7 @@ fn concave_outlines_stay_whole() {
         positions.push(DVec3::new(cos, sin, 0.0) * if i % 2 == 0 { 1.0 } else { 0.4 });
     }
     let triangles: Vec<[u32; 3]> = (0..10).map(|i| [0, i + 1, (i + 1) % 10 + 1]).collect();
-    assert_eq!(counts(&outlines(&positions, &triangles, 0.0)), [10]);
+    assert_eq!(counts(&outlines(&positions, &triangles, 0.0, None)), [10]);
 }
 
 #[test]
@@ -73,30 +73,30 @@ fn vertices_that_are_not_shared_are_welded() {
     let (positions, triangles) = grid(3, 2, |_, _| true);
     let loose: Vec<DVec3> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
     let apart: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    assert_eq!(counts(&outlines(&loose, &apart, 0.0)), [4]);
+    assert_eq!(counts(&outlines(&loose, &apart, 0.0, None)), [4]);
     // The twin: a gap that is larger than the tolerance keeps them apart
     let gaps: Vec<DVec3> =
         loose.iter().enumerate().map(|(i, p)| *p + DVec3::X * ((i / 3) as f64 * 1e-3)).collect();
-    assert_eq!(counts(&outlines(&gaps, &apart, 0.0)), [3; 12]);
+    assert_eq!(counts(&outlines(&gaps, &apart, 0.0, None)), [3; 12]);
 }
 
 #[test]
 fn islands_are_outlines_of_their_own() {
     let (positions, triangles) = grid(5, 1, |x, _| x != 2);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4, 4], false, 0));
 }
 
 #[test]
 fn corners_that_touch_do_not_connect() {
     let (positions, triangles) = grid(2, 2, |x, y| x == y);
-    assert_eq!(counts(&outlines(&positions, &triangles, 0.0)), [4, 4]);
+    assert_eq!(counts(&outlines(&positions, &triangles, 0.0, None)), [4, 4]);
 }
 
 #[test]
 fn a_ring_becomes_two_simple_outlines() {
     let (positions, triangles) = grid(5, 5, |x, y| !(1..4).contains(&x) || !(1..4).contains(&y));
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((merged.polygons.len(), merged.split, merged.bent), (2, 1, false));
     assert_eq!(total_area(&merged), DVec3::Z * 16.0);
     // Each outline is simple: no vertex twice
@@ -110,7 +110,7 @@ fn a_ring_becomes_two_simple_outlines() {
 #[test]
 fn many_holes_are_covered_once() {
     let (positions, triangles) = grid(9, 9, |x, y| x % 2 == 0 || y % 2 == 0);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!(total_area(&merged), DVec3::Z * (81.0 - 16.0));
     assert!(merged.split > 0);
 }
@@ -138,7 +138,7 @@ fn cube(n: u32, shape: impl Fn(DVec3) -> DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
 #[test]
 fn a_box_is_six_quads() {
     let (positions, triangles) = cube(3, |p| p);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4; 6], true, 0));
     // It is closed, and each face shows outwards
     assert!(total_area(&merged).length() < 1e-12);
@@ -151,7 +151,7 @@ fn a_box_is_six_quads() {
 #[test]
 fn a_sphere_is_a_light_a_triangle() {
     let (positions, triangles) = cube(4, DVec3::normalize_or_zero);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert!(merged.bent);
     // Some cells are flat by symmetry; all others are two triangles each
     assert!(merged.polygons.len() > 150 && merged.polygons.len() <= 192, "{}", merged.polygons.len());
@@ -174,7 +174,7 @@ fn a_fine_cylinder_does_not_drift_flat() {
             [[a, b, b + 1], [a, b + 1, a + 1]]
         })
         .collect();
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     // Within 1e-5 of a plane: a few strips each
     assert!(merged.bent && merged.polygons.len() > 300, "{}", merged.polygons.len());
 }
@@ -184,7 +184,7 @@ fn faces_back_to_back_are_two_quads() {
     let (positions, mut triangles) = grid(2, 2, |_, _| true);
     let back: Vec<_> = triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
     triangles.extend(back);
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!((counts(&merged), merged.bent, merged.split), (vec![4, 4], false, 0));
     assert_eq!(total_area(&merged), DVec3::ZERO);
 }
@@ -195,7 +195,7 @@ fn copies_and_slivers_are_left_out() {
     triangles.extend([triangles[0], [triangles[1][1], triangles[1][2], triangles[1][0]]]);
     positions.push(DVec3::new(0.5, 1e-9, 0.0));
     triangles.push([0, 4, 1]);
-    assert_eq!(counts(&outlines(&positions, &triangles, 0.0)), [4]);
+    assert_eq!(counts(&outlines(&positions, &triangles, 0.0, None)), [4]);
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn curved_outlines_keep_their_shape() {
     }));
     let triangles: Vec<[u32; 3]> =
         (0..count as u32).map(|i| [0, i + 1, (i + 1) % count as u32 + 1]).collect();
-    let merged = outlines(&positions, &triangles, 0.0);
+    let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!(merged.polygons.len(), 1);
     // An outline within 2.8e-5 of the circle loses at most that times its circumference
     assert!((total_area(&merged).z - std::f64::consts::PI).abs() < 2.8e-5 * std::f64::consts::TAU);
@@ -224,15 +224,104 @@ fn rounding_does_not_keep_neighbors_apart() {
     let rounded: Vec<DVec3> =
         positions.iter().map(|p| (turned * *p + DVec3::splat(1e5)).as_vec3().as_dvec3()).collect();
     let error = 1e5 * f64::from(f32::EPSILON);
-    assert_eq!(counts(&outlines(&rounded, &triangles, error)), [4]);
+    assert_eq!(counts(&outlines(&rounded, &triangles, error, None)), [4]);
     // The twin: without the allowance it is not flat
-    assert!(outlines(&rounded, &triangles, 0.0).bent);
+    assert!(outlines(&rounded, &triangles, 0.0, None).bent);
 }
 
 #[test]
 fn nothing_is_nothing() {
-    let merged = outlines(&[], &[], 0.0);
+    let merged = outlines(&[], &[], 0.0, None);
     assert!(merged.polygons.is_empty() && !merged.bent);
-    let merged = outlines(&[DVec3::ONE], &[[0, 0, 0]], 0.0);
+    let merged = outlines(&[DVec3::ONE], &[[0, 0, 0]], 0.0, None);
     assert!(merged.polygons.is_empty());
+}
+
+/// Outlines of triangles with texture coordinates, to a thousandth.
+fn mapped(positions: &[DVec3], triangles: &[[u32; 3]], uv: impl Fn(DVec3) -> DVec2) -> Outlines {
+    let uvs: Vec<Vec2> = positions.iter().map(|p| uv(*p).as_vec2()).collect();
+    let coordinates = Coordinates { uvs: &uvs, tolerance: DVec2::splat(1e-3) };
+    outlines(positions, triangles, 0.0, Some(coordinates))
+}
+
+#[test]
+fn one_mapping_is_one_outline_with_coordinates() {
+    let (positions, triangles) = grid(8, 5, |_, _| true);
+    let uv = |p: DVec3| DVec2::new(0.1 + 0.3 * p.x - 0.2 * p.y, 2.0 + 0.05 * p.x + 0.4 * p.y);
+    let merged = mapped(&positions, &triangles, uv);
+    assert_eq!((counts(&merged), merged.seams), (vec![4], false));
+    for (vertex, at) in merged.polygons[0].iter().zip(&merged.uvs[0]) {
+        // 2e-6: float32 coordinates around 2, of a seed an eighth as wide as the whole
+        assert!((uv(*vertex) - *at).length() < 2e-6 * 8.0, "{vertex}: {at}");
+    }
+    // The twin: without coordinates there are none
+    assert!(outlines(&positions, &triangles, 0.0, None).uvs.is_empty());
+}
+
+#[test]
+fn a_seam_begins_another_outline() {
+    // The texture starts anew in the middle, where the vertices are there twice
+    let (mut positions, mut triangles) = grid(2, 1, |x, _| x == 0);
+    let (more, other) = grid(2, 1, |x, _| x == 1);
+    triangles.extend(other.iter().map(|t| t.map(|i| i + positions.len() as u32)));
+    let left = positions.len();
+    positions.extend(more);
+    let uvs: Vec<Vec2> = positions
+        .iter()
+        .enumerate()
+        .map(|(i, p)| Vec2::new(p.x as f32 - if i < left { 0.0 } else { 1.0 }, p.y as f32))
+        .collect();
+    let at = |tolerance| {
+        let coordinates = Coordinates { uvs: &uvs, tolerance: DVec2::splat(tolerance) };
+        outlines(&positions, &triangles, 0.0, Some(coordinates))
+    };
+    let merged = at(1e-3);
+    assert_eq!((counts(&merged), merged.seams, merged.bent, merged.split), (vec![4, 4], true, false, 0));
+    for uvs in &merged.uvs {
+        assert_eq!(uvs.iter().copied().fold(DVec2::INFINITY, DVec2::min), DVec2::ZERO);
+        assert_eq!(uvs.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max), DVec2::ONE);
+    }
+    // The twin: a tolerance of more than the step does not see it
+    assert_eq!((counts(&at(1.5)), at(1.5).seams), (vec![4], false));
+}
+
+#[test]
+fn a_mapping_that_bends_follows_the_triangles() {
+    // A trapezium with the corners of a square image: each of its triangles is mapped in its own way
+    let positions = [[-2.0, 0.0], [2.0, 0.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+    let corners = [DVec2::new(0.0, 1.0), DVec2::ONE, DVec2::X, DVec2::ZERO];
+    let uv = |p: DVec3| corners[positions.iter().position(|q| *q == p).unwrap()];
+    let merged = mapped(&positions, &[[0, 1, 2], [0, 2, 3]], uv);
+    assert_eq!((counts(&merged), merged.seams), (vec![3, 3], true));
+}
+
+#[test]
+fn a_fan_is_one_outline_however_it_is_turned() {
+    let count = 500;
+    let turn = glam::DQuat::from_rotation_x(0.7) * glam::DQuat::from_rotation_y(0.4);
+    let mut flat = vec![DVec2::ZERO];
+    flat.extend(
+        (0..count).map(|i| DVec2::from_angle(f64::from(i) * std::f64::consts::TAU / f64::from(count))),
+    );
+    let positions: Vec<DVec3> = flat.iter().map(|p| turn * p.extend(0.0)).collect();
+    let triangles: Vec<[u32; 3]> =
+        (0..count as u32).map(|i| [0, i + 1, (i + 1) % count as u32 + 1]).collect();
+    let merged = mapped(&positions, &triangles, |p| (turn.inverse() * p).truncate() * 0.5 + 0.5);
+    assert_eq!((merged.polygons.len(), merged.seams), (1, false));
+    // The twin: a mapping along the edge and out from the middle bends everywhere; a few neighbours are within the tolerance
+    let cone = |p: DVec3| {
+        let p = (turn.inverse() * p).truncate();
+        DVec2::new(p.to_angle(), p.length())
+    };
+    assert!(mapped(&positions, &triangles, cone).polygons.len() > 100);
+}
+
+#[test]
+fn coordinates_may_be_anything() {
+    let (positions, triangles) = grid(3, 3, |_, _| true);
+    for scale in [0.0, 1e30, f64::MAX, f64::INFINITY, f64::NAN] {
+        let merged = mapped(&positions, &triangles, |p| p.truncate() * scale);
+        assert_eq!(total_area(&merged), DVec3::Z * 9.0, "{scale}");
+        assert_eq!(merged.uvs.len(), merged.polygons.len());
+    }
 }

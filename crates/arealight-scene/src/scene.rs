@@ -1,6 +1,6 @@
 //! What a scene holds.
 
-use crate::{Camera, SceneError};
+use crate::{Camera, SceneError, SceneLightTexture};
 use arealight::{Material, PolygonLight};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
@@ -26,6 +26,8 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// Every light; each passes [`PolygonLight::validate`].
     pub lights: Vec<PolygonLight>,
+    /// What the textured lights show, at most [`crate::MAX_LIGHT_TEXTURES`]: their layers, in order.
+    pub light_textures: Vec<SceneLightTexture>,
     /// The file's cameras, in the order of its nodes.
     pub cameras: Vec<Camera>,
     /// Holds every triangle, or every light if there is no triangle.

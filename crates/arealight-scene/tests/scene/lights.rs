@@ -108,22 +108,6 @@ fn mirrors_keep_the_front_in_front() {
 }
 
 #[test]
-fn a_texture_lights_by_its_linear_mean() {
-    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
-    // Half white, half black: sRGB 188 would be half, as encoded values 128 would
-    let mut png = std::io::Cursor::new(Vec::new());
-    let image = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([if x == 0 { 255 } else { 0 }; 3]));
-    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let texture = writer.texture("checker", png.get_ref());
-    writer.root["materials"][0]["emissiveTexture"] = json!({ "index": texture });
-    let scene = load(writer);
-    assert!((scene.lights[0].radiance - Vec3::new(1.5, 1.0, 0.5)).length() < 1e-6);
-    assert_eq!(scene.materials[0].emission, Vec3::new(3.0, 2.0, 1.0), "the camera sees the texture itself");
-    let text = "emissiveTexture: the light has the texture's mean colour everywhere";
-    assert_eq!(warnings(&scene), [format!("light 'lamp' (node 0): {text}")]);
-}
-
-#[test]
 fn black_emission_and_masks() {
     let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
     writer.root["materials"][0]["emissiveFactor"] = json!([0, 0, 0]);

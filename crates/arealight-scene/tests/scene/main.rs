@@ -7,6 +7,7 @@ mod lights;
 mod materials;
 mod own_scenes;
 mod rays;
+mod textured_lights;
 
 // The program that writes the project's scenes, whose writer and shapes serve the tests too
 #[path = "../../examples/make_scenes/demo.rs"]

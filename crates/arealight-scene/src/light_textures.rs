@@ -1,0 +1,218 @@
+//! What textured lights show: rectangles of images, each a layer of the light textures.
+//!
+//! A light's texture coordinates lie within a layer, so the box around them, in the image's coordinates, is loaded into
+//! one. Lights that show the same box share it.
+//!
+//! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out. Only an image
+//! that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each would be many times its size.
+
+use crate::load::Loader;
+use crate::shown::{Images, Key, Rectangle, Shown};
+use crate::{Scene, Wrap};
+use arealight::pyramid::PyramidSize;
+use arealight::{LightTexture, PolygonLight};
+use glam::DVec2;
+use std::collections::{HashMap, HashSet};
+
+/// The most light textures a scene has; further lights have the mean colour of what they show. As many layers as every
+/// Vulkan device can have in an image.
+pub const MAX_LIGHT_TEXTURES: usize = 256;
+
+/// The most texels that [`Scene::light_texture_size`] allows all layers together: half a gibibyte at eight bytes each.
+pub const MAX_LIGHT_TEXELS: u64 = 1 << 26;
+
+/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the image's mean colour. At
+/// 1024 texels a layer, sixteen are left for each repeat.
+pub const MAX_REPEATS: f64 = 64.0;
+
+/// An image that is shown in more pieces than these, whose areas add up to at least half of it, is loaded whole.
+const FEW_PIECES: usize = 4;
+
+/// A layer of the light textures: a rectangle of a texture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneLightTexture {
+    /// Index into [`Scene::textures`].
+    pub texture: u32,
+    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1], where the texture's
+    /// wrap modes say what there is.
+    pub low: DVec2,
+    /// Width and height, in the texture's coordinates; both are positive.
+    pub size: DVec2,
+}
+
+/// What there is to load into a layer of the light textures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightTextureSource<'a> {
+    /// The image: its width in texels.
+    pub width: u32,
+    /// Its height.
+    pub height: u32,
+    /// Its texels: red in the low byte, then green, blue, alpha; rows from the top.
+    pub texels: &'a [u32],
+    /// Red, green and blue are sRGB-encoded.
+    pub srgb: bool,
+    /// What there is beyond the image, in u and in v.
+    pub wrap: [Wrap; 2],
+    /// The rectangle's upper left corner, in texture coordinates.
+    pub low: DVec2,
+    /// Its width and height.
+    pub size: DVec2,
+}
+
+impl Scene {
+    /// What layer `layer` of the light textures is loaded from; none if there is no such layer.
+    pub fn light_texture_source(&self, layer: usize) -> Option<LightTextureSource<'_>> {
+        let shown = self.light_textures.get(layer)?;
+        let texture = self.textures.get(shown.texture as usize)?;
+        let image = self.images.get(texture.image as usize)?;
+        Some(LightTextureSource {
+            width: image.width,
+            height: image.height,
+            texels: &image.texels,
+            srgb: texture.srgb,
+            wrap: [texture.wrap_u, texture.wrap_v],
+            low: shown.low,
+            size: shown.size,
+        })
+    }
+
+    /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most `largest` a side
+    /// (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] together. None if there are no light textures.
+    pub fn light_texture_size(&self, largest: u32) -> Option<PyramidSize> {
+        let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);
+        let sources = (0..self.light_textures.len()).filter_map(|layer| self.light_texture_source(layer));
+        let sizes = sources.map(|source| {
+            let texels = source.size * DVec2::new(f64::from(source.width), f64::from(source.height));
+            let [width, height] = texels.to_array().map(|side| side.ceil() as u32);
+            PyramidSize::for_image(width.min(largest), height.min(largest)).content()
+        });
+        let [width, height] = sizes.reduce(|[a, b], [c, d]| [a.max(c), b.max(d)])?;
+        // A limit between two powers of two is kept, too
+        let limit = if largest.is_power_of_two() { largest } else { largest.next_power_of_two() / 2 };
+        let mut size = [width.min(limit), height.min(limit)];
+        let layers = self.light_textures.len() as u64;
+        loop {
+            let fits = PyramidSize::new(size[0], size[1]).ok()?;
+            if fits.texels() * layers <= MAX_LIGHT_TEXELS || size == [PyramidSize::SMALLEST; 2] {
+                return Some(fits);
+            }
+            let longest = usize::from(size[1] > size[0]);
+            size[longest] /= 2;
+        }
+    }
+}
+
+/// A light that shows a texture, while the scene is read.
+pub(crate) struct TexturedLight {
+    /// Index into [`Scene::lights`].
+    pub light: usize,
+    /// Index into [`Scene::textures`].
+    pub texture: u32,
+    /// Of its vertices, in the texture's coordinates.
+    pub uvs: Vec<DVec2>,
+}
+
+/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be seen, nor, in
+/// small images, a thousandth of the image.
+pub(crate) fn tolerance(scene: &Scene, texture: u32) -> DVec2 {
+    let image = &scene.images[scene.textures[texture as usize].image as usize];
+    (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))
+}
+
+/// Gives the textured lights their layers; those that show one colour get that, and those that show black go.
+pub(crate) fn assign(loader: &mut Loader) {
+    let textured = std::mem::take(&mut loader.textured);
+    let scene = &mut loader.scene;
+    // Find out what each shows
+    let mut images = Images::default();
+    let shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
+    let mut layers = Layers { whole: shown_in_many_pieces(&shown), ..Layers::default() };
+    let mut is_black = vec![false; scene.lights.len()];
+    let mut losses: Vec<(&str, Vec<usize>)> = Vec::new();
+    for (TexturedLight { light, .. }, shown) in textured.iter().zip(shown) {
+        // Show it, or else its colour
+        let (color, loss) = match shown {
+            Shown::Color(color) => (color, None),
+            Shown::Lost(color, loss) => (color, Some(loss)),
+            Shown::Rectangle(rectangle) => match layers.show(&rectangle, &scene.lights[*light]) {
+                Ok(texture) => {
+                    scene.lights[*light].texture = Some(texture);
+                    continue;
+                }
+                Err(loss) => (rectangle.mean(scene), Some(loss)),
+            },
+        };
+        let radiance = &mut scene.lights[*light].radiance;
+        *radiance *= color.as_vec3();
+        is_black[*light] = *radiance == glam::Vec3::ZERO;
+        if let Some(loss) = loss {
+            match losses.iter_mut().find(|(known, _)| *known == loss) {
+                Some((_, lights)) => lights.push(*light),
+                None => losses.push((loss, vec![*light])),
+            }
+        }
+    }
+    scene.light_textures = layers.made;
+    for (loss, lights) in losses {
+        let name = &loader.scene.lights[lights[0]].name;
+        let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
+        let text = format!("emissiveTexture: {loss}: its mean colour is everywhere");
+        loader.warn(format!("light '{name}'{more}"), text);
+    }
+    // A black light lights nothing
+    let mut is_black = is_black.into_iter();
+    loader.scene.lights.retain(|_| !is_black.next().unwrap_or_default());
+}
+
+/// Textures of which there are more pieces than a few that make up at least half of it.
+fn shown_in_many_pieces(shown: &[Shown]) -> HashSet<u32> {
+    let mut pieces: HashMap<u32, HashMap<Key, f64>> = HashMap::new();
+    for rectangle in shown.iter().filter_map(Shown::rectangle).filter(|r| r.is_inside()) {
+        let size = rectangle.high - rectangle.low;
+        pieces.entry(rectangle.texture).or_default().insert(rectangle.key(), size.x * size.y);
+    }
+    let many = |areas: &HashMap<Key, f64>| areas.len() > FEW_PIECES && areas.values().sum::<f64>() >= 0.5;
+    pieces.into_iter().filter(|(_, areas)| many(areas)).map(|(texture, _)| texture).collect()
+}
+
+/// The layers so far.
+#[derive(Default)]
+struct Layers {
+    /// Textures that are loaded whole.
+    whole: HashSet<u32>,
+    made: Vec<SceneLightTexture>,
+    known: HashMap<Key, u32>,
+}
+
+impl Layers {
+    /// The texture of a light that shows `rectangle`, or why there is none.
+    fn show(&mut self, rectangle: &Rectangle, light: &PolygonLight) -> Result<LightTexture, &'static str> {
+        // Find the layer, or make one
+        let mut key = rectangle.key();
+        let (mut low, mut size) = (rectangle.low, rectangle.high - rectangle.low);
+        if self.whole.contains(&rectangle.texture) && rectangle.is_inside() {
+            (low, size) = (DVec2::ZERO, DVec2::ONE);
+            key = Key::of(rectangle.texture, low, size);
+        }
+        let layer = self.known.get(&key).copied();
+        let new = SceneLightTexture { texture: rectangle.texture, low, size };
+        let SceneLightTexture { low, size, .. } = layer.map_or(new, |layer| self.made[layer as usize]);
+        if layer.is_none() && self.made.len() == MAX_LIGHT_TEXTURES {
+            return Err("there are too many light textures");
+        }
+
+        // Map the light onto it
+        let uvs = rectangle.uvs.iter().map(|uv| ((*uv - low) / size).clamp(DVec2::ZERO, DVec2::ONE));
+        let number = layer.unwrap_or(self.made.len() as u32);
+        let texture = LightTexture { layer: number, uvs: uvs.collect() };
+        let with_texture = PolygonLight { texture: Some(texture.clone()), ..light.clone() };
+        if with_texture.validate().is_err() {
+            return Err("its texture cannot be mapped");
+        }
+        if layer.is_none() {
+            self.made.push(new);
+            self.known.insert(key, number);
+        }
+        Ok(texture)
+    }
+}

@@ -1,0 +1,173 @@
+//! What a textured light shows: a rectangle of an image, or one colour.
+
+use crate::images::{linear_mean, sample};
+use crate::light_textures::{MAX_REPEATS, TexturedLight};
+use crate::lit_texels::LitTexels;
+use crate::{Image, Scene, Texture, Wrap};
+use glam::{DVec2, DVec3};
+use std::collections::HashMap;
+
+/// Coordinates beyond have lost the image: float32 numbers there are a hundredth apart.
+const FARTHEST: f64 = 1e5;
+
+/// A light that shows less of an image than this many texels across shows a line of it, or a point.
+const THIN: f64 = 0.25;
+
+/// Samples for a mean along a line, and along each side of a rectangle.
+const LINE_SAMPLES: u32 = 64;
+const SIDE_SAMPLES: u32 = 32;
+
+/// How far a box may be outside of the image and still count as inside, from rounding in files.
+const OUTSIDE: f64 = 1e-5;
+
+/// What a light shows.
+pub(crate) enum Shown {
+    /// One colour.
+    Color(DVec3),
+    /// The mean of what is not shown, and why.
+    Lost(DVec3, &'static str),
+    /// An image.
+    Rectangle(Rectangle),
+}
+
+impl Shown {
+    pub fn rectangle(&self) -> Option<&Rectangle> {
+        if let Self::Rectangle(rectangle) = self { Some(rectangle) } else { None }
+    }
+}
+
+/// Part of a texture, and where a light's vertices are on it.
+pub(crate) struct Rectangle {
+    pub texture: u32,
+    pub low: DVec2,
+    pub high: DVec2,
+    /// Within the rectangle.
+    pub uvs: Vec<DVec2>,
+}
+
+impl Rectangle {
+    /// Whether no wrapping is needed.
+    pub fn is_inside(&self) -> bool {
+        self.low.min_element() >= 0.0 && self.high.max_element() <= 1.0
+    }
+
+    pub fn key(&self) -> Key {
+        Key::of(self.texture, self.low, self.high - self.low)
+    }
+
+    /// The mean linear colour.
+    pub fn mean(&self, scene: &Scene) -> DVec3 {
+        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE_SAMPLES);
+        let place = |i: u32| DVec2::new(place(i % SIDE_SAMPLES), place(i / SIDE_SAMPLES));
+        let (image, texture) = read(scene, self.texture);
+        let samples = (0..SIDE_SAMPLES * SIDE_SAMPLES)
+            .map(|i| sample(image, texture, self.low + (self.high - self.low) * place(i)));
+        samples.sum::<DVec3>() / f64::from(SIDE_SAMPLES * SIDE_SAMPLES)
+    }
+}
+
+/// What rectangles have in common that are the same but for rounding, to about 1e-5 of their size.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Key {
+    texture: u32,
+    /// In each axis: the logarithm of the step, then the corner and the size in steps.
+    steps: [[i64; 3]; 2],
+}
+
+impl Key {
+    /// Of sizes that are positive.
+    pub fn of(texture: u32, low: DVec2, size: DVec2) -> Self {
+        let steps = |low: f64, size: f64| {
+            let logarithm = size.log2().round() - 17.0;
+            let step = logarithm.exp2();
+            [logarithm, (low / step).round(), (size / step).round()].map(|x| x as i64)
+        };
+        Self { texture, steps: [steps(low.x, size.x), steps(low.y, size.y)] }
+    }
+}
+
+/// What is known of the images that lights show.
+#[derive(Default)]
+pub(crate) struct Images {
+    lit: HashMap<u32, LitTexels>,
+    means: HashMap<u32, DVec3>,
+}
+
+impl Images {
+    /// What a light shows.
+    pub fn shown(&mut self, scene: &Scene, light: &TexturedLight) -> Shown {
+        let (image, texture) = read(scene, light.texture);
+        let mut mean = || *self.means.entry(texture.image).or_insert_with(|| linear_mean(image));
+        if light.uvs.iter().any(|uv| !uv.is_finite() || uv.abs().max_element() > FARTHEST) {
+            return Shown::Lost(mean(), "its texture coordinates are too large");
+        }
+        // A line or a point has the colours along it
+        let size = DVec2::new(f64::from(image.width), f64::from(image.height));
+        let texels: Vec<DVec2> = light.uvs.iter().map(|uv| *uv * size).collect();
+        let (ends, breadth) = extent(&texels);
+        if breadth < THIN || image.texels.len() == 1 {
+            let along = |i: u32| ends[0].lerp(ends[1], (f64::from(i) + 0.5) / f64::from(LINE_SAMPLES)) / size;
+            let samples = (0..LINE_SAMPLES).map(|i| sample(image, texture, along(i)));
+            return Shown::Color(samples.sum::<DVec3>() / f64::from(LINE_SAMPLES));
+        }
+
+        // Anything else is a rectangle
+        let mut uvs = light.uvs.clone();
+        bring_home(&mut uvs, [texture.wrap_u, texture.wrap_v]);
+        let mut low = uvs.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let mut high = uvs.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        if low.min_element() >= -OUTSIDE && high.max_element() <= 1.0 + OUTSIDE {
+            (low, high) = (low.clamp(DVec2::ZERO, DVec2::ONE), high.clamp(DVec2::ZERO, DVec2::ONE));
+        }
+        let repeats =
+            |axis: usize, wrap: Wrap| if wrap == Wrap::Clamp { 0.0 } else { high[axis] - low[axis] };
+        if repeats(0, texture.wrap_u).max(repeats(1, texture.wrap_v)) > MAX_REPEATS {
+            return Shown::Lost(mean(), "repeats its image too often");
+        }
+        if self.lit.entry(texture.image).or_insert_with(|| LitTexels::new(image)).is_black(low, high) {
+            return Shown::Color(DVec3::ZERO);
+        }
+        Shown::Rectangle(Rectangle { texture: light.texture, low, high, uvs })
+    }
+}
+
+fn read(scene: &Scene, texture: u32) -> (&Image, Texture) {
+    let texture = scene.textures[texture as usize];
+    (&scene.images[texture.image as usize], texture)
+}
+
+/// The two points of a polygon that are farthest apart, or almost, and its breadth across the line through them.
+fn extent(points: &[DVec2]) -> ([DVec2; 2], f64) {
+    let farthest = |from: DVec2| {
+        points.iter().copied().max_by(|a, b| a.distance(from).total_cmp(&b.distance(from))).unwrap_or(from)
+    };
+    let start = farthest(points.first().copied().unwrap_or_default());
+    let end = farthest(start);
+    let across = (end - start).normalize_or_zero().perp();
+    let off = points.iter().map(|point| (*point - start).dot(across));
+    let (least, most) = off.fold((0.0_f64, 0.0_f64), |(least, most), off| (least.min(off), most.max(off)));
+    ([start, end], most - least)
+}
+
+/// Moves coordinates by whole periods of what is repeated, and out of a mirror image, to start within the image.
+fn bring_home(uvs: &mut [DVec2], wrap: [Wrap; 2]) {
+    for (axis, wrap) in wrap.into_iter().enumerate() {
+        let along = || uvs.iter().map(|uv| uv[axis]);
+        // Half of the tolerance: what starts at an edge, but for rounding, starts there
+        let (low, high) =
+            (along().fold(f64::MAX, f64::min) + OUTSIDE * 0.5, along().fold(f64::MIN, f64::max));
+        let (offset, sign) = match wrap {
+            Wrap::Clamp => continue,
+            Wrap::Repeat => (-low.floor(), 1.0),
+            Wrap::Mirror => {
+                let offset = -2.0 * (low * 0.5).floor();
+                // A whole mirror image, from 1 to 2, turns around
+                let mirrored = low + offset >= 1.0 && high + offset <= 2.0 + OUTSIDE;
+                if mirrored { (2.0 - offset, -1.0) } else { (offset, 1.0) }
+            }
+        };
+        for uv in uvs.iter_mut() {
+            uv[axis] = uv[axis] * sign + offset;
+        }
+    }
+}
