@@ -41,6 +41,12 @@ impl std::ops::Deref for TestEngine {
     }
 }
 
+impl std::ops::DerefMut for TestEngine {
+    fn deref_mut(&mut self) -> &mut Engine {
+        &mut self.engine
+    }
+}
+
 impl TestEngine {
     /// The engine on a validated device; `None` where there is no device and none is required.
     ///

@@ -1,6 +1,7 @@
 //! What the recorder knows of the host: its device, and the pipeline cache it lends.
 
-use crate::error::Error;
+use crate::error::{Error, VulkanCall};
+use crate::light_textures::{FORMAT, USAGE};
 use ash::vk;
 
 /// The host's handles. All stay the host's: nothing here is destroyed, waited for or submitted to.
@@ -26,6 +27,15 @@ pub struct Context {
     pub(crate) pipeline_cache: vk::PipelineCache,
     pub(crate) max_group_count: [u32; 3],
     pub(crate) limits: DescriptorLimits,
+    /// `None` where the device has no such images at all.
+    pub(crate) light_texture_limits: Option<ImageLimits>,
+}
+
+/// The largest image of a kind.
+#[derive(Clone, Copy)]
+pub(crate) struct ImageLimits {
+    pub(crate) extent: [u32; 2],
+    pub(crate) layers: u32,
 }
 
 /// How many descriptors of a kind a compute stage may use.
@@ -51,7 +61,7 @@ impl Context {
     /// - The pipeline cache is not used elsewhere while a pass is being made (it is externally synchronised).
     ///
     /// # Errors
-    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1.
+    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1; [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(host: &HostDevice<'_>) -> Result<Self, Error> {
         // SAFETY: the caller vouches for the instance and the physical device.
         let properties = unsafe { host.instance.get_physical_device_properties(host.physical_device) };
@@ -67,11 +77,39 @@ impl Context {
                 storage_images: properties.limits.max_per_stage_descriptor_storage_images,
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             },
+            light_texture_limits: light_texture_limits(host)?,
         })
     }
 
     /// The device's function table.
     pub fn device(&self) -> &ash::Device {
         &self.device
+    }
+}
+
+/// The largest light textures of the device.
+fn light_texture_limits(host: &HostDevice<'_>) -> Result<Option<ImageLimits>, Error> {
+    let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::STORAGE_IMAGE;
+    // SAFETY: the host's handles are valid by the contract of Context::new; so for both calls.
+    let (features, image) = unsafe {
+        let format = host.instance.get_physical_device_format_properties(host.physical_device, FORMAT);
+        let image = host.instance.get_physical_device_image_format_properties(
+            host.physical_device,
+            FORMAT,
+            vk::ImageType::TYPE_2D,
+            vk::ImageTiling::OPTIMAL,
+            USAGE,
+            vk::ImageCreateFlags::empty(),
+        );
+        (format.optimal_tiling_features, image)
+    };
+    match image {
+        Err(vk::Result::ERROR_FORMAT_NOT_SUPPORTED) => Ok(None),
+        _ if !features.contains(needed) => Ok(None),
+        image => {
+            let limits = image.call("vkGetPhysicalDeviceImageFormatProperties")?;
+            let extent = [limits.max_extent.width, limits.max_extent.height];
+            Ok(Some(ImageLimits { extent, layers: limits.max_array_layers }))
+        }
     }
 }

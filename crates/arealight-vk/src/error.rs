@@ -33,6 +33,14 @@ pub enum Error {
     /// A light cannot be used.
     #[error(transparent)]
     Light(#[from] arealight::LightError),
+    /// A part of an image cannot become a light's texture.
+    #[error("layer {layer} of the light textures: {error}")]
+    TexturePart {
+        /// The layer that it was meant for.
+        layer: u32,
+        /// What is wrong with it.
+        error: arealight::TexturePartError,
+    },
     /// The pass was specialised for fewer effects than a light calls for.
     #[error(
         "light '{light}' calls for the effects: {missing}, which this pass was made without; make the pass \

@@ -30,6 +30,9 @@
 
 mod context;
 mod error;
+mod light_textures;
+#[cfg(feature = "gpu-allocator")]
+mod memory;
 mod pass;
 mod shade;
 mod table_image;
@@ -37,6 +40,7 @@ mod table_image;
 pub use ash;
 pub use context::{Context, HostDevice};
 pub use error::Error;
+pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use table_image::{TableFormat, TableImage};

@@ -356,8 +356,8 @@ impl Drop for ComputePass {
 
 /// Only the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
-    let limits = context.limits;
     use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
+    let limits = context.limits;
     for (kinds, limit, feature) in [
         (&[SampledImage, FilteredImage][..], limits.sampled_images, "maxPerStageDescriptorSampledImages"),
         (&[StorageImage], limits.storage_images, "maxPerStageDescriptorStorageImages"),

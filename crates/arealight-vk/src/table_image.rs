@@ -124,28 +124,11 @@ impl TableImage {
         &mut self,
         allocator: &mut gpu_allocator::vulkan::Allocator,
     ) -> Result<gpu_allocator::vulkan::Allocation, Error> {
-        use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme};
-        let allocation = allocator
-            .allocate(&AllocationCreateDesc {
-                name: "arealight table",
-                requirements: self.memory_requirements(),
-                location: gpu_allocator::MemoryLocation::GpuOnly,
-                linear: false,
-                allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-            })
-            .map_err(|_| Error::Vulkan {
-                call: "gpu_allocator::Allocator::allocate",
-                result: vk::Result::ERROR_OUT_OF_DEVICE_MEMORY,
-            })?;
-        // SAFETY: the allocation was made for this image's requirements.
-        match unsafe { self.bind_memory(allocation.memory(), allocation.offset()) } {
-            Ok(()) => Ok(allocation),
-            Err(error) => {
-                // Giving back what was just taken can fail only for a foreign allocation
-                let _ = allocator.free(allocation);
-                Err(error)
-            }
-        }
+        let requirements = self.memory_requirements();
+        crate::memory::allocate(allocator, "arealight table", requirements, |memory, offset| {
+            // SAFETY: the memory was allocated for this image's requirements.
+            unsafe { self.bind_memory(memory, offset) }
+        })
     }
 
     /// Records the copy from a staging buffer, with the barriers around it: afterwards the image is in layout

@@ -7,9 +7,11 @@
 mod eval;
 mod g_buffer;
 mod kept;
+mod memory;
 mod passes;
 mod render;
 mod table;
+mod textures;
 
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
@@ -17,6 +19,7 @@ pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes};
 pub use render::SceneRenderer;
+pub use textures::{SourceImage, SourceTexels};
 
 use arealight::LightTable;
 use arealight::kernels::Kernel;
@@ -25,6 +28,7 @@ use arealight_vk::{ComputePass, Context, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
 use table::UploadedTable;
+use textures::UploadedTextures;
 
 /// A failure of the engine.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +53,42 @@ pub enum EngineError {
         /// The device's `maxStorageBufferRange`.
         limit: u64,
     },
+    /// A light shows a texture that is not loaded.
+    #[error("light '{light}': texture layer {layer} is not there: {layers} are loaded")]
+    NoTextureLayer {
+        /// The light.
+        light: String,
+        /// The layer that it refers to.
+        layer: u32,
+        /// How many there are.
+        layers: u32,
+    },
+    /// A level of the lights' textures is not there.
+    #[error(
+        "level {level} of texture layer {layer} is not there: there are {layers} layers of {levels} levels"
+    )]
+    NoTextureLevel {
+        /// The layer that was asked for.
+        layer: u32,
+        /// The level that was asked for.
+        level: u32,
+        /// How many layers there are.
+        layers: u32,
+        /// How many levels each has.
+        levels: u32,
+    },
+    /// An image has not as many texels as its size says.
+    #[error("image of texture layer {layer}: {given} texels given for {width} x {height}")]
+    SourceTexels {
+        /// The layer that it was meant for.
+        layer: u32,
+        /// How many there are.
+        given: usize,
+        /// The image's width.
+        width: u32,
+        /// The image's height.
+        height: u32,
+    },
 }
 
 impl From<arealight::LightError> for EngineError {
@@ -57,10 +97,11 @@ impl From<arealight::LightError> for EngineError {
     }
 }
 
-/// A device with a light table.
+/// A device with a light table, and the lights' textures.
 pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
+    textures: Option<UploadedTextures>,
     passes: Passes,
 }
 
@@ -72,7 +113,7 @@ impl Engine {
     pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
         let passes = Passes::new(host)?;
         let table = UploadedTable::new(passes.host(), passes.context(), table, format)?;
-        Ok(Self { table, passes })
+        Ok(Self { table, textures: None, passes })
     }
 
     /// The device.
@@ -88,11 +129,6 @@ impl Engine {
     /// The light table, as a pass takes it.
     pub fn table(&self) -> Resource {
         self.table.resource()
-    }
-
-    /// The lights' textures, as a pass takes them.
-    pub fn light_textures(&self) -> Resource {
-        self.table.filtered()
     }
 
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.

@@ -2,11 +2,11 @@
 
 use crate::EngineError;
 use crate::kept::Kept;
+use crate::memory::Memory;
 use arealight::LightTable;
 use arealight_host::{Host, Location};
 use arealight_vk::{Context, Resource, TableFormat, TableImage};
 use ash::vk;
-use gpu_allocator::vulkan::Allocation;
 
 /// A table image and the memory that it lies in.
 pub struct UploadedTable {
@@ -17,21 +17,6 @@ pub struct UploadedTable {
 struct Allocated {
     image: TableImage,
     _memory: Memory,
-}
-
-/// Memory that goes back to the host's allocator.
-struct Memory {
-    allocation: Option<Allocation>,
-    host: Host,
-}
-
-impl Drop for Memory {
-    fn drop(&mut self) {
-        if let Some(allocation) = self.allocation.take() {
-            // Freeing fails only for a foreign allocation
-            let _ = self.host.with_allocator(|allocator| allocator.free(allocation));
-        }
-    }
 }
 
 impl UploadedTable {
@@ -45,7 +30,7 @@ impl UploadedTable {
         let mut image = unsafe { TableImage::new(context, table, format) }?;
         // SAFETY: Called once, with an allocator of the same device.
         let allocation = host.with_allocator(|allocator| unsafe { image.allocate(allocator) })?;
-        let memory = Memory { allocation: Some(allocation), host: host.clone() };
+        let memory = Memory::new(host, allocation);
         let uploaded = Self { allocated: Kept::new(host, Allocated { image, _memory: memory }) };
 
         let bytes = format.bytes(table);

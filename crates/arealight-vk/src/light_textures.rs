@@ -1,0 +1,449 @@
+//! The lights' textures on the GPU: an array image with a layer for each, and the passes that filter them.
+
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use crate::pass::{ComputePass, Resource};
+use arealight::gpu::TextureLoadConstants;
+use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD};
+use arealight::{PyramidSize, TexturePart, plan};
+use ash::vk;
+use std::ops::Range;
+
+/// The format of the light textures, which every Vulkan device filters and stores to.
+pub(crate) const FORMAT: vk::Format = vk::Format::R16G16B16A16_SFLOAT;
+
+/// How the image is used: shading samples it, filtering stores to it, a clear and tests copy.
+pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_SRC.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
+);
+
+/// The one layout of the image, from [`LightTextures::record_clear`] on.
+///
+/// A layout is that of all layers a descriptor sees, not of those that a shader reads: were a layer put into another
+/// while it is filtered, no frame could shade with the others meanwhile.
+const LAYOUT: vk::ImageLayout = vk::ImageLayout::GENERAL;
+
+/// What becomes of a layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TextureUpdate {
+    /// The layer that is replaced.
+    pub layer: u32,
+    /// A set that [`LightTextures::write_source_set`] pointed at the image.
+    pub source_set: vk::DescriptorSet,
+    /// Width and height of the image in texels, each from 1 to 4096.
+    pub source_size: [u32; 2],
+    /// The part of it that the layer shows.
+    pub part: TexturePart,
+    /// The image holds sRGB in a format that does not decode by itself, `R8G8B8A8_UNORM` for instance.
+    pub decode_srgb: bool,
+}
+
+/// The array image of the lights' textures with its pyramid, and the passes that fill it. The host gives it memory and
+/// descriptor sets:
+///
+/// 1. [`LightTextures::new`], 2. allocate for [`LightTextures::memory_requirements`], 3. [`LightTextures::bind_memory`],
+/// 4. allocate a set for each level but the first ([`LightTextures::level_set_layout`]), once, and one for each image
+///    ([`LightTextures::source_set_layout`]),
+/// 5. [`LightTextures::write_level_sets`], 6. [`LightTextures::record_clear`].
+///
+/// From then on [`LightTextures::resource`] can be shaded with, and [`LightTextures::record_update`] replaces layers.
+///
+/// # Frames in flight
+/// An update writes the layers that it names and nothing else, and no layout ever changes. On one queue all is ordered:
+/// the update waits for what was submitted before, and what comes later waits for it. Between queues (of one family) the
+/// host orders by semaphore: an update of a layer after every frame that shades with the layer, and before the next that
+/// does. Frames that shade with other layers may run meanwhile, so that a video which alternates between two layers
+/// never waits.
+///
+/// Dropping it destroys the image, its views and the passes; the memory stays the host's.
+#[derive(Debug)]
+pub struct LightTextures {
+    context: Context,
+    size: PyramidSize,
+    layers: u32,
+    load: ComputePass,
+    blur: ComputePass,
+    image: vk::Image,
+    view: vk::ImageView,
+    level_views: Vec<vk::ImageView>,
+}
+
+impl LightTextures {
+    /// Makes the image of `layers` layers, without memory, and the passes.
+    ///
+    /// # Safety
+    /// The textures are dropped only when no recorded use of them is pending, and before the device is destroyed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where there is no layer, or the layers are larger or more than the device has;
+    /// [`Error::MissingFeature`] where it cannot filter or store to their format; [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(context: &Context, size: PyramidSize, layers: u32) -> Result<Self, Error> {
+        check_size(context, size, layers)?;
+        // SAFETY: the same contract.
+        let load = unsafe { ComputePass::new(context, &TEXTURE_LOAD, &[]) }?;
+        // SAFETY: the same contract.
+        let blur = unsafe { ComputePass::new(context, &TEXTURE_BLUR, &[]) }?;
+        let [width, height] = size.extent(0);
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(FORMAT)
+            .extent(vk::Extent3D { width, height, depth: 1 })
+            .mip_levels(size.levels())
+            .array_layers(layers)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(USAGE)
+            .initial_layout(vk::ImageLayout::UNDEFINED);
+        // SAFETY: the device is valid by the contract of Context::new.
+        let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
+        let view = vk::ImageView::null();
+        Ok(Self { context: context.clone(), size, layers, load, blur, image, view, level_views: vec![] })
+    }
+
+    /// What memory the image needs.
+    pub fn memory_requirements(&self) -> vk::MemoryRequirements {
+        // SAFETY: the image is ours and live.
+        unsafe { self.context.device.get_image_memory_requirements(self.image) }
+    }
+
+    /// Binds memory of the host, and makes the views.
+    ///
+    /// # Safety
+    /// - Called once. `memory` and `offset` satisfy [`LightTextures::memory_requirements`].
+    /// - The memory is freed only after the textures are dropped.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] where a call fails.
+    pub unsafe fn bind_memory(
+        &mut self,
+        memory: vk::DeviceMemory,
+        offset: vk::DeviceSize,
+    ) -> Result<(), Error> {
+        let device = &self.context.device;
+        // SAFETY: the caller vouches for memory and offset.
+        unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
+        let levels = self.size.levels();
+        self.view = self.make_view(0..levels)?;
+        for level in 0..levels {
+            let view = self.make_view(level..level + 1)?;
+            self.level_views.push(view);
+        }
+        Ok(())
+    }
+
+    /// Allocates memory through gpu-allocator and binds it: steps 2 and 3 in one.
+    ///
+    /// The allocation is the host's: give it back to the allocator after the textures are dropped.
+    ///
+    /// # Safety
+    /// Called once, with an allocator of the same device.
+    ///
+    /// # Errors
+    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call fails
+    /// (then the memory was given back, and the textures are only good for dropping).
+    #[cfg(feature = "gpu-allocator")]
+    pub unsafe fn allocate(
+        &mut self,
+        allocator: &mut gpu_allocator::vulkan::Allocator,
+    ) -> Result<gpu_allocator::vulkan::Allocation, Error> {
+        let requirements = self.memory_requirements();
+        crate::memory::allocate(allocator, "arealight light textures", requirements, |memory, offset| {
+            // SAFETY: the memory was allocated for this image's requirements.
+            unsafe { self.bind_memory(memory, offset) }
+        })
+    }
+
+    /// A view of some levels of every layer, for sampling and storing alike.
+    fn make_view(&self, levels: Range<u32>) -> Result<vk::ImageView, Error> {
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.image)
+            .view_type(vk::ImageViewType::TYPE_2D_ARRAY)
+            .format(FORMAT)
+            .subresource_range(self.range(levels));
+        // SAFETY: the image is ours and has memory.
+        unsafe { self.context.device.create_image_view(&info, None) }.call("vkCreateImageView")
+    }
+
+    fn range(&self, levels: Range<u32>) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            base_mip_level: levels.start,
+            level_count: levels.end - levels.start,
+            base_array_layer: 0,
+            layer_count: self.layers,
+        }
+    }
+
+    /// The size of every layer.
+    pub fn size(&self) -> PyramidSize {
+        self.size
+    }
+
+    /// How many layers there are.
+    pub fn layers(&self) -> u32 {
+        self.layers
+    }
+
+    /// The image: [`PyramidSize::levels`] levels of [`PyramidSize::extent`] texels in `R16G16B16A16_SFLOAT`, in layout
+    /// `GENERAL` once it was cleared. It can be copied from, but not written to.
+    pub fn image(&self) -> vk::Image {
+        self.image
+    }
+
+    /// The textures as a pass takes them. A null view before [`LightTextures::bind_memory`], which `write_set` refuses.
+    pub fn resource(&self) -> Resource {
+        Resource::FilteredImage { view: self.view, layout: LAYOUT }
+    }
+
+    /// The layout of a descriptor set for an image that is loaded.
+    pub fn source_set_layout(&self) -> vk::DescriptorSetLayout {
+        self.load.set_layout()
+    }
+
+    /// The layout of a descriptor set for a level.
+    pub fn level_set_layout(&self) -> vk::DescriptorSetLayout {
+        self.blur.set_layout()
+    }
+
+    /// How many sets there are for levels: one for each but the first.
+    pub fn level_sets(&self) -> u32 {
+        self.size.levels() - 1
+    }
+
+    /// What the sets of all levels, [`LightTextures::level_sets`], take from the host's descriptor pool.
+    pub fn level_pool_sizes(&self) -> Vec<vk::DescriptorPoolSize> {
+        self.blur.pool_sizes(self.level_sets())
+    }
+
+    /// What the sets of `sources` images, at least one, take from the host's descriptor pool.
+    pub fn source_pool_sizes(&self, sources: u32) -> Vec<vk::DescriptorPoolSize> {
+        self.load.pool_sizes(sources)
+    }
+
+    /// Points a set at an image to load: a [`Resource::SampledImage`] with a 2D view, whose first level is read.
+    ///
+    /// # Safety
+    /// - `set` was allocated with [`LightTextures::source_set_layout`] and no pending command buffer uses it.
+    /// - The image's format is sampled as numbers, not as integers. It is valid, and stays so while recorded work that
+    ///   uses the set is pending.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where the resource is null or no sampled image, or the textures have no memory.
+    pub unsafe fn write_source_set(&self, set: vk::DescriptorSet, source: Resource) -> Result<(), Error> {
+        // SAFETY: the same contract; the level is ours.
+        unsafe { self.load.write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
+    }
+
+    /// Points the sets of the levels from 1 on, in turn, at each level and the one before. Once is enough.
+    ///
+    /// # Safety
+    /// Each of `sets` was allocated with [`LightTextures::level_set_layout`] and no pending command buffer uses it.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where there are not [`LightTextures::level_sets`], or the textures have no memory.
+    pub unsafe fn write_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {
+        self.check_level_sets(sets)?;
+        for (level, &set) in (1..).zip(sets) {
+            let finer = Resource::SampledImage { view: self.level_view(level - 1), layout: LAYOUT };
+            let coarser = Resource::StorageImage { view: self.level_view(level) };
+            // SAFETY: the caller vouches for the set; the levels are ours.
+            unsafe { self.blur.write_set(set, &[finer, coarser]) }?;
+        }
+        Ok(())
+    }
+
+    fn level_view(&self, level: usize) -> vk::ImageView {
+        self.level_views.get(level).copied().unwrap_or_default()
+    }
+
+    /// Records that every layer becomes black, and the image's layout what it stays. Needed once, before anything else.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.
+    /// - [`LightTextures::bind_memory`] was called.
+    pub unsafe fn record_clear(&self, command_buffer: vk::CommandBuffer) {
+        let device = &self.context.device;
+        let all = self.range(0..self.size.levels());
+        let first_use = vk::ImageMemoryBarrier::default()
+            .image(self.image)
+            .subresource_range(all)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .old_layout(vk::ImageLayout::UNDEFINED)
+            .new_layout(LAYOUT)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
+        let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
+        // SAFETY: the caller vouches for the command buffer; the image is ours and has memory.
+        unsafe {
+            device.cmd_pipeline_barrier(
+                command_buffer,
+                // After whatever used an earlier content
+                vk::PipelineStageFlags::ALL_COMMANDS,
+                vk::PipelineStageFlags::TRANSFER,
+                vk::DependencyFlags::empty(),
+                &[],
+                &[],
+                &[first_use],
+            );
+            device.cmd_clear_color_image(command_buffer, self.image, LAYOUT, &black, &[all]);
+            let cleared = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
+            self.barrier(command_buffer, cleared, (vk::PipelineStageFlags::ALL_COMMANDS, READ | WRITE));
+        }
+    }
+
+    /// Records that layers are loaded and filtered, with the barriers between and around: afterwards they are visible
+    /// to shaders. The cost is that of the layers given; others are left alone. The layers are filtered side by side,
+    /// level by level, and those with consecutive numbers in one dispatch.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with compute, and
+    ///   [`LightTextures::record_clear`] was recorded before.
+    /// - `level_sets` were written by [`LightTextures::write_level_sets`], and each update's set by
+    ///   [`LightTextures::write_source_set`], with an image of the size that the update says.
+    /// - The images are in the layout given there, and visible to compute shaders.
+    /// - Work on other queues that uses these layers is ordered by the host, as said above.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where a layer is not there or is given twice, or sets are missing;
+    /// [`Error::TexturePart`] for a source that cannot be loaded. Then nothing is recorded.
+    pub unsafe fn record_update(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        level_sets: &[vk::DescriptorSet],
+        updates: &[TextureUpdate],
+    ) -> Result<(), Error> {
+        // Check all before anything is recorded
+        self.check_level_sets(level_sets)?;
+        let layers = self.runs_of_layers(updates)?;
+        let constants: Vec<_> =
+            updates.iter().map(|update| self.load_constants(update)).collect::<Result<_, _>>()?;
+        if updates.is_empty() {
+            return Ok(());
+        }
+
+        // SAFETY: the caller vouches for the command buffer and the sets, here and below.
+        let barrier = |before, after| unsafe { self.barrier(command_buffer, before, after) };
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let everything = vk::PipelineStageFlags::ALL_COMMANDS;
+
+        // Load level 0, after whatever used the layers before
+        barrier((everything, WRITE), (compute, READ | WRITE));
+        let groups = plan::texture_load(self.size).groups;
+        for (update, constants) in updates.iter().zip(&constants) {
+            let bytes = bytemuck::bytes_of(constants);
+            // SAFETY: as above.
+            unsafe { self.load.record(command_buffer, update.source_set, bytes, groups) }?;
+        }
+        // Make each further level from the one before
+        for (level, &set) in (1..).zip(level_sets) {
+            barrier((compute, WRITE), (compute, READ));
+            for run in &layers {
+                let (dispatch, constants) = plan::texture_blur(self.size, level, run.clone());
+                let bytes = bytemuck::bytes_of(&constants);
+                // SAFETY: as above.
+                unsafe { self.blur.record(command_buffer, set, bytes, dispatch.groups) }?;
+            }
+        }
+        barrier((compute, WRITE), (everything, READ));
+        Ok(())
+    }
+
+    /// # Safety
+    /// The command buffer is recording, outside a render pass.
+    unsafe fn barrier(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        before: (vk::PipelineStageFlags, vk::AccessFlags),
+        after: (vk::PipelineStageFlags, vk::AccessFlags),
+    ) {
+        let barrier = vk::MemoryBarrier::default().src_access_mask(before.1).dst_access_mask(after.1);
+        let flags = vk::DependencyFlags::empty();
+        // SAFETY: the same contract.
+        unsafe {
+            self.context.device.cmd_pipeline_barrier(
+                command_buffer,
+                before.0,
+                after.0,
+                flags,
+                &[barrier],
+                &[],
+                &[],
+            );
+        }
+    }
+
+    fn check_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {
+        if sets.len() == self.level_sets() as usize {
+            return Ok(());
+        }
+        let message =
+            format!("{} given, but there must be {}, one a level from 1 on", sets.len(), self.level_sets());
+        Err(Error::InvalidArgument { field: "level_sets", message })
+    }
+
+    /// The layers of the updates, as ranges of consecutive ones.
+    fn runs_of_layers(&self, updates: &[TextureUpdate]) -> Result<Vec<Range<u32>>, Error> {
+        let wrong = |message| Err(Error::InvalidArgument { field: "layer", message });
+        let mut layers: Vec<u32> = updates.iter().map(|update| update.layer).collect();
+        layers.sort_unstable();
+        if let Some(layer) = layers.iter().find(|layer| **layer >= self.layers) {
+            return wrong(format!("{layer} is not there: the light textures have {}", self.layers));
+        }
+        if let Some([twice, _]) = layers.windows(2).find(|pair| pair[0] == pair[1]) {
+            return wrong(format!("{twice} is given twice; give it once a recording"));
+        }
+        let runs = layers.chunk_by(|one, next| one + 1 == *next);
+        Ok(runs.map(|run| run[0]..run[run.len() - 1] + 1).collect())
+    }
+
+    fn load_constants(&self, update: &TextureUpdate) -> Result<TextureLoadConstants, Error> {
+        let TextureUpdate { layer, source_size, part, decode_srgb, .. } = *update;
+        part.load_constants(source_size, self.size, layer, decode_srgb)
+            .map_err(|error| Error::TexturePart { layer, error })
+    }
+}
+
+const READ: vk::AccessFlags = vk::AccessFlags::SHADER_READ;
+const WRITE: vk::AccessFlags = vk::AccessFlags::SHADER_WRITE;
+
+impl Drop for LightTextures {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of LightTextures::new no recorded use is pending and the device is alive; a null view
+        // is ignored.
+        unsafe {
+            let device = &self.context.device;
+            for view in self.level_views.drain(..) {
+                device.destroy_image_view(view, None);
+            }
+            device.destroy_image_view(self.view, None);
+            device.destroy_image(self.image, None);
+        }
+    }
+}
+
+/// Whether the device has such an image.
+fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), Error> {
+    let Some(limits) = context.light_texture_limits else {
+        return Err(Error::MissingFeature {
+            feature: "R16G16B16A16_SFLOAT images that are filtered and stored to",
+            needed_by: "light textures",
+        });
+    };
+    let ([width, height], [widest, highest]) = (size.extent(0), limits.extent);
+    if width > widest || height > highest {
+        let [content_width, content_height] = size.content();
+        let message = format!(
+            "{content_width} x {content_height} texels are {width} x {height} with their margins, but the device's \
+             largest image has {widest} x {highest}; take a smaller size"
+        );
+        return Err(Error::InvalidArgument { field: "size", message });
+    }
+    if layers == 0 || layers > limits.layers {
+        let message = format!("{layers} must be from 1 to the device's {}", limits.layers);
+        return Err(Error::InvalidArgument { field: "layers", message });
+    }
+    Ok(())
+}
