@@ -18,28 +18,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define LIGHT_TEXTURES_BINDING 5
 #include "table_image.glsl"
 #include "lights.glsl"
-
-struct ArealightGpuCase {
-    vec3 normal;
-    float roughness;
-    vec3 view;
-    float f90;
-    vec3 diffuse_albedo;
-    uint light;
-    vec3 f0;
-    uint reserved0;
-};
-
-layout(set = 0, binding = 3, std430) readonly buffer Cases {
-    ArealightGpuCase cases[];
-};
-layout(set = 0, binding = 4, std430) writeonly buffer Results {
-    vec4 results[];
-};
-
-layout(push_constant, std430) uniform EvalConstants {
-    uint case_count;
-} constants;
+#include "cases.glsl"
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
@@ -47,10 +26,8 @@ void main() {
         return;
     }
     ArealightGpuCase given = cases[index];
-    ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo,
-                                                given.f0, given.f90, given.roughness);
     ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+    ArealightShadingPoint point = arealight_shading_point(case_surface(given), EFFECTS, quality);
     vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, quality);
     results[index] = vec4(radiance, 0.0);
 }

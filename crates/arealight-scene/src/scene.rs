@@ -1,6 +1,7 @@
 //! What a scene holds.
 
 use crate::{Camera, SceneError, SceneLightTexture};
+pub use arealight::texture_part::Wrap;
 use arealight::{Material, PolygonLight};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
@@ -87,18 +88,6 @@ pub struct Texture {
     pub wrap_u: Wrap,
     /// Beyond 0 to 1 in v.
     pub wrap_v: Wrap,
-}
-
-/// What texture coordinates beyond 0 to 1 read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Wrap {
-    /// The image again.
-    #[default]
-    Repeat,
-    /// The image again, every other one mirrored.
-    Mirror,
-    /// The image's edge.
-    Clamp,
 }
 
 /// A decoded image.

@@ -2,7 +2,7 @@
 
 use crate::{Engine, EngineError};
 use arealight::gpu::{EvalConstants, GpuCase};
-use arealight::kernels::EVAL;
+use arealight::kernels::Kernel;
 use arealight::{Effects, PackedLights, PolygonLight, Quality, Surface, plan};
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
@@ -28,16 +28,21 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        let mut radiance = vec![Vec3::ZERO; points.len()];
-        // Points whose light needs no more than the convex quad get a pipeline that has no more
-        let (quads, polygons): (Vec<usize>, Vec<usize>) =
-            (0..points.len()).partition(|&index| points[index].light.is_convex_quad());
-        for (indices, effects) in [(quads, Effects::all() - Effects::POLYGON), (polygons, Effects::all())] {
-            if indices.is_empty() {
-                continue;
+        // Points get a pipeline that has no more than their lights call for
+        let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
+        for (index, point) in points.iter().enumerate() {
+            let needed = point.light.effects() & (Effects::POLYGON | Effects::TEXTURED);
+            match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
+                Some((_, subset)) => subset.push(index),
+                None => subsets.push((needed, vec![index])),
             }
+        }
+        let mut radiance = vec![Vec3::ZERO; points.len()];
+        for (needed, indices) in subsets {
+            let effects = Effects::all() - (Effects::POLYGON | Effects::TEXTURED) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
-            let answers = self.eval_with(&subset, effects, quality)?;
+            let dispatch = plan::eval(effects, quality, 0);
+            let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;
             for (&index, answer) in indices.iter().zip(answers) {
                 radiance[index] = answer;
             }
@@ -45,27 +50,33 @@ impl Engine {
         Ok(radiance)
     }
 
-    /// As [`Engine::eval`], with a pipeline for one set of effects.
-    fn eval_with(
+    /// As [`Engine::eval`], by a kernel of one's own that has the bindings and constants of
+    /// [`arealight::kernels::EVAL`].
+    ///
+    /// # Errors
+    /// As [`Engine::eval`].
+    pub fn eval_by(
         &self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
         points: &[&EvalPoint],
-        effects: Effects,
-        quality: Quality,
     ) -> Result<Vec<Vec3>, EngineError> {
         // Pack each light relative to its own point, so that no precision is lost far from the origin
         let mut lights = PackedLights::default();
         let mut cases = Vec::with_capacity(points.len());
         for &point in points {
             let packed = PackedLights::new(std::slice::from_ref(&point.light), point.position)?;
+            self.check_layers(std::slice::from_ref(&point.light))?;
             cases.push(gpu_case(point, lights.lights.len() as u32));
             lights.append(packed)?;
         }
 
         // Each dispatch takes as many cases as the device has groups for
         let limit = self.host().properties().limits.max_compute_work_group_count[0];
-        let chunk = (limit.min(1 << 16) * EVAL.local_size[0]) as usize;
+        let chunk = (limit.min(1 << 16) * kernel.local_size[0]) as usize;
         let light_buffer = self.storage("lights", &lights.lights)?;
         let vertex_buffer = self.storage("light vertices", &lights.vertices)?;
+        let pass = self.passes.pass(kernel, specialization)?;
         let mut radiance = Vec::with_capacity(points.len());
         for cases in cases.chunks(chunk) {
             let case_buffer = self.storage("cases", cases)?;
@@ -79,10 +90,11 @@ impl Engine {
                 self.light_textures(),
             ];
             let case_count = cases.len() as u32;
-            let dispatch = plan::eval(effects, quality, case_count);
-            let pass = self.pass(dispatch.kernel, &dispatch.specialization, &resources)?;
+            // SAFETY: The resources live until the submission was waited for.
+            let set = unsafe { self.passes.bind(&pass, &resources) }?;
             self.host().try_submit(|commands| {
-                pass.record(commands, &EvalConstants { case_count }, [case_count, 1, 1])
+                // SAFETY: `commands` is being recorded, outside a render pass.
+                unsafe { set.record(&pass, commands, &EvalConstants { case_count }, [case_count, 1, 1]) }
             })?;
             let answers: Vec<[f32; 4]> = results.download()?;
             radiance.extend(answers.iter().map(|a| Vec3::new(a[0], a[1], a[2])));

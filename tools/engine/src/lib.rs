@@ -10,6 +10,7 @@ mod kept;
 mod memory;
 mod passes;
 mod render;
+mod scene_textures;
 mod table;
 mod textures;
 

@@ -44,6 +44,7 @@ impl<'a> SceneRenderer<'a> {
         size: [u32; 2],
     ) -> Result<Self, EngineError> {
         let packed = PackedLights::new(lights, scene.origin)?;
+        engine.check_layers(lights)?;
         let geometry = [
             engine.storage("hierarchy nodes", &scene.nodes)?,
             engine.storage("triangles", &scene.triangles)?,

@@ -97,6 +97,9 @@ struct Outcome {
     picture: Picture,
 }
 
+/// The most texels a side that a light's texture gets.
+const TEXTURE_SIZE: u32 = 1024;
+
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let path = arguments.scene_name();
@@ -116,7 +119,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
-    let engine = gpu::engine(arguments.device.as_deref(), &table)?;
+    let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
+    engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
     let effects = scene.effects();
     let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
         .map_err(|error| gpu::failure(error, &path))?;

@@ -1,0 +1,35 @@
+#ifndef CASES_GLSL
+#define CASES_GLSL
+
+// A list of shading points, and where their radiance goes. Their lights' centers are relative to them.
+
+#include "arealight/surface.glsl"
+
+struct ArealightGpuCase {
+    vec3 normal;
+    float roughness;
+    vec3 view;
+    float f90;
+    vec3 diffuse_albedo;
+    uint light;
+    vec3 f0;
+    uint reserved0;
+};
+
+layout(set = 0, binding = 3, std430) readonly buffer Cases {
+    ArealightGpuCase cases[];
+};
+layout(set = 0, binding = 4, std430) writeonly buffer Results {
+    vec4 results[];
+};
+
+layout(push_constant, std430) uniform EvalConstants {
+    uint case_count;
+} constants;
+
+ArealightSurface case_surface(ArealightGpuCase given) {
+    return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
+                            given.roughness);
+}
+
+#endif
