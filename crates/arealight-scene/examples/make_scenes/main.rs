@@ -2,8 +2,10 @@
 
 mod demo;
 mod room;
+mod screen;
 mod shapes;
 mod sweep;
+mod test_card;
 mod writer;
 
 use std::path::{Path, PathBuf};
@@ -12,7 +14,13 @@ fn main() -> std::io::Result<()> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let folder = std::env::args_os().nth(1).map_or(default, PathBuf::from);
     std::fs::create_dir_all(&folder)?;
-    for (name, bytes) in [("sweep.glb", sweep::glb()), ("room.glb", room::glb()), ("demo.glb", demo::glb())] {
+    let scenes = [
+        ("sweep.glb", sweep::glb()),
+        ("room.glb", room::glb()),
+        ("demo.glb", demo::glb()),
+        ("screen.glb", screen::glb()),
+    ];
+    for (name, bytes) in scenes {
         let path = folder.join(name);
         println!("{}: {} bytes", path.display(), bytes.len());
         std::fs::write(path, bytes)?;

@@ -29,6 +29,18 @@ impl Shape {
         self.uvs.clear();
         self
     }
+
+    /// The shape, in the plane z = 0, with an image that fills its box, upright.
+    pub fn with_image(mut self) -> Self {
+        let range = |axis: usize| {
+            let along = || self.positions.iter().map(|p| p[axis]);
+            (along().fold(f32::MAX, f32::min), along().fold(f32::MIN, f32::max))
+        };
+        let ((left, right), (bottom, top)) = (range(0), range(1));
+        let uv = |[x, y, _]: &[f32; 3]| [(x - left) / (right - left), (top - y) / (top - bottom)];
+        self.uvs = self.positions.iter().map(uv).collect();
+        self
+    }
 }
 
 /// A rectangle in the plane y = 0 that faces up, its texture repeated every `tile`.

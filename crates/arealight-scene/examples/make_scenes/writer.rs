@@ -134,6 +134,19 @@ impl Writer {
         )
     }
 
+    /// [`Writer::emitter`] whose radiance is multiplied by a texture.
+    pub fn emitter_of_image(
+        &mut self,
+        name: &str,
+        radiance: [f32; 3],
+        texture: usize,
+        double_sided: bool,
+    ) -> usize {
+        let material = self.emitter(name, radiance, double_sided);
+        self.root["materials"][material]["emissiveTexture"] = json!({ "index": texture });
+        material
+    }
+
     pub fn surface(&mut self, name: &str, color: [f32; 3], metalness: f32, roughness: f32) -> usize {
         let [r, g, b] = color;
         self.push(

@@ -14,10 +14,14 @@ mod textured_lights;
 mod demo;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;
+#[path = "../../examples/make_scenes/screen.rs"]
+mod screen;
 #[path = "../../examples/make_scenes/shapes.rs"]
 mod shapes;
 #[path = "../../examples/make_scenes/sweep.rs"]
 mod sweep;
+#[path = "../../examples/make_scenes/test_card.rs"]
+mod test_card;
 #[path = "../../examples/make_scenes/writer.rs"]
 mod writer;
 

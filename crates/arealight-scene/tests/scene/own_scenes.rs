@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{demo, room, sweep};
+use crate::{demo, room, screen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -29,7 +29,13 @@ fn load(name: &str) -> Scene {
 
 #[test]
 fn the_files_are_what_the_program_makes() {
-    for (name, bytes) in [("sweep.glb", sweep::glb()), ("room.glb", room::glb()), ("demo.glb", demo::glb())] {
+    let scenes = [
+        ("sweep.glb", sweep::glb()),
+        ("room.glb", room::glb()),
+        ("demo.glb", demo::glb()),
+        ("screen.glb", screen::glb()),
+    ];
+    for (name, bytes) in scenes {
         let file = std::fs::read(path(name)).unwrap();
         assert!(file.len() < 300_000, "{name} has {} bytes", file.len());
         assert!(file == bytes, "{name} is stale: cargo run -p arealight-scene --example make_scenes");
@@ -93,4 +99,34 @@ fn the_demo_shows_what_there_is() {
     let green = || texels.iter().map(|texel| texel.to_le_bytes()[1]);
     assert!(green().min().unwrap() < 30 && green().max().unwrap() > 180);
     assert_eq!(scene.camera(Some("hero"), 1.0).unwrap().aspect.map(|a| (a * 9.0).round()), Some(16.0));
+}
+
+#[test]
+fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
+    let scene = load("screen.glb");
+    assert_eq!(scene.effects(), Effects::all() - Effects::SPECULAR_INPUT);
+    let layer = |name: &str| {
+        let light = scene.lights.iter().find(|light| light.name == name).unwrap();
+        light.texture.as_ref().map(|texture| texture.layer)
+    };
+    assert_eq!([layer("television"), layer("sign"), layer("lamp")], [Some(0), Some(1), None]);
+    assert_eq!(scene.light_texture_size(1024).unwrap().content(), [512, 512]);
+    // The camera sees the card's red corner on the upper left, the green one on its right
+    let card = scene.light_texture_source(0).unwrap();
+    assert_eq!([card.width, card.height], [test_card::WIDTH, test_card::HEIGHT]);
+    let camera = scene.camera(None, 16.0 / 9.0).unwrap();
+    let screen = &scene.lights.iter().find(|light| light.name == "television").unwrap();
+    let right = camera.forward.cross(DVec3::Y);
+    for (vertex, uv) in screen.vertices.iter().zip(&screen.texture.as_ref().unwrap().uvs) {
+        assert_eq!(vertex.dot(right) > 0.0, uv.x > 0.5);
+        assert_eq!(vertex.y < screen.center().y, uv.y > 0.5);
+    }
+    assert_eq!(card.texels[2].to_le_bytes()[..3], [225, 30, 25]);
+    // The floor's roughness
+    let texture = scene.materials.iter().find_map(|m| m.metallic_roughness_texture).unwrap();
+    let texels = &scene.images[scene.textures[texture as usize].image as usize].texels;
+    let ends = [texels[0], texels[texels.len() - 1]].map(|texel| f64::from(texel.to_le_bytes()[1]) / 255.0);
+    assert!(ends.iter().zip(screen::ROUGHNESS).all(|(a, b)| (a - b).abs() < 0.01), "{ends:?}");
+    // Both sides of the sign show it
+    assert!(scene.lights.iter().any(|light| light.two_sided && light.texture.is_some()));
 }
