@@ -13,6 +13,7 @@
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
 //! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
+//! | [`texture`] | what a textured light shows, its blur, and the prefilter's pyramid |
 //! | [`cases`] | files of shading points |
 //! | [`answers`] | files of answers and of known radiance |
 //! | [`measure`] | how far answers lie from the truth |
@@ -27,3 +28,4 @@ pub mod ltsd;
 pub mod measure;
 pub mod polygon;
 pub mod shading;
+pub mod texture;

@@ -5,5 +5,6 @@ mod common;
 mod ggx;
 mod ltsd;
 mod polygon;
+mod pyramid;
 mod reference;
 mod shading;
