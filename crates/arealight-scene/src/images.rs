@@ -94,6 +94,33 @@ pub(crate) fn linear_mean(image: &Image) -> DVec3 {
     sum / image.texels.len().max(1) as f64
 }
 
+/// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and of alpha, over
+/// two by two.
+pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
+    let linear: [f64; 256] = std::array::from_fn(|byte| {
+        let value = byte as f64 / 255.0;
+        if srgb { srgb_to_linear(value) } else { value }
+    });
+    let encode = |linear: f64| {
+        let value = if srgb { linear_to_srgb(linear) } else { linear };
+        (value * 255.0).round() as u8
+    };
+    let [width, height] = [image.width, image.height].map(|side| (side / 2).max(1));
+    let mean = |x: u32, y: u32| {
+        let texels = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
+            let (x, y) = ((2 * x + dx).min(image.width - 1), (2 * y + dy).min(image.height - 1));
+            image.texels[y as usize * image.width as usize + x as usize].to_le_bytes()
+        });
+        let color = |channel: usize| {
+            encode(texels.iter().map(|texel| linear[usize::from(texel[channel])]).sum::<f64>() / 4.0)
+        };
+        let alpha = texels.iter().map(|texel| u32::from(texel[3])).sum::<u32>().div_ceil(4) as u8;
+        u32::from_le_bytes([color(0), color(1), color(2), alpha])
+    };
+    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y));
+    Image { name: format!("{}, smaller", image.name), width, height, texels: texels.collect() }
+}
+
 /// The linear colour of `image`, read by `texture`, at finite coordinates; bilinear, decoded before it is filtered.
 pub(crate) fn sample(image: &Image, texture: Texture, uv: DVec2) -> DVec3 {
     let size = DVec2::new(f64::from(image.width), f64::from(image.height));
@@ -131,6 +158,11 @@ fn srgb_to_linear(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
+/// The encoding of IEC 61966-2-1.
+fn linear_to_srgb(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -142,6 +174,19 @@ mod tests {
         let mean = linear_mean(&image);
         // sRGB 188 of 255 is 0.503 linear; as encoded values the mean of green would be 0.37
         assert!((mean - DVec3::new(0.5, 0.2514, 0.0)).length() < 1e-3, "{mean}");
+    }
+
+    #[test]
+    fn half_an_image_keeps_its_light() {
+        let texel = |v: u8, a: u8| u32::from_le_bytes([v, 0, 255, a]);
+        // Two by two and a column more, which is left out
+        let texels = vec![texel(255, 0), texel(0, 4), texel(9, 9), texel(0, 8), texel(255, 0), texel(9, 9)];
+        let image = Image { name: "a".into(), width: 3, height: 2, texels };
+        let small = halved(&image, true);
+        assert_eq!((small.width, small.height, &small.texels[..]), (1, 1, &[texel(188, 3)][..]));
+        // The twin: of values that are not sRGB, and of what is one texel already
+        assert_eq!(halved(&image, false).texels, [texel(128, 3)]);
+        assert_eq!(halved(&small, true).texels, small.texels);
     }
 
     #[test]

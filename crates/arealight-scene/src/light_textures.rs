@@ -6,11 +6,12 @@
 //! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out. Only an image
 //! that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each would be many times its size.
 
+use crate::images::halved;
 use crate::load::Loader;
 use crate::shown::{Images, Key, Rectangle, Shown};
-use crate::{Scene, Wrap};
+use crate::{Scene, Texture, Wrap};
 use arealight::pyramid::PyramidSize;
-use arealight::{LightTexture, PolygonLight};
+use arealight::{LightTexture, PolygonLight, TexturePart};
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 
@@ -21,7 +22,7 @@ pub const MAX_LIGHT_TEXTURES: usize = 256;
 /// The most texels that [`Scene::light_texture_size`] allows all layers together: half a gibibyte at eight bytes each.
 pub const MAX_LIGHT_TEXELS: u64 = 1 << 26;
 
-/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the image's mean colour. At
+/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean colour. At
 /// 1024 texels a layer, sixteen are left for each repeat.
 pub const MAX_REPEATS: f64 = 64.0;
 
@@ -31,7 +32,7 @@ const FEW_PIECES: usize = 4;
 /// A layer of the light textures: a rectangle of a texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLightTexture {
-    /// Index into [`Scene::textures`].
+    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has been scaled down.
     pub texture: u32,
     /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1], where the texture's
     /// wrap modes say what there is.
@@ -153,6 +154,7 @@ pub(crate) fn assign(loader: &mut Loader) {
         }
     }
     scene.light_textures = layers.made;
+    scale_down(scene);
     for (loss, lights) in losses {
         let name = &loader.scene.lights[lights[0]].name;
         let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
@@ -173,6 +175,38 @@ fn shown_in_many_pieces(shown: &[Shown]) -> HashSet<u32> {
     }
     let many = |areas: &HashMap<Key, f64>| areas.len() > FEW_PIECES && areas.values().sum::<f64>() >= 0.5;
     pieces.into_iter().filter(|(_, areas)| many(areas)).map(|(texture, _)| texture).collect()
+}
+
+/// Gives layers whose image is larger than a device loads ([`TexturePart`] has the limits) an image of fewer texels.
+fn scale_down(scene: &mut Scene) {
+    // By texture and how often it is halved
+    let mut known: HashMap<(u32, u32), u32> = HashMap::new();
+    for layer in 0..scene.light_textures.len() {
+        let Some(source) = scene.light_texture_source(layer) else { continue };
+        let (sides, size) = ([source.width, source.height], source.size.to_array());
+        let loads = |halvings: u32| {
+            sides.iter().zip(size).all(|(side, size)| {
+                let side = (side >> halvings).max(1);
+                side <= TexturePart::LARGEST_SOURCE && f64::from(side) * size <= TexturePart::MOST_TEXELS
+            })
+        };
+        // Fewer than 32: a side has that many bits, and a texel of the most repeats is loaded
+        let halvings = (0..32).find(|halvings| loads(*halvings)).unwrap_or_default();
+        if halvings == 0 {
+            continue;
+        }
+        let whole = scene.light_textures[layer].texture;
+        scene.light_textures[layer].texture = *known.entry((whole, halvings)).or_insert_with(|| {
+            let texture = scene.textures[whole as usize];
+            let mut image = halved(&scene.images[texture.image as usize], texture.srgb);
+            for _ in 1..halvings {
+                image = halved(&image, texture.srgb);
+            }
+            scene.images.push(image);
+            scene.textures.push(Texture { image: scene.images.len() as u32 - 1, ..texture });
+            scene.textures.len() as u32 - 1
+        });
+    }
 }
 
 /// The layers so far.

@@ -4,6 +4,7 @@ use crate::images::{linear_mean, sample};
 use crate::light_textures::{MAX_REPEATS, TexturedLight};
 use crate::lit_texels::LitTexels;
 use crate::{Image, Scene, Texture, Wrap};
+use arealight::TexturePart;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 
@@ -119,15 +120,17 @@ impl Images {
         if low.min_element() >= -OUTSIDE && high.max_element() <= 1.0 + OUTSIDE {
             (low, high) = (low.clamp(DVec2::ZERO, DVec2::ONE), high.clamp(DVec2::ZERO, DVec2::ONE));
         }
-        let repeats =
-            |axis: usize, wrap: Wrap| if wrap == Wrap::Clamp { 0.0 } else { high[axis] - low[axis] };
-        if repeats(0, texture.wrap_u).max(repeats(1, texture.wrap_v)) > MAX_REPEATS {
-            return Shown::Lost(mean(), "repeats its image too often");
+        let rectangle = Rectangle { texture: light.texture, low, high, uvs };
+        let far = low.abs().max_element() > TexturePart::FARTHEST;
+        if far || (high - low).max_element() > MAX_REPEATS {
+            let clamped = texture.wrap_u == Wrap::Clamp || texture.wrap_v == Wrap::Clamp;
+            let mean = if clamped { rectangle.mean(scene) } else { mean() };
+            return Shown::Lost(mean, "repeats its image too often");
         }
         if self.lit.entry(texture.image).or_insert_with(|| LitTexels::new(image)).is_black(low, high) {
             return Shown::Color(DVec3::ZERO);
         }
-        Shown::Rectangle(Rectangle { texture: light.texture, low, high, uvs })
+        Shown::Rectangle(rectangle)
     }
 }
 

@@ -4,7 +4,7 @@ use crate::shapes::{panel, polygon};
 use crate::writer::{Shape, Writer};
 use crate::{load, warnings};
 use arealight::pyramid::PyramidSize;
-use arealight::{Effects, PolygonLight};
+use arealight::{Effects, PolygonLight, TexturePart};
 use arealight_scene::{MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, Scene, Wrap, required_effects};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -274,6 +274,31 @@ fn what_cannot_be_shown_has_the_mean() {
     let (mut writer, material) = textured(&two);
     writer.object("tv", &screen(|uv| uv * f64::NAN), material, json!({}));
     assert!(crate::error(writer).contains("TEXCOORD_0[0]"));
+}
+
+#[test]
+fn a_device_loads_every_layer() {
+    let long = RgbImage::from_fn(9000, 2, |x, y| Rgb([x as u8, y as u8, 90]));
+    let many = [screen(|uv| uv), screen(|uv| uv * 0.5), screen(|uv| uv * 30.0), screen(|uv| uv * 60.0)];
+    let scene = scene_of(&long, &many, &json!({}));
+    let widths: Vec<u32> = (0..4).map(|layer| scene.light_texture_source(layer).unwrap().width).collect();
+    // 9000 / 4 is within 4096; 30 and 60 of an image within 16384
+    assert_eq!(widths, [2250, 2250, 281, 140]);
+    assert_eq!(scene.images.len(), 4);
+    for layer in 0..4 {
+        let source = scene.light_texture_source(layer).unwrap();
+        let part = TexturePart { low: source.low, size: source.size, wrap: source.wrap };
+        let size = scene.light_texture_size(1024).unwrap();
+        part.load_constants([source.width, source.height], size, 0, true).unwrap();
+    }
+    // Surfaces keep the whole image
+    assert_eq!(scene.textures[scene.materials[0].emission_texture.unwrap() as usize].image, 0);
+    assert_eq!(scene.images[0].width, 9000);
+    // Far away, where it is clamped, there is the edge's colour
+    let clamp = json!({ "wrapS": 33071, "wrapT": 33071 });
+    let scene = scene_of(&picture(), &[screen(|uv| uv + 5000.0)], &clamp);
+    assert!(scene.light_textures.is_empty());
+    assert!((scene.lights[0].radiance.x - 3.0 * 0.973_445).abs() < 1e-4, "{}", scene.lights[0].radiance.x);
 }
 
 #[test]
