@@ -335,6 +335,7 @@ impl Case {
             vertices: vertices.iter().map(|v| *v - self.position).collect(),
             radiance: self.light.radiance,
             two_sided: self.light.two_sided,
+            image: None,
         };
         Ok(SupportedCase { name: self.name.clone(), surface, normal: self.normal, view: self.view, light })
     }

@@ -65,6 +65,22 @@ pub fn above_horizon(vertices: &[DVec3]) -> Vec<DVec3> {
     clip(vertices, 0.0)
 }
 
+/// The *vector form factor* of a polygon in cosine space, clipped at its horizon: the integral of the direction over
+/// its solid angle, over pi. Its z component is [`form_factor`]; its direction is that from which most light comes.
+///
+/// Small polygons lose digits: 1e-16 over the square of their angle.
+pub fn vector_form_factor(vertices: &[DVec3]) -> DVec3 {
+    let clipped = clip(vertices, 0.0);
+    let next = clipped.iter().cycle().skip(1);
+    let edge = |(a, b): (&DVec3, &DVec3)| {
+        let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
+        let cross = a.cross(b - a);
+        let sine = cross.length();
+        if sine > 0.0 { cross * (sine.atan2(a.dot(b)) / sine) } else { DVec3::ZERO }
+    };
+    -clipped.iter().zip(next).map(edge).sum::<DVec3>() / TAU
+}
+
 /// What a light of signed form factor `signed` sends: its front only, or both sides. In [0, 1].
 pub fn emitted(signed: f64, two_sided: bool) -> f64 {
     if two_sided { signed.abs() } else { signed.max(0.0) }

@@ -1,14 +1,23 @@
 //! A polygon light on a surface: the truth by cubature of the true BRDF, and the answer of the fitted table
 //! in float64, the twin of the GLSL.
 
+pub mod footprint;
+mod shown;
+mod textured;
+
+pub use shown::ShownImage;
+pub use textured::transformed_image_integral;
+
 use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
+use crate::texture::Texture;
 use arealight::table::{ggx_formula, share_above_surface};
-use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality, Surface};
+use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality, Surface, TextureError};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A polygon light relative to a shading point, in float64 throughout.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,16 +28,37 @@ pub struct RelativeLight {
     pub radiance: DVec3,
     /// Whether the back emits too.
     pub two_sided: bool,
+    /// What multiplies the radiance.
+    pub image: Option<ShownImage>,
 }
 
 impl RelativeLight {
-    /// The light as seen from `position`.
+    /// The light as seen from `position`, of one colour: see [`RelativeLight::textured`].
     pub fn new(light: &PolygonLight, position: DVec3) -> Self {
         Self {
             vertices: light.vertices.iter().map(|v| *v - position).collect(),
             radiance: light.radiance.as_dvec3(),
             two_sided: light.two_sided,
+            image: None,
         }
+    }
+
+    /// The light as seen from `position`, showing `texture` where the light has a texture of its own.
+    ///
+    /// # Errors
+    /// [`TextureError`] where its texture coordinates do not map onto it.
+    pub fn textured(
+        light: &PolygonLight,
+        position: DVec3,
+        texture: Arc<Texture>,
+    ) -> Result<Self, TextureError> {
+        let mut relative = Self::new(light, position);
+        if let Some(mapped) = &light.texture {
+            let mut map = mapped.map(light)?;
+            map.corner -= position;
+            relative.image = Some(ShownImage { texture, map });
+        }
+        Ok(relative)
     }
 }
 
@@ -179,12 +209,22 @@ pub fn ltc_on(
         Lobes::Formula => ggx_formula(roughness, frame.cos_view()),
     };
     // Integrate the transformed cosine
-    let visible = if quality.horizon == Horizon::Both { above_horizon(&vertices) } else { vertices.clone() };
+    let both_horizons = quality.horizon == Horizon::Both;
+    let visible = if both_horizons { above_horizon(&vertices) } else { vertices.clone() };
+    let image = light.image.as_ref().map(|image| image.in_frame(&frame));
     let lobe = |inverse: &DMat3| {
-        let form_factor = emitted(transformed_form_factor(inverse, &visible), light.two_sided);
         // What is clipped at the surface's horizon is made up for, so that the albedo stays
-        let share = if quality.horizon == Horizon::Both { share_above_surface(inverse) } else { 1.0 };
-        (form_factor / share).min(1.0)
+        let share = if both_horizons { share_above_surface(inverse) } else { 1.0 };
+        match &image {
+            None => {
+                let form_factor = emitted(transformed_form_factor(inverse, &visible), light.two_sided);
+                DVec3::splat((form_factor / share).min(1.0))
+            }
+            Some(image) => {
+                let signed = transformed_image_integral(inverse, &vertices, image, both_horizons);
+                signed.to_array().map(|channel| emitted(channel, light.two_sided) / share).into()
+            }
+        }
     };
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
@@ -199,6 +239,13 @@ pub fn ltc_on(
         }
     };
     // Integrate the cosine
-    let diffuse = surface.diffuse_albedo * emitted(form_factor(&vertices), light.two_sided);
+    let shown = match &image {
+        None => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        Some(image) => {
+            let signed = transformed_image_integral(&DMat3::IDENTITY, &vertices, image, false);
+            signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
+        }
+    };
+    let diffuse = surface.diffuse_albedo * shown;
     light.radiance * (diffuse + glossy)
 }

@@ -46,7 +46,7 @@ pub mod texture_part;
 pub use effects::Effects;
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
-pub use light_texture::{LightTexture, TextureError};
+pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};

@@ -54,13 +54,20 @@ pub enum TextureError {
 }
 
 /// A texture's place in the world: `corner + axis_u s + axis_v t` shows the texture coordinate `low + size (s, t)`.
+///
+/// `s` and `t` are *box coordinates*: from 0 to 1 over the box around what the light shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct TextureMap {
-    pub(crate) corner: DVec3,
-    pub(crate) axis_u: DVec3,
-    pub(crate) axis_v: DVec3,
-    pub(crate) low: DVec2,
-    pub(crate) size: DVec2,
+pub struct TextureMap {
+    /// Where the box begins.
+    pub corner: DVec3,
+    /// Along the image's rows, as long as the box.
+    pub axis_u: DVec3,
+    /// Along its columns.
+    pub axis_v: DVec3,
+    /// Texture coordinates of the box's corner.
+    pub low: DVec2,
+    /// Its extent in them.
+    pub size: DVec2,
 }
 
 /// How far a coordinate may be off the affine map: a quarter of a texel of the largest texture.
@@ -71,7 +78,10 @@ const OUTSIDE: f64 = 1e-5;
 
 impl LightTexture {
     /// Checks the coordinates, and maps them onto `light`, whose vertices are valid.
-    pub(crate) fn map(&self, light: &PolygonLight) -> Result<TextureMap, TextureError> {
+    ///
+    /// # Errors
+    /// [`TextureError`] says what is wrong with them.
+    pub fn map(&self, light: &PolygonLight) -> Result<TextureMap, TextureError> {
         let (uvs, vertices) = (&self.uvs, &light.vertices);
         if uvs.len() != vertices.len() {
             return Err(TextureError::Count { uvs: uvs.len(), vertices: vertices.len() });

@@ -50,12 +50,11 @@ impl Blur {
 }
 
 impl Texture {
-    /// The texture at a coordinate, blurred with a Gaussian of standard deviation `sigma` in both directions, in
-    /// texture coordinates.
-    pub fn blurred(&self, uv: DVec2, sigma: f64) -> DVec3 {
+    /// The texture at a coordinate, blurred with a Gaussian of standard deviations `sigma` in texture coordinates.
+    pub fn blurred(&self, uv: DVec2, sigma: DVec2) -> DVec3 {
         // Fold columns as they come: the grid's way would fold all rows
-        let columns = Weights::new(uv.x, sigma, self.width());
-        let rows = Weights::new(uv.y, sigma, self.height());
+        let columns = Weights::new(uv.x, sigma.x, self.width());
+        let rows = Weights::new(uv.y, sigma.y, self.height());
         rows.apply(|row| columns.apply(|column| self.texels()[row * self.width() + column]))
     }
 }

@@ -80,13 +80,13 @@ fn a_blur_is_the_integral_of_the_gaussian() {
             }
         }
         let uv = DVec2::new(u, v);
-        let off = (texture.blurred(uv, sigma) - sum / weight).abs().max_element();
+        let off = (texture.blurred(uv, DVec2::splat(sigma)) - sum / weight).abs().max_element();
         assert!(off < 1e-5, "{uv}, {sigma}: {off}");
         let grid = Blur::new(&texture, &[0.5, u], &[v, 0.1], DVec2::splat(sigma));
-        assert!((grid.at(1, 0) - texture.blurred(uv, sigma)).abs().max_element() < 1e-14);
+        assert!((grid.at(1, 0) - texture.blurred(uv, DVec2::splat(sigma))).abs().max_element() < 1e-14);
         assert_eq!(grid.values().len(), 4);
     }
-    let sharp = texture.blurred(DVec2::new(0.3, 0.6), 0.0);
+    let sharp = texture.blurred(DVec2::new(0.3, 0.6), DVec2::ZERO);
     assert!((sharp - texture.sample(DVec2::new(0.3, 0.6))).abs().max_element() < 1e-14);
 }
 

@@ -8,3 +8,4 @@ mod polygon;
 mod pyramid;
 mod reference;
 mod shading;
+mod textured;
