@@ -170,7 +170,7 @@ pub fn measure(host: &Host, rounds: usize) -> Result<Vec<Cost>, EngineError> {
     METHODS.iter().zip(&runs).map(cost).collect()
 }
 
-fn quantile(values: &[f64], part: f64) -> f64 {
+pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let index = (part * (sorted.len().max(1) - 1) as f64).round() as usize;

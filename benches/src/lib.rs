@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
 //! | [`cost`] | the time of each rung, as a ratio to the practice |
+//! | [`textures`] | the time of filtering a light's texture |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
@@ -15,3 +16,4 @@ pub mod kernel;
 pub mod method;
 pub mod report;
 pub mod stability;
+pub mod textures;

@@ -4,6 +4,9 @@
 
 // Makes a level of the light textures from the one before: half the texels a side, blurred by a separable kernel
 // whose taps stop at the margin's edge. arealight::PyramidSize::kernel gives its weights; sums are in float32.
+//
+// Each invocation makes a block of texels out of registers: of what it reads, neighbours share the most. Shared memory
+// would read less, and take twice the time in software.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -15,54 +18,69 @@ layout(set = 0, binding = 1, rgba16f) uniform writeonly image2DArray out_level;
 const int MAX_RADIUS = 6; // LevelKernel::MAX_RADIUS
 
 layout(push_constant, std430) uniform TextureBlurConstants {
-    float weights[MAX_RADIUS]; // half of the kernel, from the middle
-    uint radius;
+    float weights[MAX_RADIUS]; // half of the kernel, from the middle; zero beyond its radius
     uint first_layer;
 } constants;
 
-// Of the finer level, what a group reads a side: two texels for each of its own, and the kernel's ends.
-const int GROUP = 8;
-const int MAX_TILE = 2 * GROUP + 2 * (MAX_RADIUS - 1);
+// Taps to a side: the kernel's radius or more.
+layout(constant_id = 8) const int RADIUS = 6;
 
-shared vec3 tile[MAX_TILE * MAX_TILE];
-shared vec3 rows[MAX_TILE * GROUP];
+// Texels that an invocation makes, and the finer ones that it reads: plan::texture_blur knows the first.
+const int BLOCK_WIDTH = 4;
+const int BLOCK_HEIGHT = 4;
+const int READ_WIDTH = 2 * BLOCK_WIDTH + 2 * (RADIUS - 1);
+const int READ_HEIGHT = 2 * BLOCK_HEIGHT + 2 * (RADIUS - 1);
+
+// The weight of a tap of the whole kernel, from its first; zero outside.
+float kernel_weight(int tap) {
+    int from_middle = tap < RADIUS ? RADIUS - 1 - tap : tap - RADIUS;
+    return from_middle < RADIUS ? constants.weights[min(from_middle, MAX_RADIUS - 1)] : 0.0;
+}
 
 void main() {
-    int layer = int(constants.first_layer + gl_WorkGroupID.z);
-    int radius = int(constants.radius);
-    int side = 2 * GROUP + 2 * (radius - 1);
-    int item = int(gl_LocalInvocationIndex);
-
-    // Read the finer texels
-    ivec2 corner = ivec2(gl_WorkGroupID.xy) * 2 * GROUP - (radius - 1);
+    int layer = int(constants.first_layer + gl_GlobalInvocationID.z);
+    ivec2 extent = imageSize(out_level).xy;
+    ivec2 first = ivec2(gl_GlobalInvocationID.xy) * ivec2(BLOCK_WIDTH, BLOCK_HEIGHT);
+    if (any(greaterThanEqual(first, extent))) {
+        return;
+    }
+    ivec2 corner = 2 * first - (RADIUS - 1);
     ivec2 last = textureSize(finer_level, 0).xy - 1;
-    for (int i = item; i < side * side; i += GROUP * GROUP) {
-        ivec2 texel = clamp(corner + ivec2(i % side, i / side), ivec2(0), last);
-        tile[i] = texelFetch(finer_level, ivec3(texel, layer), 0).rgb;
-    }
-    barrier();
-
-    // Blur along rows: the middle of our texel is between two of the finer ones
-    for (int i = item; i < side * GROUP; i += GROUP * GROUP) {
-        int right = (i / GROUP) * side + 2 * (i % GROUP) + radius;
-        vec3 sum = vec3(0.0);
-        for (int tap = 0; tap < radius; tap++) {
-            sum += constants.weights[tap] * (tile[right - 1 - tap] + tile[right + tap]);
+    vec3 sums[BLOCK_HEIGHT][BLOCK_WIDTH];
+    for (int y = 0; y < BLOCK_HEIGHT; y++) {
+        for (int x = 0; x < BLOCK_WIDTH; x++) {
+            sums[y][x] = vec3(0.0);
         }
-        rows[i] = sum;
     }
-    barrier();
 
-    // Blur along columns
-    ivec2 local = ivec2(gl_LocalInvocationID.xy);
-    int below = (2 * local.y + radius) * GROUP + local.x;
-    vec3 color = vec3(0.0);
-    for (int tap = 0; tap < radius; tap++) {
-        color += constants.weights[tap] * (rows[below - (1 + tap) * GROUP] + rows[below + tap * GROUP]);
+    for (int row = 0; row < READ_HEIGHT; row++) {
+        // Read a row of the finer level
+        vec3 texels[READ_WIDTH];
+        for (int x = 0; x < READ_WIDTH; x++) {
+            ivec2 texel = clamp(corner + ivec2(x, row), ivec2(0), last);
+            texels[x] = texelFetch(finer_level, ivec3(texel, layer), 0).rgb;
+        }
+        for (int x = 0; x < BLOCK_WIDTH; x++) {
+            // Blur it along itself: the middle of our texel is between two of the finer ones
+            vec3 sum = vec3(0.0);
+            for (int tap = 0; tap < RADIUS; tap++) {
+                int right = 2 * x + RADIUS;
+                sum += constants.weights[tap] * (texels[right - 1 - tap] + texels[right + tap]);
+            }
+            // Add it to the texels of ours that it is a part of
+            for (int y = 0; y < BLOCK_HEIGHT; y++) {
+                sums[y][x] += kernel_weight(row - 2 * y) * sum;
+            }
+        }
     }
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    if (all(lessThan(texel, imageSize(out_level).xy))) {
-        color = round_to_half(min(color, LARGEST_HALF));
-        imageStore(out_level, ivec3(texel, layer), vec4(color, 1.0));
+
+    for (int y = 0; y < BLOCK_HEIGHT; y++) {
+        for (int x = 0; x < BLOCK_WIDTH; x++) {
+            ivec2 texel = first + ivec2(x, y);
+            if (all(lessThan(texel, extent))) {
+                vec3 color = round_to_half(min(sums[y][x], LARGEST_HALF));
+                imageStore(out_level, ivec3(texel, layer), vec4(color, 1.0));
+            }
+        }
     }
 }

@@ -20,6 +20,11 @@ layout(push_constant, std430) uniform TextureLoadConstants {
     uint layer;
 } constants;
 
+// What the pipeline can do beside copying texels one to one, by bits; what is not called for costs nothing.
+layout(constant_id = 9) const uint CALLED_FOR = 3u;
+const uint CALLED_FOR_RESAMPLING = 1u;
+const uint CALLED_FOR_DECODING = 2u;
+
 const uint LOAD_SRGB = 1u;
 const uint LOAD_CLAMP_U = 2u;
 const uint LOAD_CLAMP_V = 4u;
@@ -31,20 +36,55 @@ vec3 linear_from_srgb(vec3 encoded) {
     return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
 }
 
-// The texel of a row or column of `size` that stands at `texel`, which is not negative unless clamped.
+// The texel of a row or column of `size` that stands at `texel`. In float32, which is exact to 2^21 texels: software
+// divides integers one by one.
 int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
-    int wrapped = texel % (mirrored ? 2 * size : size);
-    wrapped = wrapped < size ? wrapped : 2 * size - 1 - wrapped;
-    return clamped ? clamp(texel, 0, size - 1) : wrapped;
+    int period = mirrored ? 2 * size : size;
+    int wrapped = texel - period * int(floor((float(texel) + 0.5) / float(period)));
+    wrapped = wrapped < size ? wrapped : period - 1 - wrapped;
+    return clamp(clamped ? texel : wrapped, 0, size - 1);
+}
+
+// The texel of the source that stands at `place`.
+ivec2 wrap(ivec2 place) {
+    ivec2 size = textureSize(source, 0);
+    return ivec2(
+        wrap_texel(place.x, size.x, (constants.flags & LOAD_CLAMP_U) != 0u, (constants.flags & LOAD_MIRROR_U) != 0u),
+        wrap_texel(place.y, size.y, (constants.flags & LOAD_CLAMP_V) != 0u, (constants.flags & LOAD_MIRROR_V) != 0u));
 }
 
 // A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they can.
 vec3 fetch_linear(ivec2 texel) {
     vec3 color = texelFetch(source, texel, 0).rgb;
-    if ((constants.flags & LOAD_SRGB) != 0u) {
+    if ((CALLED_FOR & CALLED_FOR_DECODING) != 0u && (constants.flags & LOAD_SRGB) != 0u) {
         color = linear_from_srgb(color);
     }
     return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
+}
+
+// The color at a texel of the content: the mean under a tent, which is as wide as two texels of the source or, where it
+// is minified, of ours.
+vec3 resampled(ivec2 content) {
+    // Place the tent on the source
+    vec2 place = constants.first_offset + vec2(content) * constants.stride;
+    vec2 middle = place - floor(place);
+    ivec2 base = constants.first_texel + ivec2(floor(place));
+    vec2 radius = max(constants.stride, vec2(1.0));
+    ivec2 first = ivec2(floor(middle - radius)) + 1;
+    ivec2 last = ivec2(ceil(middle + radius)) - 1;
+
+    // Sum the texels under it
+    vec3 sum = vec3(0.0);
+    float weights = 0.0;
+    for (int y = first.y; y <= last.y; y++) {
+        float row_weight = 1.0 - abs(float(y) - middle.y) / radius.y;
+        for (int x = first.x; x <= last.x; x++) {
+            float weight = row_weight * (1.0 - abs(float(x) - middle.x) / radius.x);
+            sum += weight * fetch_linear(wrap(base + ivec2(x, y)));
+            weights += weight;
+        }
+    }
+    return min(sum / weights, LARGEST_HALF);
 }
 
 void main() {
@@ -56,33 +96,7 @@ void main() {
     // The margin, a tenth of the extent at each side, repeats the content's edge
     ivec2 margin = extent / 10;
     ivec2 content = clamp(texel - margin, ivec2(0), extent - 2 * margin - 1);
-
-    // Place a tent on the source, as wide as two of its texels or, where it is minified, of ours
-    vec2 place = constants.first_offset + vec2(content) * constants.stride;
-    vec2 middle = place - floor(place);
-    ivec2 base = constants.first_texel + ivec2(floor(place));
-    vec2 radius = max(constants.stride, vec2(1.0));
-    ivec2 first = ivec2(floor(middle - radius)) + 1;
-    ivec2 last = ivec2(ceil(middle + radius)) - 1;
-
-    // Sum the texels under the tent
-    ivec2 size = textureSize(source, 0);
-    bool clamp_u = (constants.flags & LOAD_CLAMP_U) != 0u;
-    bool clamp_v = (constants.flags & LOAD_CLAMP_V) != 0u;
-    bool mirror_u = (constants.flags & LOAD_MIRROR_U) != 0u;
-    bool mirror_v = (constants.flags & LOAD_MIRROR_V) != 0u;
-    vec3 sum = vec3(0.0);
-    float weights = 0.0;
-    for (int y = first.y; y <= last.y; y++) {
-        int row = wrap_texel(base.y + y, size.y, clamp_v, mirror_v);
-        float row_weight = 1.0 - abs(float(y) - middle.y) / radius.y;
-        for (int x = first.x; x <= last.x; x++) {
-            int column = wrap_texel(base.x + x, size.x, clamp_u, mirror_u);
-            float weight = row_weight * (1.0 - abs(float(x) - middle.x) / radius.x);
-            sum += weight * fetch_linear(ivec2(column, row));
-            weights += weight;
-        }
-    }
-    vec3 color = min(sum / weights, LARGEST_HALF);
+    vec3 color = (CALLED_FOR & CALLED_FOR_RESAMPLING) != 0u
+        ? resampled(content) : fetch_linear(wrap(constants.first_texel + content));
     imageStore(out_level, ivec3(texel, constants.layer), vec4(round_to_half(color), 1.0));
 }

@@ -234,8 +234,6 @@ fn every_structure_has_the_same_offsets() {
     let eval = module(&kernels::EVAL);
     let reference = module(&kernels::REFERENCE);
     let visibility = module(&kernels::VISIBILITY);
-    let texture_load = module(&kernels::TEXTURE_LOAD);
-    let texture_blur = module(&kernels::TEXTURE_BLUR);
     let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
                         texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
                         texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
@@ -268,16 +266,6 @@ fn every_structure_has_the_same_offsets() {
             "ArealightGpuLightTriangle",
             layout!(gpu::GpuLightTriangle, vertices as "vertex0",
                                                           cumulative),
-        ),
-        (
-            &texture_load,
-            "TextureLoadConstants",
-            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
-        ),
-        (
-            &texture_blur,
-            "TextureBlurConstants",
-            layout!(gpu::TextureBlurConstants, weights, radius, first_layer),
         ),
         (
             &visibility,
@@ -331,12 +319,31 @@ fn every_structure_has_the_same_offsets() {
             ),
         ),
     ] {
-        let found = offsets(kernel, structure).unwrap_or_else(|| panic!("{structure} is in the module"));
-        // An array in Rust may be several members in GLSL: compare the first of each
-        let found: Vec<_> =
-            found.into_iter().filter(|(name, _)| expected.iter().any(|(e, _)| e == name)).collect();
-        assert_eq!(found, expected, "{structure}");
+        assert_offsets(kernel, structure, &expected);
     }
+}
+
+#[test]
+fn the_texture_kernels_constants_have_the_same_offsets() {
+    assert_offsets(
+        &module(&kernels::TEXTURE_LOAD),
+        "TextureLoadConstants",
+        &layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
+    );
+    assert_offsets(
+        &module(&kernels::TEXTURE_BLUR),
+        "TextureBlurConstants",
+        &layout!(gpu::TextureBlurConstants, weights, first_layer),
+    );
+}
+
+/// Fails unless a structure of a module has the members of `expected` at the same offsets.
+fn assert_offsets(module: &Module, structure: &str, expected: &[(String, u32)]) {
+    let found = offsets(module, structure).unwrap_or_else(|| panic!("{structure} is in the module"));
+    // An array in Rust may be several members in GLSL: compare the first of each
+    let found: Vec<_> =
+        found.into_iter().filter(|(name, _)| expected.iter().any(|(e, _)| e == name)).collect();
+    assert_eq!(found, expected, "{structure}");
 }
 
 #[test]
@@ -477,5 +484,12 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
     assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
+    let [width, height] = arealight::plan::BLUR_BLOCK.map(number);
+    assert_constants(TEXTURE_BLUR_COMP, "BLOCK_", &[("WIDTH", width), ("HEIGHT", height)]);
+    let called_for = [
+        ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLING)),
+        ("DECODING", number(gpu::TextureLoadConstants::DECODING)),
+    ];
+    assert_constants(TEXTURE_LOAD_COMP, "CALLED_FOR_", &called_for);
     assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
 }

@@ -4,7 +4,7 @@ use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::pass::{ComputePass, Resource};
 use arealight::gpu::TextureLoadConstants;
-use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD};
+use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD, constant};
 use arealight::{PyramidSize, TexturePart, plan};
 use ash::vk;
 use std::ops::Range;
@@ -64,8 +64,10 @@ pub struct LightTextures {
     context: Context,
     size: PyramidSize,
     layers: u32,
-    load: ComputePass,
-    blur: ComputePass,
+    /// By what is called for. Their layouts are alike, so that a set made for one is for all.
+    load: [ComputePass; 4],
+    /// By [`plan::BLUR_RADII`]. Likewise.
+    blur: [ComputePass; 3],
     image: vk::Image,
     view: vk::ImageView,
     level_views: Vec<vk::ImageView>,
@@ -82,10 +84,14 @@ impl LightTextures {
     /// [`Error::MissingFeature`] where it cannot filter or store to their format; [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, size: PyramidSize, layers: u32) -> Result<Self, Error> {
         check_size(context, size, layers)?;
-        // SAFETY: the same contract.
-        let load = unsafe { ComputePass::new(context, &TEXTURE_LOAD, &[]) }?;
-        // SAFETY: the same contract.
-        let blur = unsafe { ComputePass::new(context, &TEXTURE_BLUR, &[]) }?;
+        let pass = |kernel, constant| {
+            // SAFETY: the same contract.
+            unsafe { ComputePass::new(context, kernel, &[constant]) }
+        };
+        let load = |called_for| pass(&TEXTURE_LOAD, (constant::CALLED_FOR, called_for));
+        let load = [load(0)?, load(1)?, load(2)?, load(3)?];
+        let blur = |variant: usize| pass(&TEXTURE_BLUR, (constant::RADIUS, plan::BLUR_RADII[variant]));
+        let blur = [blur(0)?, blur(1)?, blur(2)?];
         let [width, height] = size.extent(0);
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
@@ -200,12 +206,12 @@ impl LightTextures {
 
     /// The layout of a descriptor set for an image that is loaded.
     pub fn source_set_layout(&self) -> vk::DescriptorSetLayout {
-        self.load.set_layout()
+        self.load[0].set_layout()
     }
 
     /// The layout of a descriptor set for a level.
     pub fn level_set_layout(&self) -> vk::DescriptorSetLayout {
-        self.blur.set_layout()
+        self.blur[0].set_layout()
     }
 
     /// How many sets there are for levels: one for each but the first.
@@ -215,12 +221,12 @@ impl LightTextures {
 
     /// What the sets of all levels, [`LightTextures::level_sets`], take from the host's descriptor pool.
     pub fn level_pool_sizes(&self) -> Vec<vk::DescriptorPoolSize> {
-        self.blur.pool_sizes(self.level_sets())
+        self.blur[0].pool_sizes(self.level_sets())
     }
 
     /// What the sets of `sources` images, at least one, take from the host's descriptor pool.
     pub fn source_pool_sizes(&self, sources: u32) -> Vec<vk::DescriptorPoolSize> {
-        self.load.pool_sizes(sources)
+        self.load[0].pool_sizes(sources)
     }
 
     /// Points a set at an image to load: a [`Resource::SampledImage`] with a 2D view, whose first level is read.
@@ -234,7 +240,7 @@ impl LightTextures {
     /// [`Error::InvalidArgument`] where the resource is null or no sampled image, or the textures have no memory.
     pub unsafe fn write_source_set(&self, set: vk::DescriptorSet, source: Resource) -> Result<(), Error> {
         // SAFETY: the same contract; the level is ours.
-        unsafe { self.load.write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
+        unsafe { self.load[0].write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
     }
 
     /// Points the sets of the levels from 1 on, in turn, at each level and the one before. Once is enough.
@@ -250,7 +256,7 @@ impl LightTextures {
             let finer = Resource::SampledImage { view: self.level_view(level - 1), layout: LAYOUT };
             let coarser = Resource::StorageImage { view: self.level_view(level) };
             // SAFETY: the caller vouches for the set; the levels are ours.
-            unsafe { self.blur.write_set(set, &[finer, coarser]) }?;
+            unsafe { self.blur[0].write_set(set, &[finer, coarser]) }?;
         }
         Ok(())
     }
@@ -331,20 +337,22 @@ impl LightTextures {
 
         // Load level 0, after whatever used the layers before
         barrier((everything, WRITE), (compute, READ | WRITE));
-        let groups = plan::texture_load(self.size).groups;
         for (update, constants) in updates.iter().zip(&constants) {
+            let groups = plan::texture_load(self.size, constants).groups;
+            let pass = &self.load[constants.called_for() as usize];
             let bytes = bytemuck::bytes_of(constants);
             // SAFETY: as above.
-            unsafe { self.load.record(command_buffer, update.source_set, bytes, groups) }?;
+            unsafe { pass.record(command_buffer, update.source_set, bytes, groups) }?;
         }
         // Make each further level from the one before
         for (level, &set) in (1..).zip(level_sets) {
             barrier((compute, WRITE), (compute, READ));
             for run in &layers {
                 let (dispatch, constants) = plan::texture_blur(self.size, level, run.clone());
+                let pass = &self.blur[plan::blur_variant(self.size, level)];
                 let bytes = bytemuck::bytes_of(&constants);
                 // SAFETY: as above.
-                unsafe { self.blur.record(command_buffer, set, bytes, dispatch.groups) }?;
+                unsafe { pass.record(command_buffer, set, bytes, dispatch.groups) }?;
             }
         }
         barrier((compute, WRITE), (everything, READ));

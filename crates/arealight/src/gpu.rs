@@ -144,7 +144,7 @@ pub struct EvalConstants {
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TextureLoadConstants {
     /// Where the middle of the content's first texel is in the image: in texels from the middle of texel 0, rounded
-    /// down. Where the image repeats, so large that no texel that is read has a negative index.
+    /// down. Where the image repeats, within its first repeat.
     pub first_texel: [i32; 2],
     /// What was rounded off, 0 to 1.
     pub first_offset: [f32; 2],
@@ -167,6 +167,18 @@ impl TextureLoadConstants {
     pub const MIRROR_U: u32 = GpuTexture::MIRROR_U;
     /// v is mirrored at every repeat.
     pub const MIRROR_V: u32 = GpuTexture::MIRROR_V;
+
+    /// What the kernel must be specialised for, to load with these: bits of [`crate::kernels::constant::CALLED_FOR`].
+    pub fn called_for(&self) -> u32 {
+        let copies = self.first_offset == [0.0; 2] && self.stride == [1.0; 2];
+        let decodes = self.flags & Self::SRGB != 0;
+        u32::from(!copies) * Self::RESAMPLING | u32::from(decodes) * Self::DECODING
+    }
+
+    /// Called for: texels are not copied one to one.
+    pub const RESAMPLING: u32 = 1;
+    /// Called for: sRGB is decoded.
+    pub const DECODING: u32 = 2;
 }
 
 /// Push constants of the kernel that makes a level of the light textures from the one before.
@@ -175,8 +187,6 @@ impl TextureLoadConstants {
 pub struct TextureBlurConstants {
     /// [`crate::pyramid::LevelKernel::weights`].
     pub weights: [f32; LevelKernel::MAX_RADIUS as usize],
-    /// [`crate::pyramid::LevelKernel::radius`], at least 1.
-    pub radius: u32,
     /// The layer of the first group in z.
     pub first_layer: u32,
 }

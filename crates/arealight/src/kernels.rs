@@ -92,6 +92,10 @@ pub mod constant {
     pub const LOBES: u32 = 6;
     /// [`crate::Footprint`].
     pub const FOOTPRINT: u32 = 7;
+    /// Taps to a side of a level's kernel that are summed, from [`crate::pyramid::LevelKernel::radius`] on.
+    pub const RADIUS: u32 = 8;
+    /// [`crate::gpu::TextureLoadConstants::called_for`].
+    pub const CALLED_FOR: u32 = 9;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -240,10 +244,11 @@ pub static TEXTURE_LOAD: Kernel = Kernel {
         ),
         write("out_level", BindingKind::StorageImage, Access::Write, "level 0, every layer (rgba16f)"),
     ],
-    constants: &[],
+    constants: &[constant::CALLED_FOR],
 };
 
-/// Makes a level of the light textures from the one before; an item a texel of the level and layer. Push constants:
+/// Makes a level of the light textures from the one before; an item a block of
+/// [`crate::plan::BLUR_BLOCK`] texels of the level and layer. Push constants:
 /// [`crate::gpu::TextureBlurConstants`].
 pub static TEXTURE_BLUR: Kernel = Kernel {
     name: "texture_blur",
@@ -254,7 +259,7 @@ pub static TEXTURE_BLUR: Kernel = Kernel {
         read("finer_level", BindingKind::SampledImage, "the level before, every layer (rgba16f)"),
         write("out_level", BindingKind::StorageImage, Access::Write, "the level, every layer (rgba16f)"),
     ],
-    constants: &[],
+    constants: &[constant::RADIUS],
 };
 
 /// Finds the surface that each pixel sees, by walking a hierarchy of triangles, and writes a G-buffer. For

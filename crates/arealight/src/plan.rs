@@ -1,9 +1,9 @@
 //! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
 //! recorder of this project or for one of your own.
 
-use crate::gpu::TextureBlurConstants;
+use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
-use crate::pyramid::PyramidSize;
+use crate::pyramid::{LevelKernel, PyramidSize};
 use crate::{Effects, Quality};
 
 /// Where the shade kernel takes positions from.
@@ -104,37 +104,51 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
     }
 }
 
-/// The pass that loads an image into a layer of light textures of `size`. Its constants are made by
+/// The pass that loads an image into a layer of light textures of `size`, with constants that are made by
 /// [`crate::TexturePart::load_constants`].
-pub fn texture_load(size: PyramidSize) -> Dispatch {
+pub fn texture_load(size: PyramidSize, constants: &TextureLoadConstants) -> Dispatch {
     let [width, height] = size.extent(0);
     Dispatch {
         kernel: &kernels::TEXTURE_LOAD,
-        specialization: vec![],
+        specialization: vec![(kernels::constant::CALLED_FOR, constants.called_for())],
         groups: kernels::TEXTURE_LOAD.groups_for([width, height, 1]),
     }
 }
 
-/// The pass that makes `level`, from 1 on, of `layers` layers of light textures of `size`, and its constants.
+/// Width and height in texels of what an item of the blur kernel makes.
+pub const BLUR_BLOCK: [u32; 2] = [4, 4];
+
+/// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the largest, and
+/// of all.
+pub const BLUR_RADII: [u32; 3] = [3, 4, LevelKernel::MAX_RADIUS];
+
+/// The place in [`BLUR_RADII`] of the fewest taps that are enough for a level.
+pub fn blur_variant(size: PyramidSize, level: u32) -> usize {
+    let radius = size.kernel(level).radius;
+    BLUR_RADII.iter().position(|enough| *enough >= radius).unwrap_or(BLUR_RADII.len() - 1)
+}
+
+/// The pass that makes `level`, from 1 on, of `layers` of light textures of `size`, and its constants.
 pub fn texture_blur(
     size: PyramidSize,
     level: u32,
     layers: std::ops::Range<u32>,
 ) -> (Dispatch, TextureBlurConstants) {
-    let ([width, height], kernel) = (size.extent(level), size.kernel(level));
+    let (extent, kernel) = (size.extent(level), size.kernel(level));
+    let [columns, rows] = [0, 1].map(|axis| extent[axis].div_ceil(BLUR_BLOCK[axis]));
+    let radius = BLUR_RADII[blur_variant(size, level)];
     let dispatch = Dispatch {
         kernel: &kernels::TEXTURE_BLUR,
-        specialization: vec![],
-        groups: kernels::TEXTURE_BLUR.groups_for([width, height, layers.end - layers.start]),
+        specialization: vec![(kernels::constant::RADIUS, radius)],
+        groups: kernels::TEXTURE_BLUR.groups_for([columns, rows, layers.end - layers.start]),
     };
-    let constants =
-        TextureBlurConstants { weights: kernel.weights, radius: kernel.radius, first_layer: layers.start };
-    (dispatch, constants)
+    (dispatch, TextureBlurConstants { weights: kernel.weights, first_layer: layers.start })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::TexturePart;
 
     #[test]
     fn groups_cover_every_pixel() {
@@ -142,8 +156,9 @@ mod tests {
         assert_eq!(dispatch.groups, [3, 1, 1]);
         assert_eq!(eval(Effects::all(), Quality::default(), 65).groups, [2, 1, 1]);
         let size = PyramidSize::new(128, 64).unwrap();
-        assert_eq!(texture_load(size).groups, [20, 10, 1]);
-        let (last, constants) = texture_blur(size, 4, 2..5);
-        assert_eq!((last.groups, constants.first_layer), ([2, 1, 3], 2));
+        let constants = TexturePart::default().load_constants([128, 64], size, 0, false).unwrap();
+        assert_eq!(texture_load(size, &constants).groups, [20, 10, 1]);
+        let (second, constants) = texture_blur(size, 1, 2..5);
+        assert_eq!((second.groups, constants.first_layer), ([3, 2, 3], 2));
     }
 }

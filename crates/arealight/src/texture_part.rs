@@ -74,6 +74,9 @@ pub enum TexturePartError {
     },
 }
 
+/// Nearer to a whole texel than this is on it.
+const WHOLE: f64 = 1e-6;
+
 impl TexturePart {
     /// The largest width and height of an image.
     pub const LARGEST_SOURCE: u32 = 4096;
@@ -112,15 +115,14 @@ impl TexturePart {
         let content = DVec2::from_array(size.content().map(f64::from));
         let stride = covered / content;
         let mut first = self.low * texels + 0.5 * stride - 0.5;
-        // A repeated image begins where no tent reaches before texel 0, so that the kernel needs no sign
+        // A repeated image begins within its first repeat, so that the kernel's numbers are small
         for axis in 0..2 {
             let period = match self.wrap[axis] {
                 Wrap::Clamp => continue,
                 Wrap::Repeat => texels[axis],
                 Wrap::Mirror => 2.0 * texels[axis],
             };
-            let reach = stride[axis].max(1.0) + 1.0;
-            first[axis] -= ((first[axis] - reach) / period).floor() * period;
+            first[axis] = first[axis].rem_euclid(period);
         }
         let clamp = [TextureLoadConstants::CLAMP_U, TextureLoadConstants::CLAMP_V];
         let mirror = [TextureLoadConstants::MIRROR_U, TextureLoadConstants::MIRROR_V];
@@ -130,6 +132,9 @@ impl TexturePart {
             Wrap::Mirror => mirror[axis],
         });
         let srgb = if decode { TextureLoadConstants::SRGB } else { 0 };
+        // What rounds to a whole texel is one, so that a copy is told by it
+        let nearest = first.round();
+        first = DVec2::select((first - nearest).abs().cmplt(DVec2::splat(WHOLE)), nearest, first);
         let first_texel: IVec2 = first.floor().as_ivec2();
         Ok(TextureLoadConstants {
             first_texel: first_texel.to_array(),
@@ -161,26 +166,22 @@ mod tests {
         let low = DVec2::new(22.0 / 300.0, 5.0 / 77.0);
         let size = DVec2::new(128.0 / 300.0, 64.0 / 77.0);
         let piece = constants(TexturePart { low, size, ..TexturePart::default() }, [300, 77]).unwrap();
-        assert_eq!(piece.stride, [1.0, 1.0]);
-        for (axis, expected) in [22.0, 5.0].into_iter().enumerate() {
-            assert_eq!(piece.first_texel[axis] as f32 + piece.first_offset[axis], expected);
-        }
+        assert_eq!((piece.first_texel, piece.first_offset, piece.stride), ([22, 5], [0.0, 0.0], [1.0, 1.0]));
+        let larger = constants(TexturePart::default(), [100, 64]).unwrap();
+        assert_eq!(larger.called_for(), TextureLoadConstants::RESAMPLING);
     }
 
     #[test]
-    fn a_repeated_image_is_read_from_texels_that_are_not_negative() {
-        for wrap in [Wrap::Repeat, Wrap::Mirror] {
+    fn a_repeated_image_is_read_from_its_first_repeat_on() {
+        for (wrap, repeats) in [(Wrap::Repeat, 1), (Wrap::Mirror, 2)] {
             for (low, size, source) in
                 [(-0.5, 1.0, 7), (-4096.0, 3.0, 100), (17.3, 16384.0, 1), (0.0, 0.01, 4096)]
             {
                 let part = TexturePart { low: DVec2::splat(low), size: DVec2::splat(size), wrap: [wrap; 2] };
                 let found = constants(part, [source; 2]).unwrap();
-                let period = source.cast_signed() * if wrap == Wrap::Mirror { 2 } else { 1 };
-                for axis in 0..2 {
-                    let reach = found.stride[axis].max(1.0).ceil() as i32;
-                    assert!(found.first_texel[axis] >= reach, "{found:?}");
-                    assert!(found.first_texel[axis] <= reach + 2 + period, "{found:?}");
-                }
+                // A whole period where the first texel is rounded to it
+                let within = 0..=source.cast_signed() * repeats;
+                assert!(found.first_texel.iter().all(|texel| within.contains(texel)), "{found:?}");
             }
         }
     }

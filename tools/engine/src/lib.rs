@@ -12,6 +12,7 @@ mod passes;
 mod render;
 mod scene_textures;
 mod table;
+mod texture_array;
 mod textures;
 
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
@@ -20,6 +21,7 @@ pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes};
 pub use render::SceneRenderer;
+pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 
 use arealight::LightTable;
@@ -29,7 +31,6 @@ use arealight_vk::{ComputePass, Context, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
 use table::UploadedTable;
-use textures::UploadedTextures;
 
 /// A failure of the engine.
 #[derive(Debug, thiserror::Error)]
@@ -102,7 +103,7 @@ impl From<arealight::LightError> for EngineError {
 pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
-    textures: Option<UploadedTextures>,
+    textures: Option<TextureArray>,
     passes: Passes,
 }
 
