@@ -6,9 +6,9 @@
 // whose taps stop at the margin's edge. arealight::PyramidSize::kernel gives its weights; sums are in float32.
 //
 // Each invocation makes a block of texels out of registers: of what it reads, neighbours share the most. Shared memory
-// would read less, and take twice the time in software.
+// would read less, and take twice the time in software. Wide groups read long rows.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 32, local_size_y = 2) in;
 
 #include "half.glsl"
 

@@ -5,7 +5,7 @@
 // Resamples a part of an image into level 0 of a layer of the light textures, and extends its edge into the margin.
 // crates/arealight/src/texture_part.rs makes the constants.
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 32, local_size_y = 2) in;
 
 #include "half.glsl"
 

@@ -325,16 +325,20 @@ fn every_structure_has_the_same_offsets() {
 
 #[test]
 fn the_texture_kernels_constants_have_the_same_offsets() {
-    assert_offsets(
-        &module(&kernels::TEXTURE_LOAD),
-        "TextureLoadConstants",
-        &layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
-    );
-    assert_offsets(
-        &module(&kernels::TEXTURE_BLUR),
-        "TextureBlurConstants",
-        &layout!(gpu::TextureBlurConstants, weights, first_layer),
-    );
+    for (kernel, structure, expected) in [
+        (
+            &kernels::TEXTURE_LOAD,
+            "TextureLoadConstants",
+            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
+        ),
+        (
+            &kernels::TEXTURE_BLUR,
+            "TextureBlurConstants",
+            layout!(gpu::TextureBlurConstants, weights, first_layer),
+        ),
+    ] {
+        assert_offsets(&module(kernel), structure, &expected);
+    }
 }
 
 /// Fails unless a structure of a module has the members of `expected` at the same offsets.

@@ -234,7 +234,7 @@ pub static REFERENCE: Kernel = Kernel {
 pub static TEXTURE_LOAD: Kernel = Kernel {
     name: "texture_load",
     spirv: include_bytes!("../spirv/texture_load.spv"),
-    local_size: [8, 8, 1],
+    local_size: [32, 2, 1],
     push_constant_size: size_of::<crate::gpu::TextureLoadConstants>() as u32,
     bindings: &[
         read(
@@ -253,7 +253,7 @@ pub static TEXTURE_LOAD: Kernel = Kernel {
 pub static TEXTURE_BLUR: Kernel = Kernel {
     name: "texture_blur",
     spirv: include_bytes!("../spirv/texture_blur.spv"),
-    local_size: [8, 8, 1],
+    local_size: [32, 2, 1],
     push_constant_size: size_of::<crate::gpu::TextureBlurConstants>() as u32,
     bindings: &[
         read("finer_level", BindingKind::SampledImage, "the level before, every layer (rgba16f)"),
