@@ -108,7 +108,8 @@ fn tone_map(color: Vec3) -> Vec3 {
     (color * (rolled / peak)).lerp(Vec3::splat(rolled), white)
 }
 
-fn srgb_from_linear(linear: f32) -> u8 {
+/// The byte that a screen shows as `linear`; what is outside of [0, 1] is clamped.
+pub fn srgb_from_linear(linear: f32) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let encoded = if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0 + 0.5) as u8

@@ -72,6 +72,11 @@ fn wrong_arguments_are_exit_code_2() {
     );
     refuse(folder.path(), &["inspect", "--quads", "9"], 2, &["--errors"]);
     refuse(folder.path(), &["inspect", "--errors", "--quads", "2"], 2, &["--quads", "3..=3000"]);
+    refuse(folder.path(), &["inspect", "--layer", "1"], 2, &["--pyramid"]);
+    refuse(folder.path(), &["inspect", "--pyramid", "a.png", "--entries", "-o", "b.png"], 2, &["--entries"]);
+    refuse(folder.path(), &["inspect", "--pyramid", "a.png", "--layer", "1"], 2, &["--layer", "one texture"]);
+    let screen = scene("screen.glb");
+    refuse(folder.path(), &["inspect", "--pyramid", &screen, "--layer", "2"], 2, &["--layer", "from 0 to 1"]);
 }
 
 #[test]
@@ -112,6 +117,66 @@ fn bad_cases_are_exit_code_3_and_named() {
     write(folder.path(), "noise.exr", "not a table");
     refuse(folder.path(), &["inspect", "noise.exr"], 3, &["noise.exr"]);
     refuse(folder.path(), &["inspect", "--errors", "noise.exr"], 3, &["noise.exr"]);
+}
+
+#[test]
+fn bad_pictures_are_exit_code_3_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let refuse = |name: &str, words: &[&str]| {
+        refuse(folder.path(), &["inspect", "--pyramid", name], 3, &[&[name], words].concat());
+    };
+    write(folder.path(), "noise.exr", "not a picture");
+    write(folder.path(), "noise.png", "not a picture");
+    for name in ["missing.exr", "missing.png", "missing.glb", "noise.exr", "noise.png"] {
+        refuse(name, &[]);
+    }
+    refuse(&scene("room.glb"), &["no light shows a texture"]);
+    image::RgbImage::new(5000, 1).save(folder.path().join("long.png")).unwrap();
+    refuse("long.png", &["5000 x 1", "scale it down"]);
+}
+
+#[test]
+fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
+    let folder = tempfile::tempdir().unwrap();
+    if !device() {
+        return;
+    }
+    let inspect = |arguments: &[&str]| {
+        let output = run(folder.path(), &[&["inspect", "--json", "--pyramid"], arguments].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+        serde_json::from_slice::<serde_json::Value>(&output.stdout).expect("--json prints JSON")
+    };
+    // The two textures of a scene
+    let screen = scene("screen.glb");
+    let card = inspect(&[&screen, "-o", "card.png"]);
+    assert_eq!(
+        (&card["content"], card["levels"].as_array().unwrap().len()),
+        (&serde_json::json!([512, 512]), 8)
+    );
+    assert!(card["texture"].as_str().unwrap().ends_with("'test card', shown by 'television'"), "{card}");
+    inspect(&[&screen, "--layer", "1", "-o", "sign.png"]);
+    let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
+    assert!(picture("card.png") != picture("sign.png"));
+
+    // A constant stays what it is: sRGB 188 is 0.503 linear, which half precision holds to 2.5e-4
+    image::RgbImage::from_pixel(50, 20, image::Rgb([188; 3])).save(folder.path().join("gray.png")).unwrap();
+    exr::prelude::write_rgb_file(folder.path().join("bright.exr"), 70, 70, |_, _| {
+        (300.0_f32, 0.5_f32, 0.0_f32)
+    })
+    .unwrap();
+    for (name, content, expected) in
+        [("gray.png", [64, 64], [0.502_886; 3]), ("bright.exr", [128, 128], [300.0, 0.5, 0.0])]
+    {
+        let summary = inspect(&[name, "-o", "constant.png"]);
+        assert_eq!(summary["content"], serde_json::json!(content));
+        for level in summary["levels"].as_array().unwrap() {
+            for (channel, expected) in expected.into_iter().enumerate() {
+                let mean = level["mean"][channel].as_f64().unwrap();
+                // Each of a few levels rounds to half precision, relative 2^-11
+                assert!((mean - expected).abs() <= 2.5e-3 * expected, "{name}: {mean} for {expected}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -21,13 +21,16 @@ mod error_maps;
 mod errors;
 mod lobes;
 mod panel;
+mod pyramid;
+mod pyramid_picture;
 
-/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries.
+/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or what a light's
+/// texture becomes.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The table; the one that is built in if none is given.
     table: Option<PathBuf>,
-    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors or --entries.
+    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors, --entries or --pyramid.
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
     /// The reflectance at normal incidence of the lobes in the picture, 0 to 1.
@@ -47,12 +50,25 @@ pub struct Arguments {
     /// Draw the table's entries and albedos.
     #[arg(long, requires = "output")]
     entries: bool,
+    /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more than the one before.
+    /// Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
+    #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "fresnel"])]
+    pyramid: Option<PathBuf>,
+    /// Which of the scene's light textures --pyramid draws, from 0.
+    #[arg(long, value_name = "INDEX", default_value_t = 0, requires = "pyramid")]
+    layer: u32,
+    /// The Vulkan device that makes the pyramid, by a part of its name.
+    #[arg(long, value_name = "NAME", requires = "pyramid")]
+    device: Option<String>,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if let Some(path) = &arguments.pyramid {
+        return run_pyramid(path, arguments);
+    }
     if !(0.0..=1.0).contains(&arguments.f0) {
         let message = format!("{} is not in 0 to 1", arguments.f0);
         return Err(Failure::Argument { argument: "--f0", message });
@@ -74,6 +90,14 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let summary = Summary { name: &name, table: &table, channels: &channels, errors: errors.as_deref() };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
+}
+
+fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let pyramid = pyramid::make(path, arguments.layer, arguments.device.as_deref())?;
+    if let Some(output) = &arguments.output {
+        pyramid_picture::draw(&pyramid).save_png(output)?;
+    }
+    print(&if arguments.json { pyramid.to_json() } else { pyramid.to_text() })
 }
 
 impl Arguments {

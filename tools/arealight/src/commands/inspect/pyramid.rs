@@ -1,0 +1,232 @@
+//! A light's texture as the GPU prefilters it, read back.
+
+use crate::failure::Failure;
+use crate::gpu;
+use arealight::TexturePart;
+use arealight::pyramid::PyramidSize;
+use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
+use arealight_scene::Scene;
+use glam::DVec3;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// The most texels a side: what a picture of levels side by side can show, and what `render` uses.
+const LARGEST: u32 = 1024;
+
+/// A light texture and where it is from.
+pub struct Pyramid {
+    /// The file, and what of it.
+    pub name: String,
+    pub size: PyramidSize,
+    pub levels: Vec<Level>,
+}
+
+/// A level with its margins.
+pub struct Level {
+    /// Width and height in texels.
+    pub extent: [u32; 2],
+    /// Texels of the margin to each side of the content.
+    pub margin: [f64; 2],
+    /// The standard deviation of its blur, in texels of level 0.
+    pub blur: f64,
+    /// Linear light, row after row from the top.
+    pub texels: Vec<[f32; 4]>,
+}
+
+impl Level {
+    pub fn texel(&self, x: u32, y: u32) -> DVec3 {
+        let [r, g, b, _] = self.texels[(y * self.extent[0] + x) as usize].map(f64::from);
+        DVec3::new(r, g, b)
+    }
+
+    /// The mean of the content; texels on its border count in part.
+    fn mean(&self) -> DVec3 {
+        let share = |index: u32, axis: usize| {
+            let (low, high) = (self.margin[axis], f64::from(self.extent[axis]) - self.margin[axis]);
+            ((f64::from(index) + 1.0).min(high) - f64::from(index).max(low)).max(0.0)
+        };
+        let (mut sum, mut area) = (DVec3::ZERO, 0.0);
+        for (x, y) in (0..self.extent[1]).flat_map(|y| (0..self.extent[0]).map(move |x| (x, y))) {
+            let weight = share(x, 0) * share(y, 1);
+            sum += self.texel(x, y) * weight;
+            area += weight;
+        }
+        sum / area
+    }
+}
+
+/// Prefilters an image, or layer `layer` of a scene's light textures, on a device.
+///
+/// # Errors
+/// [`Failure`] where there is no such file, layer or device.
+pub fn make(path: &Path, layer: u32, device: Option<&str>) -> Result<Pyramid, Failure> {
+    // Read the file, before a device is asked for
+    let ending = path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).unwrap_or_default();
+    let (name, input) = match ending.as_str() {
+        "glb" | "gltf" => {
+            let scene = Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?;
+            (layer_name(path, &scene, layer)?, Input::Scene(Box::new(scene)))
+        }
+        _ if layer > 0 => {
+            let message = format!("{layer}: an image is one texture, 0");
+            return Err(Failure::Argument { argument: "--layer", message });
+        }
+        "exr" => (path.display().to_string(), Input::Image(Loaded::exr(path)?)),
+        _ => (path.display().to_string(), Input::Image(Loaded::encoded(path)?)),
+    };
+    // Make the pyramid, and read it back
+    let mut engine = gpu::engine(device, &arealight_table::ggx())?;
+    match input {
+        Input::Scene(scene) => engine.load_scene_textures(&scene, LARGEST),
+        Input::Image(image) => image.load(&mut engine),
+    }
+    .and_then(|()| read_back(&engine, name, layer))
+    .map_err(|error| gpu::failure(error, path))
+}
+
+enum Input {
+    Scene(Box<Scene>),
+    Image(Loaded),
+}
+
+/// What a scene's layer is called: its image, and who shows it.
+fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure> {
+    let count = scene.light_textures.len();
+    if count == 0 {
+        return Err(Failure::input(path, "no light shows a texture (an emissiveTexture on a flat part)"));
+    }
+    let Some(shown) = scene.light_textures.get(layer as usize) else {
+        let message = format!("{layer}: {} has {count}, from 0 to {}", path.display(), count - 1);
+        return Err(Failure::Argument { argument: "--layer", message });
+    };
+    let image = &scene.images[scene.textures[shown.texture as usize].image as usize].name;
+    let shows = |light: &&arealight::PolygonLight| {
+        light.texture.as_ref().is_some_and(|texture| texture.layer == layer)
+    };
+    let lights: Vec<&str> = scene.lights.iter().filter(shows).map(|light| light.name.as_str()).collect();
+    let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
+    let light = lights.first().copied().unwrap_or_default();
+    // Text of a file that may be anybody's must not steer the terminal
+    let (image, light) = (image.escape_debug(), light.escape_debug());
+    Ok(format!("{}: '{image}', shown by '{light}'{more}", path.display()))
+}
+
+fn read_back(engine: &Engine, name: String, layer: u32) -> Result<Pyramid, EngineError> {
+    let size = engine.texture_size().expect("textures were loaded");
+    let level = |level: u32| -> Result<Level, EngineError> {
+        let (extent, margin, blur) = (size.extent(level), size.margin(level), size.blur(level));
+        Ok(Level { extent, margin, blur, texels: engine.download_level(layer, level)? })
+    };
+    let levels = (0..size.levels()).map(level).collect::<Result<_, _>>()?;
+    Ok(Pyramid { name, size, levels })
+}
+
+/// An image from a file.
+struct Loaded {
+    size: [u32; 2],
+    texels: Texels,
+}
+
+enum Texels {
+    Srgb(Vec<[u8; 4]>),
+    Linear(Vec<[f32; 4]>),
+}
+
+impl Loaded {
+    fn exr(path: &Path) -> Result<Self, Failure> {
+        let image = exr::prelude::read_first_rgba_layer_from_file(
+            path,
+            |size, _| (size.width(), vec![[0.0; 4]; size.area()]),
+            |(width, texels), place, (r, g, b, a): (f32, f32, f32, f32)| {
+                texels[place.y() * *width + place.x()] = [r, g, b, a];
+            },
+        );
+        let layer = image.map_err(|error| Failure::input(path, error))?.layer_data;
+        let size = [layer.size.width(), layer.size.height()].map(|side| side as u32);
+        Self { size, texels: Texels::Linear(layer.channel_data.pixels.1) }.check(path)
+    }
+
+    fn encoded(path: &Path) -> Result<Self, Failure> {
+        let failed = |error: image::ImageError| Failure::input(path, error);
+        let reader = image::ImageReader::open(path).and_then(image::ImageReader::with_guessed_format);
+        let reader = reader.map_err(|error| Failure::input(path, error))?;
+        let pixels = reader.decode().map_err(failed)?.into_rgba8();
+        let size = [pixels.width(), pixels.height()];
+        Self { size, texels: Texels::Srgb(pixels.pixels().map(|pixel| pixel.0).collect()) }.check(path)
+    }
+
+    /// That the image can be loaded.
+    fn check(self, path: &Path) -> Result<Self, Failure> {
+        let constants = TexturePart::default().load_constants(self.size, self.pyramid_size(), 0, false);
+        constants.map_err(|error| Failure::input(path, error))?;
+        Ok(self)
+    }
+
+    fn pyramid_size(&self) -> PyramidSize {
+        let [width, height] = self.size.map(|side| side.min(LARGEST));
+        PyramidSize::for_image(width, height)
+    }
+
+    /// Loads the whole image.
+    fn load(&self, engine: &mut Engine) -> Result<(), EngineError> {
+        let texels = match &self.texels {
+            Texels::Srgb(texels) => SourceTexels::Srgb(texels),
+            Texels::Linear(texels) => SourceTexels::Linear(texels),
+        };
+        let image = SourceImage { texels, size: self.size, part: TexturePart::default() };
+        engine.load_textures(self.pyramid_size(), &[image])
+    }
+}
+
+impl Pyramid {
+    /// A level's blur in units of the content's size, the geometric mean of both sides.
+    pub fn share(&self, level: &Level) -> f64 {
+        let [width, height] = self.size.content().map(f64::from);
+        level.blur / (width * height).sqrt()
+    }
+
+    pub fn to_text(&self) -> String {
+        let [width, height] = self.size.content();
+        let mut text =
+            format!("{}\ncontent  {width} x {height} texels, {} in all\n\n", self.name, self.size.texels());
+        let heads = ["level", "extent", "margin", "blur/texels", "blur/size"];
+        let [level, extent, margin, blur, share] = heads;
+        let _ = writeln!(text, "{level:<6} {extent:>11} {margin:>9} {blur:>12} {share:>10}  mean");
+        for (number, level) in self.levels.iter().enumerate() {
+            let mean = level.mean();
+            let [extent, margin] = [
+                format!("{} x {}", level.extent[0], level.extent[1]),
+                format!("{}, {}", level.margin[0], level.margin[1]),
+            ];
+            let (blur, share) = (level.blur, self.share(level));
+            let _ = writeln!(
+                text,
+                "{number:<6} {extent:>11} {margin:>9} {blur:>12.2} {share:>10.4}  {:.4} {:.4} {:.4}",
+                mean.x, mean.y, mean.z
+            );
+        }
+        text.push_str(
+            "\nblur: a standard deviation, in texels of level 0 and in sizes of the content. mean: of the content\n",
+        );
+        text
+    }
+
+    pub fn to_json(&self) -> String {
+        let level = |level: &Level| {
+            json!({
+                "extent": level.extent,
+                "margin": level.margin,
+                "blur_texels": level.blur,
+                "blur": self.share(level),
+                "mean": level.mean().to_array(),
+            })
+        };
+        let summary = json!({
+            "texture": self.name,
+            "content": self.size.content(),
+            "levels": self.levels.iter().map(level).collect::<Value>(),
+        });
+        format!("{summary:#}\n")
+    }
+}
