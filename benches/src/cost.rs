@@ -5,9 +5,9 @@
 
 use arealight::FormFactor;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
-use arealight_engine::{BoundSet, EngineError, Kept, Passes};
+use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
 use arealight_host::{Buffer, Host};
-use arealight_vk::{ComputePass, Resource};
+use arealight_vk::Resource;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -109,7 +109,7 @@ const WORK_ITEMS: usize = 4096;
 const REPEATS: u32 = 256;
 
 struct Run {
-    pass: Kept<ComputePass>,
+    pass: SharedPass,
     set: BoundSet,
     results: Buffer,
     seconds: Vec<f64>,

@@ -2,10 +2,10 @@
 
 use crate::method::Method;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
-use arealight_engine::{EngineError, Kept, Passes};
+use arealight_engine::{EngineError, Passes, SharedPass};
 use arealight_host::Host;
 use arealight_oracle::hard::HardCase;
-use arealight_vk::{ComputePass, Resource};
+use arealight_vk::Resource;
 use bytemuck::{Pod, Zeroable};
 
 /// A polygon's record: anchor, and where its offsets are.
@@ -52,7 +52,7 @@ pub static FORM_FACTOR: Kernel = Kernel {
 
 /// The kernel on a device, once for each method.
 pub struct FormFactorKernel {
-    pipelines: Vec<Kept<ComputePass>>,
+    pipelines: Vec<SharedPass>,
     passes: Passes,
 }
 
@@ -78,7 +78,7 @@ impl FormFactorKernel {
         let polygons = host.storage_buffer("polygons", &polygons)?;
         let offsets = host.storage_buffer("offsets", &offsets)?;
         let constants = FormFactorConstants { polygon_count: cases.len() as u32 };
-        let run = |pass: &Kept<ComputePass>| {
+        let run = |pass: &SharedPass| {
             // What is not written stays NaN
             let results = host.storage_buffer("results", &vec![u32::MAX; cases.len()])?;
             let resources = [&polygons, &offsets, &results].map(|buffer| Resource::buffer(buffer.handle()));

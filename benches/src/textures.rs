@@ -4,10 +4,10 @@ use crate::cost::quantile;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
 use arealight::{PyramidSize, TexturePart};
 use arealight_engine::{
-    BoundSet, EngineError, Kept, Passes, SourceImage, SourceTexels, TextureArray, TextureSource,
+    BoundSet, EngineError, Passes, SharedPass, SourceImage, SourceTexels, TextureArray, TextureSource,
 };
 use arealight_host::{Host, Image, ImageDescription, Usage};
-use arealight_vk::{ComputePass, Resource};
+use arealight_vk::Resource;
 use ash::vk;
 use std::fmt::Write as _;
 use std::time::Instant;
@@ -56,8 +56,8 @@ pub struct TextureCost {
 /// A chain of mips, of an image a level: the image, then a copy of it, then each half of the one before.
 struct Mips {
     levels: Vec<Image>,
-    copy: Kept<ComputePass>,
-    halve: Kept<ComputePass>,
+    copy: SharedPass,
+    halve: SharedPass,
     sets: Vec<BoundSet>,
 }
 

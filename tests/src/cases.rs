@@ -5,9 +5,9 @@ use arealight::PackedLights;
 use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
 use arealight::kernels::EVAL;
 use arealight::{Effects, Quality, plan};
-use arealight_engine::{EvalPoint, Kept, gpu_case};
+use arealight_engine::{EvalPoint, gpu_case};
 use arealight_oracle::hard::HardCase;
-use arealight_vk::{ComputePass, Resource};
+use arealight_vk::Resource;
 use glam::DVec3;
 
 /// What the eval kernel reads: a case and a light for each shading point, the point being the lights' origin.
@@ -83,12 +83,7 @@ impl TestEngine {
             self.light_textures(),
         ];
         let constants = EvalConstants { case_count: given.cases.len() as u32 };
-        let mut passes = self.passes.borrow_mut();
-        let pass = passes.entry((effects, quality)).or_insert_with(|| {
-            // SAFETY: The engine, which is dropped after its passes, keeps the device; submissions are waited for.
-            let pass = unsafe { ComputePass::new(self.context(), &EVAL, &dispatch.specialization) };
-            Kept::new(host, pass.expect("a pipeline"))
-        });
+        let pass = self.passes().pass(&EVAL, &dispatch.specialization).expect("a pipeline");
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
             let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");

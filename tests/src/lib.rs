@@ -15,20 +15,12 @@ pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
 pub use property::Property;
 pub use rungs::{FORM_FACTORS, Path, Rung};
 
-use arealight::{Effects, Quality};
-use arealight_engine::{Engine, Kept};
+use arealight_engine::Engine;
 use arealight_host::testing::TestHost;
-use arealight_vk::{ComputePass, TableFormat};
-use std::cell::RefCell;
-use std::collections::HashMap;
-
-/// Passes by effects and quality.
-type Passes = HashMap<(Effects, Quality), Kept<ComputePass>>;
+use arealight_vk::TableFormat;
 
 /// A device with the built-in table. Fields go in this order, so that the host hears what was left behind.
 pub struct TestEngine {
-    /// Passes of the eval kernel: a software driver compiles each for a third of a second.
-    passes: RefCell<Passes>,
     engine: Engine,
     host: TestHost,
 }
@@ -64,7 +56,7 @@ impl TestEngine {
         let host = arealight_host::testing::device_or_skip()?;
         let engine =
             Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
-        Some(Self { passes: RefCell::default(), engine, host })
+        Some(Self { engine, host })
     }
 
     /// The validated host.

@@ -113,18 +113,19 @@ impl PolygonLight {
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
         let middle = (low + high) * 0.5;
         let normal = self.area_vector().normalize_or_zero();
-        // Weigh the triangles of a fan about the middle by their signed areas
+        // Weigh the triangles of a fan about a vertex, which is in the plane, by their signed areas
+        let apex = self.vertices[0];
         let next = self.vertices.iter().cycle().skip(1);
         let (mut area, mut moment) = (0.0, DVec3::ZERO);
         for (a, b) in self.vertices.iter().zip(next) {
-            let (a, b) = (*a - middle, *b - middle);
+            let (a, b) = (*a - apex, *b - apex);
             let weight = a.cross(b).dot(normal);
             area += weight;
             moment += (a + b) * (weight / 3.0);
         }
-        let shift = if area > 0.0 { moment / area } else { DVec3::ZERO };
+        let center = if area > 0.0 { apex + moment / area } else { middle };
         // Rounding has its way with slivers; their middle stays within their box
-        if shift.is_finite() { (middle + shift).clamp(low, high) } else { middle }
+        if center.is_finite() { center.clamp(low, high) } else { middle }
     }
 
     /// Whether the outline is convex and flat, both to a ten-thousandth of its size, and has at most four vertices:
@@ -306,6 +307,17 @@ mod tests {
     #[test]
     fn the_front_is_the_right_hand_side() {
         assert_eq!(arrow().area_vector(), DVec3::new(0.0, 0.0, 1.0));
+    }
+
+    #[test]
+    fn the_center_of_a_tilted_polygon_is_in_its_plane() {
+        // The middle of its box is not
+        let light = PolygonLight {
+            vertices: vec![DVec3::X, DVec3::Y * 2.0, DVec3::Z * 3.0],
+            radiance: Vec3::ONE,
+            ..PolygonLight::default()
+        };
+        assert!((light.center() - DVec3::new(1.0, 2.0, 3.0) / 3.0).length() < 1e-15);
     }
 
     #[test]

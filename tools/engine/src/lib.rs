@@ -19,7 +19,7 @@ pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
 pub use g_buffer::GBuffer;
 pub use kept::Kept;
-pub use passes::{BoundSet, Passes};
+pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::SceneRenderer;
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
@@ -27,7 +27,7 @@ pub use textures::{SourceImage, SourceTexels};
 use arealight::LightTable;
 use arealight::kernels::Kernel;
 use arealight_host::Buffer;
-use arealight_vk::{ComputePass, Context, Resource, TableFormat};
+use arealight_vk::{Context, Resource, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
 use table::UploadedTable;
@@ -123,6 +123,11 @@ impl Engine {
         self.passes.host()
     }
 
+    /// The pipelines made so far, to make others.
+    pub fn passes(&self) -> &Passes {
+        &self.passes
+    }
+
     /// The recorder's context, to make passes from.
     pub fn context(&self) -> &Context {
         self.passes.context()
@@ -162,7 +167,7 @@ impl Engine {
 
 /// A pass with the descriptor set of its only run.
 struct BoundPass {
-    pass: Kept<ComputePass>,
+    pass: SharedPass,
     set: BoundSet,
 }
 

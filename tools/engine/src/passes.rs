@@ -6,10 +6,22 @@ use arealight_host::{DescriptorPool, Host};
 use arealight_vk::{ComputePass, Context, HostDevice, Resource};
 use ash::vk;
 use bytemuck::Pod;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::rc::Rc;
 
-/// A host, with the recorder's context on it to make passes from.
+/// A kernel's name, with the values of its specialisation constants.
+type Specialized = (&'static str, Vec<(u32, u32)>);
+
+/// A pipeline that its users share.
+pub type SharedPass = Rc<Kept<ComputePass>>;
+
+/// A host, with the recorder's context on it to make passes from. Pipelines are made on demand and kept: a software driver
+/// takes a second for one.
 pub struct Passes {
-    // Goes before the device
+    // Go before the device
+    made: RefCell<HashMap<Specialized, SharedPass>>,
     context: Context,
     host: Host,
 }
@@ -28,7 +40,7 @@ impl Passes {
         };
         // SAFETY: The handles belong together and are kept alive by `host`, which this drops last.
         let context = unsafe { Context::new(&handles) }?;
-        Ok(Self { context, host })
+        Ok(Self { made: RefCell::default(), context, host })
     }
 
     /// The device.
@@ -41,7 +53,7 @@ impl Passes {
         &self.context
     }
 
-    /// A pipeline of `kernel`.
+    /// The pipeline of `kernel`, whose name no other kernel has.
     ///
     /// # Errors
     /// [`EngineError`] where the device cannot make it.
@@ -49,11 +61,17 @@ impl Passes {
         &self,
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
-    ) -> Result<Kept<ComputePass>, EngineError> {
-        // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed out
-        // it is leaked. The host, which `Kept` holds, outlives it.
-        let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
-        Ok(Kept::new(&self.host, pass))
+    ) -> Result<SharedPass, EngineError> {
+        let mut made = self.made.borrow_mut();
+        match made.entry((kernel.name, specialization.to_vec())) {
+            Entry::Occupied(found) => Ok(Rc::clone(found.get())),
+            Entry::Vacant(place) => {
+                // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed
+                // out it is leaked. The host, which `Kept` holds, outlives it.
+                let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
+                Ok(Rc::clone(place.insert(Rc::new(Kept::new(&self.host, pass)))))
+            }
+        }
     }
 
     /// A descriptor set for `pass` that points at `resources`.

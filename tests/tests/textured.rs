@@ -1,0 +1,312 @@
+//! Lights that show an image: energy, orientation, and the cases that have no easy answer.
+
+use arealight::{
+    Footprint, FormFactor, Fresnel, Horizon, LightTexture, PolygonLight, PyramidSize, Quality, Surface,
+};
+use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
+use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
+use glam::{DVec2, DVec3, Vec3};
+
+const FOOTPRINTS: [Footprint; 4] =
+    [Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour];
+
+/// Layers of the test's textures.
+const WHITE: u32 = 0;
+const SPLIT: u32 = 1;
+const HUGE: u32 = 2;
+
+const SIZE: u32 = 64;
+
+/// White; red on the left half, green on the right, and blue added to the upper half; and texels of 0 and 65,504 in turn.
+fn engine() -> Option<TestEngine> {
+    let mut engine = TestEngine::new()?;
+    let half = |index: u32| if index < SIZE / 2 { 1.0 } else { 0.0 };
+    let picture = |texel: &dyn Fn(u32, u32) -> [f32; 4]| -> Vec<[f32; 4]> {
+        (0..SIZE * SIZE).map(|index| texel(index % SIZE, index / SIZE)).collect()
+    };
+    let white = picture(&|_, _| [1.0; 4]);
+    let split = picture(&|column, row| [half(column), 1.0 - half(column), half(row), 1.0]);
+    let huge = picture(&|column, row| [if (column + row) % 2 == 0 { 65_504.0 } else { 0.0 }; 4]);
+    let image = |texels| SourceImage {
+        texels: SourceTexels::Linear(texels),
+        size: [SIZE, SIZE],
+        part: arealight::TexturePart::default(),
+    };
+    let size = PyramidSize::new(SIZE, SIZE).unwrap();
+    engine.load_textures(size, &[image(&white), image(&split), image(&huge)]).unwrap();
+    Some(engine)
+}
+
+/// The image laid onto the polygon: its box in the polygon's plane shows all of it.
+fn shown(light: &mut PolygonLight, layer: u32) {
+    let normal = light.area_vector().normalize_or(DVec3::Z);
+    let u = (light.vertices[1] - light.vertices[0]).normalize_or(DVec3::X);
+    let v = normal.cross(u);
+    let flat: Vec<DVec2> = light.vertices.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
+    let low = flat.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let high = flat.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let uvs = flat.iter().map(|p| (*p - low) / (high - low)).collect();
+    light.texture = Some(LightTexture { layer, uvs });
+}
+
+/// A rectangle around `center` that faces the origin.
+fn rectangle(random: &mut Random, center: DVec3, size: f64) -> Vec<DVec3> {
+    let towards = random.direction();
+    let normal = if towards.dot(center) > 0.0 { -towards } else { towards };
+    let (u, v) = normal.any_orthonormal_pair();
+    let (u, v) = (u * size * random.between(0.3, 1.0), v * size * random.between(0.3, 1.0));
+    vec![center - u - v, center + u - v, center + u + v, center - u + v]
+}
+
+/// Points under rectangles and under polygons of up to seven vertices: over all angles, distances and roughnesses.
+fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    (0..count)
+        .map(|index| {
+            let distance = 10.0_f64.powf(random.between(-1.0, 2.0));
+            let center = random.direction() * distance;
+            let size = distance * random.between(0.05, 1.5);
+            let vertices = if index % 2 == 0 {
+                rectangle(&mut random, center, size)
+            } else {
+                random.polygon(center, 3 + index / 2 % 5, size * 0.3, size)
+            };
+            let cos_view = random.between(0.02, 1.0);
+            let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
+            let surface = if index % 3 == 0 {
+                lambert_surface()
+            } else {
+                glossy_surface(10.0_f64.powf(random.between(-3.0, 0.0)))
+            };
+            let mut given = point(surface, view, vertices, index % 5 == 0);
+            shown(&mut given.light, layer);
+            given
+        })
+        .collect()
+}
+
+fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
+    let plain = |point: &EvalPoint| {
+        let light = PolygonLight { texture: None, ..point.light.clone() };
+        EvalPoint { light, ..point.clone() }
+    };
+    points.iter().map(plain).collect()
+}
+
+/// Rungs with textures, over the other choices too.
+fn qualities() -> Vec<Quality> {
+    let mut qualities = Vec::new();
+    for footprint in FOOTPRINTS {
+        let plain = Quality { footprint, ..Quality::default() };
+        qualities.push(plain);
+        qualities.push(Quality {
+            form_factor: FormFactor::ExactDifference,
+            fresnel: Fresnel::Split,
+            horizon: Horizon::Both,
+            ..plain
+        });
+    }
+    qualities
+}
+
+#[test]
+fn a_white_image_changes_nothing() {
+    let Some(engine) = engine() else { return };
+    let textured = points(1, WHITE, 600);
+    let plain = without_texture(&textured);
+    for quality in qualities() {
+        let with = engine.eval(&textured, quality).unwrap();
+        let without = engine.eval(&plain, quality).unwrap();
+        let mut comparison = Comparison::new(format!("{quality:?}"));
+        let mut lit = 0;
+        for (index, (with, without)) in with.iter().zip(&without).enumerate() {
+            // White is exact in binary16, at every level; the parts' form factors are rounded one by one, by 1e-6 each
+            let parts = match quality.footprint {
+                Footprint::Round | Footprint::Ellipse => 0.0,
+                Footprint::SplitTwo => 4.0,
+                Footprint::SplitFour => 16.0,
+            };
+            let bound = 1e-3 * f64::from(without.x) + 1e-6 * (1.0 + parts);
+            comparison.add(with.x.into(), without.x.into(), bound, || format!("point {index}"));
+            lit += usize::from(without.x > 0.01);
+        }
+        comparison.assert_all();
+        assert!(lit > 100, "{lit} lit points tell something");
+    }
+    // The twin: another image does change it
+    let other = engine.eval(&points(1, SPLIT, 600), Quality::default()).unwrap();
+    let plain = engine.eval(&plain, Quality::default()).unwrap();
+    let changed = other.iter().zip(&plain).filter(|(a, b)| (a.x - b.x).abs() > 1e-2 * b.x).count();
+    assert!(changed > 200, "{changed}");
+}
+
+#[test]
+fn twice_the_radiance_is_twice_the_answer() {
+    let Some(engine) = engine() else { return };
+    let once = points(2, SPLIT, 300);
+    let mut twice = once.clone();
+    twice.iter_mut().for_each(|point| point.light.radiance = Vec3::splat(2.0));
+    for footprint in FOOTPRINTS {
+        let quality = Quality { footprint, ..Quality::default() };
+        let (once, twice) = (engine.eval(&once, quality).unwrap(), engine.eval(&twice, quality).unwrap());
+        // A power of two rounds nothing
+        assert!(once.iter().zip(&twice).all(|(once, twice)| *once * 2.0 == *twice), "{footprint:?}");
+        assert!(once.iter().any(|answer| answer.x > 0.1));
+    }
+}
+
+/// A floor of roughness `alpha` under a screen that stands at y = 2 and shows its red half at x < 0, its blue half
+/// above; seen so that the mirror direction meets the screen at (x, z).
+fn screen(alpha: f64, x: f64, z: f64) -> EvalPoint {
+    let corner = |x: f64, z: f64| DVec3::new(x, 2.0, z);
+    // The front is towards the point: u runs to +x and v runs down
+    let vertices = vec![corner(-1.0, 0.5), corner(1.0, 0.5), corner(1.0, 2.5), corner(-1.0, 2.5)];
+    let view = DVec3::new(-x, -2.0, z);
+    let mut point = point(glossy_surface(alpha), view, vertices, false);
+    let area = point.light.area_vector();
+    assert!(area.y < 0.0, "the front is towards the point: {area}");
+    let uvs = vec![DVec2::Y, DVec2::ONE, DVec2::X, DVec2::ZERO];
+    point.light.texture = Some(LightTexture { layer: SPLIT, uvs });
+    point
+}
+
+#[test]
+fn a_mirror_shows_the_image_the_right_way_round() {
+    let Some(engine) = engine() else { return };
+    for footprint in FOOTPRINTS {
+        let quality = Quality { footprint, ..Quality::default() };
+        let seen: Vec<EvalPoint> =
+            [(-0.6, 2.1), (0.6, 2.1), (-0.6, 0.9), (0.6, 0.9)].map(|(x, z)| screen(1e-3, x, z)).into();
+        let colors = engine.eval(&seen, quality).unwrap();
+        let is = |color: Vec3, red: bool, blue: bool| {
+            (color.x > 0.9) == red
+                && (color.y > 0.9) != red
+                && (color.z > 0.9) == blue
+                && color.min_element() < 0.02
+        };
+        assert!(is(colors[0], true, true), "{footprint:?}: upper left: {}", colors[0]);
+        assert!(is(colors[1], false, true), "{footprint:?}: upper right: {}", colors[1]);
+        assert!(is(colors[2], true, false), "{footprint:?}: lower left: {}", colors[2]);
+        assert!(is(colors[3], false, false), "{footprint:?}: lower right: {}", colors[3]);
+    }
+}
+
+#[test]
+fn the_back_of_a_two_sided_light_shows_it_mirrored() {
+    let Some(engine) = engine() else { return };
+    // Turned about: what was to the left is still there, seen from behind
+    let mut behind = screen(1e-3, -0.6, 2.1);
+    behind.light.vertices.reverse();
+    behind.light.texture.as_mut().unwrap().uvs.reverse();
+    let one_sided = behind.clone();
+    behind.light.two_sided = true;
+    for footprint in FOOTPRINTS {
+        let quality = Quality { footprint, ..Quality::default() };
+        let colors = engine.eval(&[behind.clone(), one_sided.clone()], quality).unwrap();
+        assert!(colors[0].x > 0.9 && colors[0].y < 0.02 && colors[0].z > 0.9, "{footprint:?}: {}", colors[0]);
+        assert_eq!(colors[1], Vec3::ZERO, "{footprint:?}: one side alone is dark from behind");
+    }
+}
+
+/// The largest step of a sweep's answers, over their largest value.
+fn largest_step(engine: &TestEngine, sweep: &[EvalPoint], quality: Quality) -> f32 {
+    let answers = engine.eval(sweep, quality).unwrap();
+    assert!(answers.iter().all(|answer| answer.is_finite() && answer.min_element() >= 0.0), "{quality:?}");
+    let largest = answers.iter().map(|answer| answer.max_element()).fold(0.0, f32::max);
+    let steps = answers.windows(2).map(|pair| (pair[1] - pair[0]).abs().max_element());
+    steps.fold(0.0, f32::max) / largest
+}
+
+#[test]
+fn sweeps_have_no_seams() {
+    let Some(engine) = engine() else { return };
+    const STEPS: u32 = 2000;
+    let share = |step: u32| f64::from(step) / f64::from(STEPS);
+    // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; the surface that rises past
+    // the light's plane
+    let roughness: Vec<EvalPoint> =
+        (0..=STEPS).map(|step| screen((0.03 + 0.97 * share(step)).powi(2), 0.3, 1.0)).collect();
+    let across: Vec<EvalPoint> = (0..=STEPS).map(|step| screen(0.2, 3.0 * share(step) - 1.5, 1.0)).collect();
+    let through: Vec<EvalPoint> = (0..=STEPS)
+        .map(|step| {
+            let mut point = screen(0.3, 0.2, 1.0);
+            point.light.two_sided = true;
+            point.light.vertices.iter_mut().for_each(|vertex| vertex.y += 2.0 * share(step) - 3.0);
+            point
+        })
+        .collect();
+    for footprint in FOOTPRINTS {
+        let quality = Quality { footprint, ..Quality::default() };
+        // A thousandth of the way moves the answer by a few thousandths; a seam between levels or parts would be a step
+        // as large as the image's contrast
+        let bound = 0.01;
+        let step = largest_step(&engine, &roughness, quality);
+        assert!(step < bound, "{footprint:?}: roughness: {step}");
+        let step = largest_step(&engine, &across, quality);
+        assert!(step < bound, "{footprint:?}: across: {step}");
+        // Where the plane passes the point the light's side changes, and with it which points are lit: at one point only
+        let answers = engine.eval(&through, quality).unwrap();
+        assert!(answers.iter().all(|answer| answer.is_finite() && answer.min_element() >= 0.0));
+    }
+    // The twin: a step is seen
+    let mut broken = roughness;
+    broken[1000] = screen(1e-3, -0.6, 2.1);
+    assert!(largest_step(&engine, &broken, Quality::default()) > 0.1);
+}
+
+#[test]
+fn a_light_that_fills_the_sky_gives_its_colors() {
+    let Some(engine) = engine() else { return };
+    let far = 1e4;
+    let corner = |x: f64, y: f64| DVec3::new(x * far, y * far, 1.0);
+    let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    let mut sky = point(lambert_surface(), DVec3::Z, vertices, false);
+    let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
+    sky.light.texture = Some(LightTexture { layer: SPLIT, uvs });
+    for footprint in FOOTPRINTS {
+        let answer = engine.eval(&[sky.clone()], Quality { footprint, ..Quality::default() }).unwrap()[0];
+        // The point is under the middle: half of each. The middle of the image is bilinear between its halves; the fit of
+        // Lambert's lobe has no error
+        assert!((answer - Vec3::splat(0.5)).abs().max_element() < 0.01, "{footprint:?}: {answer}");
+    }
+}
+
+#[test]
+fn the_largest_numbers_stay_finite_and_within_the_image() {
+    let Some(engine) = engine() else { return };
+    let given = points(3, HUGE, 300);
+    let plain = without_texture(&given);
+    for quality in qualities() {
+        let answers = engine.eval(&given, quality).unwrap();
+        let plain = engine.eval(&plain, quality).unwrap();
+        for (answer, plain) in answers.iter().zip(&plain) {
+            assert!(answer.is_finite() && answer.min_element() >= 0.0, "{quality:?}: {answer}");
+            assert!(answer.x <= 65_504.0 * (plain.x * 1.001 + 2e-5), "{quality:?}: {answer} of {plain}");
+        }
+    }
+}
+
+/// What a surface sees of a far light, relative to the image's mean.
+fn far_light(engine: &TestEngine, surface: Surface, footprint: Footprint) -> Vec3 {
+    let corner = |x: f64, y: f64| DVec3::new(x, y, 1e3);
+    let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
+    let mut far = point(surface, DVec3::Z, vertices, false);
+    let quality = Quality { form_factor: FormFactor::ExactDifference, footprint, ..Quality::default() };
+    let plain = engine.eval(&[far.clone()], quality).unwrap()[0];
+    let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
+    far.light.texture = Some(LightTexture { layer: SPLIT, uvs });
+    engine.eval(&[far], quality).unwrap()[0] / plain / Vec3::splat(0.5)
+}
+
+#[test]
+fn a_far_light_shows_its_mean() {
+    let Some(engine) = engine() else { return };
+    for footprint in FOOTPRINTS {
+        for surface in [lambert_surface(), glossy_surface(0.5)] {
+            let ratio = far_light(&engine, surface, footprint);
+            // Of an image whose halves are the same about its middle, the mean is seen exactly but for binary16's and the
+            // sampler's rounding
+            assert!((ratio - Vec3::ONE).abs().max_element() < 4e-3, "{footprint:?}: {ratio}");
+        }
+    }
+}
