@@ -94,8 +94,8 @@ pub(crate) fn linear_mean(image: &Image) -> DVec3 {
     sum / image.texels.len().max(1) as f64
 }
 
-/// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and of alpha, over
-/// two by two.
+/// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and of
+/// alpha, over two by two.
 pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
     let linear: [f64; 256] = std::array::from_fn(|byte| {
         let value = byte as f64 / 255.0;

@@ -3,8 +3,9 @@
 //! A light's texture coordinates lie within a layer, so the box around them, in the image's coordinates, is loaded into
 //! one. Lights that show the same box share it.
 //!
-//! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out. Only an image
-//! that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each would be many times its size.
+//! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out. Only an
+//! image that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each would be many
+//! times its size.
 
 use crate::images::halved;
 use crate::load::Loader;
@@ -32,10 +33,11 @@ const FEW_PIECES: usize = 4;
 /// A layer of the light textures: a rectangle of a texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLightTexture {
-    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has been scaled down.
+    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has been
+    /// scaled down.
     pub texture: u32,
-    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1], where the texture's
-    /// wrap modes say what there is.
+    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1], where the
+    /// texture's wrap modes say what there is.
     pub low: DVec2,
     /// Width and height, in the texture's coordinates; both are positive.
     pub size: DVec2,
@@ -77,8 +79,9 @@ impl Scene {
         })
     }
 
-    /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most `largest` a side
-    /// (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] together. None if there are no light textures.
+    /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most
+    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] together. None if there are no
+    /// light textures.
     pub fn light_texture_size(&self, largest: u32) -> Option<PyramidSize> {
         let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);
         let sources = (0..self.light_textures.len()).filter_map(|layer| self.light_texture_source(layer));
@@ -113,8 +116,8 @@ pub(crate) struct TexturedLight {
     pub uvs: Vec<DVec2>,
 }
 
-/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be seen, nor, in
-/// small images, a thousandth of the image.
+/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be
+/// seen, nor, in small images, a thousandth of the image.
 pub(crate) fn tolerance(scene: &Scene, texture: u32) -> DVec2 {
     let image = &scene.images[scene.textures[texture as usize].image as usize];
     (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))

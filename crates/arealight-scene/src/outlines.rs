@@ -5,8 +5,8 @@
 //! still waits at the end starts a polygon of its own. A part without holes always becomes one polygon
 //! (planar discs can be shelled from any start); a ring becomes two.
 //!
-//! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the mapping bends,
-//! another part begins.
+//! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the mapping
+//! bends, another part begins.
 
 use crate::Bounds;
 use crate::uv_map::{UvMap, UvTolerance};

@@ -24,8 +24,8 @@ mod panel;
 mod pyramid;
 mod pyramid_picture;
 
-/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or what a light's
-/// texture becomes.
+/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or what a
+/// light's texture becomes.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The table; the one that is built in if none is given.
@@ -39,8 +39,8 @@ pub struct Arguments {
     /// How Schlick's Fresnel term enters the lobes in the picture.
     #[arg(long, value_enum, value_name = "HOW", default_value_t = Parts::ByF0)]
     fresnel: Parts,
-    /// Measure the errors of the table, of the table-free formula and of other tables (by F0) over roughness and view angle,
-    /// and draw these.
+    /// Measure the errors of the table, of the table-free formula and of other tables (by F0) over roughness and view
+    /// angle, and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
     errors: Option<Vec<PathBuf>>,
     /// On how many quads --errors measures each of 32 x 32 cells, 3 to 3000.
@@ -50,8 +50,8 @@ pub struct Arguments {
     /// Draw the table's entries and albedos.
     #[arg(long, requires = "output")]
     entries: bool,
-    /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more than the one before.
-    /// Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
+    /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more than the
+    /// one before. Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
     #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "fresnel"])]
     pyramid: Option<PathBuf>,
     /// Which of the scene's light textures --pyramid draws, from 0.
