@@ -1,5 +1,6 @@
 //! What can be fitted: a BRDF as the fitter sees it, and GGX.
 
+use arealight::GrazingDip;
 use arealight_oracle::ggx::Ggx;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -31,8 +32,13 @@ pub trait Brdf: Sync {
     /// The density of [`Brdf::sample`] in solid angle, 1/sr; zero below the surface.
     fn density(&self, alpha: f64, view: DVec3, light: DVec3) -> f64;
 
-    /// The two albedos of an alpha and a view, to about 1e-7.
+    /// The two albedos of an alpha and a view, which may lie in the surface, to about 1e-7.
     fn magnitude(&self, alpha: f64, cos_view: f64) -> Magnitude;
+
+    /// What makes its albedos smooth enough for a table towards the horizon, if that is known.
+    fn grazing_dip(&self) -> GrazingDip {
+        GrazingDip::None
+    }
 }
 
 /// The integrals over the hemisphere that scale a lobe.
@@ -76,6 +82,10 @@ impl Brdf for GgxBrdf {
 
     fn density(&self, alpha: f64, view: DVec3, light: DVec3) -> f64 {
         Ggx { alpha }.density(view, light)
+    }
+
+    fn grazing_dip(&self) -> GrazingDip {
+        GrazingDip::Ggx
     }
 
     /// Integrates over half vectors in polar coordinates, because there the horizon of the light is a boundary

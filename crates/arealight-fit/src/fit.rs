@@ -48,16 +48,14 @@ pub fn fit(
     let total = settings.steps();
     let report = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
 
-    // Integrate the albedos
-    let magnitude: Vec<Magnitude> = (0..size * size)
+    // Integrate the albedos of the lobes that are fitted
+    let mut magnitude: Vec<Magnitude> = (0..size * size)
         .into_par_iter()
         .map(|i| {
             let (alpha, cos_view) = node_of(settings.size, i);
-            let magnitude = brdf.magnitude(alpha, cos_view);
+            let magnitude = magnitude_of_lobe(brdf, alpha, cos_view);
             report();
-            let Magnitude { albedo, schlick } = magnitude;
-            let is_lobe = albedo.is_finite() && albedo > 0.0 && schlick.is_finite() && schlick > 0.0;
-            is_lobe.then_some(magnitude).ok_or(FitError::NoLobe { alpha, cos_view, albedo, schlick })
+            magnitude
         })
         .collect::<Result<_, _>>()?;
     let texel = |i: usize| {
@@ -89,7 +87,19 @@ pub fn fit(
         (0..size * size).map(|i| columns[i % size][i / size].texel.map(|q| q as f32)).collect()
     });
 
+    // Integrate those of the last row anew, at the horizon itself, where they differ from its lobes' own
+    for (i, magnitude) in magnitude.iter_mut().enumerate().skip(size * (size - 1)) {
+        *magnitude = magnitude_of_lobe(brdf, node_of(settings.size, i).0, 0.0)?;
+    }
     into_table(brdf, settings, layers.collect(), &magnitude)
+}
+
+/// The albedos of a BRDF that has a lobe at an alpha and a view.
+fn magnitude_of_lobe(brdf: &dyn Brdf, alpha: f64, cos_view: f64) -> Result<Magnitude, FitError> {
+    let magnitude = brdf.magnitude(alpha, cos_view);
+    let Magnitude { albedo, schlick } = magnitude;
+    let is_lobe = albedo.is_finite() && albedo > 0.0 && schlick.is_finite() && schlick > 0.0;
+    is_lobe.then_some(magnitude).ok_or(FitError::NoLobe { alpha, cos_view, albedo, schlick })
 }
 
 impl Texel<'_> {
@@ -104,7 +114,7 @@ impl Texel<'_> {
     }
 }
 
-/// The alpha and the view's cosine at which texel `i` is fitted.
+/// The alpha and the view's cosine at which the lobe of texel `i` is fitted.
 ///
 /// The first column stands for the smallest alpha that is shaded. The last row stays off the horizon: exactly
 /// on it a lobe degenerates to a fan that is `alpha²` wide, and interpolating towards that would narrow every
@@ -136,8 +146,16 @@ fn into_table(
     let description = TableDescription {
         brdf: brdf.name().to_owned(),
         made_by: format!("arealight-fit {}, {aim}", env!("CARGO_PKG_VERSION")),
+        grazing_dip: brdf.grazing_dip(),
     };
-    let magnitude = magnitude.iter().map(|m| [m.albedo as f32, m.schlick as f32]).collect();
+    // Fill the dip at grazing views, that the albedos can be interpolated
+    let stored = |(i, m): (usize, &Magnitude)| {
+        let (roughness, cos_view) =
+            LightTable::node(settings.size, i as u32 % settings.size, i as u32 / settings.size);
+        let dip = brdf.grazing_dip().at(roughness, cos_view);
+        [(m.albedo + dip[0]) as f32, (m.schlick + dip[1]) as f32]
+    };
+    let magnitude = magnitude.iter().enumerate().map(stored).collect();
     let mut layers = layers.into_iter();
     let table = LightTable::new(description, settings.size, layers.next().unwrap_or_default(), magnitude)?;
     Ok(match layers.next() {

@@ -9,7 +9,7 @@ use arealight::table::Formula;
 use arealight::{LightTable, MIN_ALPHA};
 use rayon::prelude::*;
 
-use crate::brdf::Brdf;
+use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::fit::node_of;
 use crate::linear::{LeastSquares, cholesky};
@@ -40,7 +40,7 @@ pub fn fit(brdf: &dyn Brdf, table: &LightTable) -> Result<Formula, FitError> {
         let value = f64::from(table.size());
         return Err(FitError::Setting { setting: "size", value, range: "at least 8 for a formula" });
     }
-    let nodes = nodes(table);
+    let nodes = nodes(brdf, table);
     let lobe = fit_lobe(brdf, table.matrix(), &nodes, |node| node.albedo)?;
     let schlick = table.schlick_matrix().unwrap_or(table.matrix());
     let schlick_lobe = fit_lobe(brdf, schlick, &nodes, |node| node.schlick + SCHLICK_OFFSET)?;
@@ -70,7 +70,7 @@ struct Node {
 }
 
 /// Every so manyth node of a table each way, from the first to the last.
-fn nodes(table: &LightTable) -> Vec<Node> {
+fn nodes(brdf: &dyn Brdf, table: &LightTable) -> Vec<Node> {
     let size = table.size();
     let intervals = (size - 1).min(NODES - 1);
     let at = |i: u32| i * (size - 1) / intervals;
@@ -80,7 +80,7 @@ fn nodes(table: &LightTable) -> Vec<Node> {
         .map(|(x, y)| {
             let index = (y * size + x) as usize;
             let (alpha, cos_view) = node_of(size, index);
-            let [albedo, schlick] = table.magnitude()[index].map(f64::from);
+            let Magnitude { albedo, schlick } = brdf.magnitude(alpha, cos_view);
             // Nodes are even in sqrt(1 - cos), views shall count evenly in their angle
             let angle_per_step = 2.0 / (1.0 + cos_view).sqrt();
             let weight = angle_per_step * of_trapezoid(x) * of_trapezoid(y);

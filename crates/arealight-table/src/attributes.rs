@@ -1,6 +1,6 @@
 //! What a file says of its texels: the same names and values in every format.
 
-use arealight::{LightTable, TableDescription};
+use arealight::{GrazingDip, LightTable, TableDescription};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ use crate::{ReadError, TableFile};
 /// The attribute `arealight.format`.
 pub const FORMAT: &str = "arealight-table";
 /// The attribute `arealight.version`: the version of the format that is written; all from 1 on are read.
-pub const VERSION: i32 = 2;
+pub const VERSION: i32 = 3;
 /// The attribute `arealight.axes`.
 pub const AXES: &str =
     "x: roughness = x / (size - 1), alpha = roughness^2; y: sqrt(1 - cos theta_view) = y / (size - 1)";
@@ -19,6 +19,10 @@ pub const FRAME: &str = "inverse matrix; rows in cosine space; columns (cos t, 0
 /// The attribute `arealight.normalisation`.
 pub const NORMALISATION: &str = "R G B A = q00 q02 q20 q22 of [q00 0 q02; 0 1 0; alpha*q20 0 alpha*q22]; \
     magnitude R G = integral f cos, integral f cos (1 - cos theta_vh)^5";
+
+/// The values of the attribute `arealight.grazing_dip`.
+const NO_DIP: &str = "none";
+const GGX_DIP: &str = "ggx";
 
 pub mod name {
     pub const FORMAT: &str = "arealight.format";
@@ -30,6 +34,7 @@ pub mod name {
     pub const MADE_BY: &str = "arealight.made_by";
     pub const FIT_ERROR: &str = "arealight.fit_error";
     pub const HASH: &str = "arealight.hash";
+    pub const GRAZING_DIP: &str = "arealight.grazing_dip";
     /// Of formats whose layers are always three.
     pub const MATRICES: &str = "arealight.matrices";
 }
@@ -82,17 +87,24 @@ impl Attributes {
         expect(name::FORMAT, FORMAT)?;
         let version = match find(name::VERSION)? {
             Value::Number(version) if (oldest..=VERSION).contains(&version) => version,
-            other if oldest == VERSION => {
-                return Err(other.unexpected(name::VERSION, &VERSION.to_string()));
-            }
             other => return Err(other.unexpected(name::VERSION, &format!("{oldest} to {VERSION}"))),
         };
         expect(name::AXES, AXES)?;
         expect(name::FRAME, FRAME)?;
         expect(name::NORMALISATION, NORMALISATION)?;
+        let dip = if version < 3 { Value::Text(NO_DIP.to_owned()) } else { find(name::GRAZING_DIP)? };
+        let grazing_dip = match dip {
+            Value::Text(text) if text == NO_DIP => GrazingDip::None,
+            Value::Text(text) if text == GGX_DIP => GrazingDip::Ggx,
+            other => return Err(other.unexpected(name::GRAZING_DIP, "none or ggx")),
+        };
         Ok(Self {
             version,
-            description: TableDescription { brdf: text(name::BRDF)?, made_by: text(name::MADE_BY)? },
+            description: TableDescription {
+                brdf: text(name::BRDF)?,
+                made_by: text(name::MADE_BY)?,
+                grazing_dip,
+            },
             fit_error: get(name::FIT_ERROR).map(|_| text(name::FIT_ERROR)).transpose()?,
             hash: if version == 1 { None } else { Some(text(name::HASH)?) },
         })
@@ -123,6 +135,14 @@ impl Attributes {
     }
 }
 
+/// The attribute `arealight.grazing_dip` of a table.
+fn dip_name(table: &LightTable) -> &'static str {
+    match table.description().grazing_dip {
+        GrazingDip::None => NO_DIP,
+        GrazingDip::Ggx => GGX_DIP,
+    }
+}
+
 /// The attributes of a table, but for the version.
 pub fn texts(file: &TableFile) -> Vec<(&'static str, String)> {
     let description = file.table.description();
@@ -133,6 +153,7 @@ pub fn texts(file: &TableFile) -> Vec<(&'static str, String)> {
         (name::NORMALISATION, NORMALISATION.to_owned()),
         (name::BRDF, description.brdf.clone()),
         (name::MADE_BY, description.made_by.clone()),
+        (name::GRAZING_DIP, dip_name(&file.table).to_owned()),
         (name::HASH, hash(&file.table)),
     ];
     texts.extend(file.fit_error.iter().map(|error| (name::FIT_ERROR, error.clone())));
@@ -142,7 +163,8 @@ pub fn texts(file: &TableFile) -> Vec<(&'static str, String)> {
 /// The hash of a table's texels, `sha256:` and 64 hexadecimal digits: two tables shade alike if it is the same.
 ///
 /// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if there
-/// is one, texel by texel as `f32`, all in little-endian order. What the table says of itself does not count.
+/// is one, texel by texel as `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the
+/// table says of itself beside that does not count.
 pub fn hash(table: &LightTable) -> String {
     let schlick_matrix = table.schlick_matrix();
     let mut hasher = Sha256::new();
@@ -158,6 +180,9 @@ pub fn hash(table: &LightTable) -> String {
     update(table.matrix().as_flattened());
     update(table.magnitude().as_flattened());
     update(schlick_matrix.unwrap_or_default().as_flattened());
+    if table.description().grazing_dip != GrazingDip::None {
+        hasher.update(dip_name(table));
+    }
     let mut text = String::from("sha256:");
     for byte in hasher.finalize() {
         let _ = write!(text, "{byte:02x}");

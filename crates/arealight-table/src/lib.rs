@@ -5,7 +5,7 @@
 //! | layer | channels, 32-bit float | holds |
 //! |---|---|---|
 //! | `matrix` | `R G B A` | `q00 q02 q20 q22` of [`arealight::table`] |
-//! | `magnitude` | `R G` | `albedo schlick` |
+//! | `magnitude` | `R G` | `albedo schlick`, with the grazing dip added |
 //! | `schlick_matrix` | `R G B A` | the matrix of Schlick's weight, in a table of two matrices |
 //!
 //! and these attributes, shared by all layers:
@@ -13,18 +13,20 @@
 //! | attribute | type | content |
 //! |---|---|---|
 //! | `arealight.format` | string | `arealight-table` |
-//! | `arealight.version` | int | 2; files of version 1 have neither a third layer nor a hash |
+//! | `arealight.version` | int | 3; files of version 2 have no grazing dip, those of version 1 neither third layer nor hash |
 //! | `arealight.axes` | string | what a texel's column and row mean |
 //! | `arealight.frame` | string | the frame of the matrix |
 //! | `arealight.normalisation` | string | how the matrix's entries are scaled |
 //! | `arealight.brdf` | string | the BRDF that was fitted |
 //! | `arealight.made_by` | string | what made the table |
+//! | `arealight.grazing_dip` | string | what is added to the magnitudes at each node: `none`, or `ggx` for [`arealight::table::ggx_grazing_dip`] |
 //! | `arealight.hash` | string | the texels' [`hash`] |
 //! | `arealight.fit_error` | string | how far the table is from its BRDF, in words; may be missing |
 //!
 //! Engines take the same table as KTX2 or DDS, a 2D array of three layers in 16 or 32-bit floats (in a table of one matrix
 //! the third repeats the first) with these attributes as key/value data and `arealight.matrices`, 1 or 2; in DDS they
-//! follow the texels. C and GLSL take it as source text. [`read_published`] reads tables in the convention of Heitz
+//! follow the texels. C and GLSL take it as source text. In all of these, the magnitudes' third channel says how much of
+//! GGX's grazing dip was added, 1 or 0, so that the shader needs no attribute: files of version 2 have 0 there. [`read_published`] reads tables in the convention of Heitz
 //! et al. 2016. A file's format is told by its content.
 //!
 //! A file whose axes, frame or normalisation differ would be read without complaint and shade wrongly, so

@@ -50,7 +50,7 @@ pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
-pub use table::{LightTable, TableDescription, TableError, TableSample};
+pub use table::{GrazingDip, LightTable, TableDescription, TableError, TableSample};
 pub use texture_part::{TexturePart, TexturePartError, Wrap};
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.

@@ -20,7 +20,10 @@
 //!
 //! The magnitude texel is `(albedo, schlick)`: the integrals over the hemisphere of `f cos` and of
 //! `f cos (1 - cos theta_vh)^5`, for a BRDF `f` without Fresnel term, so that the specular albedo is
-//! `f0 * albedo + (f90 - f0) * schlick`.
+//! `f0 * albedo + (f90 - f0) * schlick`. Near the horizon these change within a width of alpha, which no grid resolves. So
+//! they may be stored with that part added in closed form, a [`GrazingDip`], which a lookup takes away again: what is
+//! interpolated is smooth, and the albedos are within 2e-3 at every view. The description says if it was added, and
+//! so does the third channel of the GPU's magnitude texel.
 //!
 //! # Two matrices
 //! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves what
@@ -31,19 +34,23 @@
 use glam::{DMat3, DVec3};
 
 mod formula;
+mod grazing;
 
 pub use formula::{Formula, MIN_COS_VIEW, ggx_formula};
+pub use grazing::{GrazingDip, ggx_grazing_dip};
 
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;
 
 /// What a table says of itself beside its texels.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TableDescription {
     /// The BRDF that was fitted, for example `ggx-correlated-smith`.
     pub brdf: String,
     /// What made it, for people: program, version, settings.
     pub made_by: String,
+    /// What the magnitude texels hold beside the albedos.
+    pub grazing_dip: GrazingDip,
 }
 
 /// A fitted table, valid by construction: sizes agree, and every number is finite.
@@ -102,7 +109,8 @@ pub enum TableError {
         /// The determinant of its two by two block.
         determinant: f32,
     },
-    /// A magnitude is outside [0, 1], where every albedo lies, or its Schlick part is above the whole.
+    /// A magnitude, without the dip that was added to it, is outside [0, 1], where every albedo lies, or its Schlick part
+    /// is above the whole.
     #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); must be 0 <= Schlick part <= albedo <= 1")]
     Magnitude {
         /// The texel's column (roughness).
@@ -151,7 +159,8 @@ impl TableSample {
 }
 
 impl LightTable {
-    /// Makes a table of one matrix from its texels.
+    /// Makes a table of one matrix from its texels. The magnitudes hold what the description says: see
+    /// [`TableDescription::grazing_dip`].
     ///
     /// # Errors
     /// [`TableError`] says which layer, texel and channel is wrong.
@@ -176,8 +185,11 @@ impl LightTable {
             finite("magnitude", x, y, a)?;
             invertible("matrix", x, y, m)?;
             // The Schlick part is a part: with more, a surface without F90 would reflect less than nothing
-            if a[0] > 1.0 || a[1] < 0.0 || a[1] > a[0] {
-                return Err(TableError::Magnitude { x, y, albedo: a[0], schlick: a[1] });
+            let dip = description.grazing_dip;
+            let [albedo, schlick] = without_dip(dip, size, x, y, a);
+            let tolerance = dip.tolerance();
+            if albedo > 1.0 + tolerance || schlick < -tolerance || schlick > albedo + tolerance {
+                return Err(TableError::Magnitude { x, y, albedo, schlick });
             }
         }
         Ok(Self { description, size, matrix, magnitude, schlick_matrix: None })
@@ -220,9 +232,20 @@ impl LightTable {
         self.schlick_matrix.as_deref()
     }
 
-    /// The magnitude layer, `(albedo, schlick)` a texel.
+    /// The magnitude layer as it is stored: `(albedo, schlick)` a texel, with the description's dip added.
     pub fn magnitude(&self) -> &[[f32; 2]] {
         &self.magnitude
+    }
+
+    /// `(albedo, schlick)` at each node: the magnitude layer without the dip. Where that was added and rounded, they may
+    /// lie 1e-3 outside of their range.
+    pub fn albedos(&self) -> Vec<[f32; 2]> {
+        let texels = self.magnitude.iter().enumerate();
+        let albedos = |(i, texel)| {
+            let (x, y) = (i as u32 % self.size, i as u32 / self.size);
+            without_dip(self.description.grazing_dip, self.size, x, y, texel)
+        };
+        texels.map(albedos).collect()
     }
 
     /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` (2 or more) stands
@@ -234,9 +257,14 @@ impl LightTable {
     }
 
     /// The layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
-    /// channels, layer 2 the matrix of Schlick's weight, in a table of one matrix that again; four `f32` a texel.
+    /// channels and in the third how much of GGX's dip was added to it, 1 or 0, layer 2 the matrix of Schlick's weight,
+    /// in a table of one matrix that again; four `f32` a texel.
     pub fn texels(&self) -> Vec<[f32; 4]> {
-        let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], 0.0, 0.0]);
+        let dip = match self.description.grazing_dip {
+            GrazingDip::None => 0.0,
+            GrazingDip::Ggx => 1.0,
+        };
+        let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], dip, 0.0]);
         let schlick = self.schlick_matrix.as_ref().unwrap_or(&self.matrix);
         self.matrix.iter().copied().chain(magnitude).chain(schlick.iter().copied()).collect()
     }
@@ -246,8 +274,7 @@ impl LightTable {
     /// `roughness` is perceptual and clamped to [0, 1] (its alpha to [`crate::MIN_ALPHA`]); `cos_view` is
     /// clamped to [0, 1]. NaN counts as 0.
     pub fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {
-        let roughness = roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt());
-        let cos_view = cos_view.clamp(0.0, 1.0).max(0.0);
+        let (roughness, cos_view) = (clamped_roughness(roughness), clamped_cosine(cos_view));
         // Find the four nodes around the sample
         let last = f64::from(self.size - 1);
         let (u, v) = (roughness * last, (1.0 - cos_view).sqrt() * last);
@@ -265,10 +292,33 @@ impl LightTable {
         let inverse =
             |texels: &[[f32; 4]]| inverse_from_texel(interpolated(texels, &weights), alpha, cos_view);
         let [albedo, schlick] = interpolated(&self.magnitude, &weights);
+        let dip = self.description.grazing_dip.at(roughness, cos_view);
+        let albedo = (albedo - dip[0]).clamp(0.0, 1.0);
+        let schlick = (schlick - dip[1]).clamp(0.0, albedo);
         let lobe = inverse(&self.matrix);
         let schlick_inverse = self.schlick_matrix.as_deref().map_or(lobe, inverse);
         TableSample { inverse: lobe, schlick_inverse, albedo, schlick }
     }
+}
+
+/// A perceptual roughness as it is looked up.
+fn clamped_roughness(roughness: f64) -> f64 {
+    roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt())
+}
+
+/// The cosine of a view as it is looked up.
+fn clamped_cosine(cos_view: f64) -> f64 {
+    cos_view.clamp(0.0, 1.0).max(0.0)
+}
+
+/// The albedos that a magnitude texel holds.
+fn without_dip(dip: GrazingDip, size: u32, x: u32, y: u32, texel: &[f32; 2]) -> [f32; 2] {
+    if dip == GrazingDip::None {
+        return *texel;
+    }
+    let (roughness, cos_view) = LightTable::node(size, x, y);
+    let dip = dip.at(roughness, cos_view);
+    std::array::from_fn(|i| (f64::from(texel[i]) - dip[i]) as f32)
 }
 
 /// The weighted sum of the texels at four indices.
@@ -328,7 +378,8 @@ mod tests {
         for i in 0..9 {
             edit(i, &mut matrix[i], &mut magnitude[i]);
         }
-        let description = TableDescription { brdf: "test".into(), made_by: "a test".into() };
+        let description =
+            TableDescription { brdf: "test".into(), made_by: "a test".into(), grazing_dip: GrazingDip::None };
         LightTable::new(description, 3, matrix, magnitude)
     }
 
@@ -372,6 +423,58 @@ mod tests {
     fn an_identity_texel_is_a_cosine_about_the_mirror_direction() {
         let inverse = inverse_from_texel([1.0, 0.0, 0.0, 1.0], 1.0, 0.6);
         assert!((inverse * DVec3::new(-0.8, 0.0, 0.6) - DVec3::Z).length() < 1e-12);
+    }
+
+    /// The same albedos everywhere, with GGX's dip added at the nodes.
+    fn dipped(size: u32, albedos: [f64; 2]) -> Result<LightTable, TableError> {
+        let count = (size * size) as usize;
+        let magnitude = |i: u32| {
+            let (roughness, cos_view) = LightTable::node(size, i % size, i / size);
+            let dip = GrazingDip::Ggx.at(roughness, cos_view);
+            std::array::from_fn(|k| (albedos[k] + dip[k]) as f32)
+        };
+        let description = TableDescription { grazing_dip: GrazingDip::Ggx, ..TableDescription::default() };
+        let magnitude = (0..count as u32).map(magnitude).collect();
+        LightTable::new(description, size, vec![[1.0, 0.0, 0.0, 1.0]; count], magnitude)
+    }
+
+    #[test]
+    fn a_dip_that_was_added_is_taken_away() {
+        let table = dipped(9, [0.7, 0.3]).unwrap();
+        for (found, stored) in table.albedos().iter().zip(table.magnitude()) {
+            assert!((found[0] - 0.7).abs() < 1e-6 && (found[1] - 0.3).abs() < 1e-6, "{found:?}");
+            assert!(stored[0] >= 0.7);
+        }
+        for (x, y) in (0..81).map(|i| (i % 9, i / 9)) {
+            let (roughness, cos_view) = LightTable::node(9, x, y);
+            // The first column stands for the smallest roughness, which is looked up beside it
+            if x > 0 {
+                let sample = table.lookup(roughness, cos_view);
+                assert!((sample.albedo - 0.7).abs() < 1e-6 && (sample.schlick - 0.3).abs() < 1e-6);
+            }
+        }
+        // Between nodes shows what was added: here is a lobe of alpha = 0.0156 seen from its own height
+        let sample = table.lookup(0.125, 0.0156);
+        assert!(sample.albedo < 0.62 && sample.schlick < 0.28, "{sample:?}");
+        assert_eq!(table.texels()[81], [table.magnitude()[0][0], table.magnitude()[0][1], 1.0, 0.0]);
+    }
+
+    #[test]
+    fn albedos_stay_in_their_range_between_nodes() {
+        // As far out as rounding takes them; any farther is refused
+        for albedos in [[1.0009, 1.0009], [0.0, -0.0009]] {
+            let table = dipped(5, albedos).unwrap();
+            for (i, j) in (0..400).map(|i| (i % 20, i / 20)) {
+                let sample = table.lookup(f64::from(i) / 19.0, f64::from(j) / 19.0);
+                assert!(
+                    (0.0..=1.0).contains(&sample.albedo) && (0.0..=sample.albedo).contains(&sample.schlick)
+                );
+            }
+        }
+        for albedos in [[1.0011, 0.5], [0.5, -0.0011], [0.5, 0.5011]] {
+            let error = dipped(5, albedos).unwrap_err();
+            assert!(matches!(error, TableError::Magnitude { x: 0, y: 0, .. }), "{error}");
+        }
     }
 
     fn two_matrices() -> LightTable {
@@ -455,7 +558,7 @@ mod tests {
         })
         .unwrap_err();
         assert!(matches!(error, TableError::Magnitude { x: 2, y: 2, .. }), "{error}");
-        let description = TableDescription { brdf: String::new(), made_by: String::new() };
+        let description = TableDescription::default();
         assert!(matches!(
             LightTable::new(description.clone(), 1, vec![], vec![]),
             Err(TableError::Size { size: 1 })

@@ -105,7 +105,7 @@ fn two_matrices_meet_their_bars_at_every_reflectance() {
 #[test]
 fn the_measure_tells_the_rungs_apart() {
     let mean = |rung| measure(&TABLE, rung, &CASES)[1].mean;
-    assert!(mean(SPLIT) < 0.7 * mean(BY_F0));
+    assert!(mean(SPLIT) < 0.75 * mean(BY_F0));
     let swapped = {
         let schlick = TABLE.schlick_matrix().unwrap().to_vec();
         let matrix = TABLE.matrix().to_vec();

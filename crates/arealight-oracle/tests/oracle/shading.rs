@@ -28,7 +28,7 @@ fn table() -> LightTable {
     let node = |i: u32| (f64::from(i % 4) as f32, f64::from(i / 4) as f32);
     let matrix = (0..16).map(node).map(|(x, y)| [1.0 + 0.3 * y, 0.1 * y, -0.05 * x, 0.5 + 0.2 * x]).collect();
     let magnitude = (0..16).map(node).map(|(x, y)| [1.0 - 0.1 * x, 0.05 + 0.2 * y]).collect();
-    let description = TableDescription { brdf: "none".into(), made_by: "a test".into() };
+    let description = TableDescription { brdf: "none".into(), ..TableDescription::default() };
     LightTable::new(description, 4, matrix, magnitude).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Files made by hand, so that they can be wrong.
 
-use arealight::{LightTable, TableDescription};
+use arealight::{GrazingDip, LightTable, TableDescription};
 use exr::prelude::*;
 use std::io::Cursor;
 
@@ -48,6 +48,7 @@ impl Draft {
                 ("arealight.normalisation", text(arealight_table::NORMALISATION)),
                 ("arealight.brdf", text(&table.description().brdf)),
                 ("arealight.made_by", text(&table.description().made_by)),
+                ("arealight.grazing_dip", text("none")),
                 ("arealight.hash", text(&arealight_table::hash(table))),
             ],
             layers,
@@ -116,6 +117,10 @@ pub fn table(size: u32) -> LightTable {
     let matrix =
         (0..count).map(|i| [1.0 + number(i, 0), number(i, 1), -number(i, 2), 1.0 + number(i, 3)]).collect();
     let magnitude = (0..count).map(|i| [1.0 - number(i, 0), number(i, 1)]).collect();
-    let description = TableDescription { brdf: "a test".into(), made_by: "files.rs, François".into() };
+    let description = TableDescription {
+        brdf: "a test".into(),
+        made_by: "files.rs, François".into(),
+        grazing_dip: GrazingDip::None,
+    };
     LightTable::new(description, size, matrix, magnitude).unwrap()
 }

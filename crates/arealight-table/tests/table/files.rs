@@ -1,7 +1,7 @@
 //! Tables to files and back.
 
-use arealight::{LightTable, TableDescription};
-use arealight_table::{FileError, ReadError, TableFile, Target, hash, load, read, save, write};
+use arealight::{GrazingDip, LightTable, TableDescription};
+use arealight_table::{FileError, ReadError, TableFile, Target, ggx, hash, load, read, save, write};
 use exr::prelude::{AttributeValue, Compression};
 
 use crate::draft::{Draft, table, table_of_two};
@@ -26,7 +26,7 @@ fn the_fit_error_comes_back() {
 
 #[test]
 fn a_file_of_version_1_has_two_layers_and_no_hash() {
-    let mut draft = Draft::of(&table(3)).without("arealight.hash");
+    let mut draft = Draft::of(&table(3)).without("arealight.hash").without("arealight.grazing_dip");
     draft.set("arealight.version", AttributeValue::I32(1));
     assert_eq!(read(&draft.write()).unwrap(), table(3));
     let mut draft = Draft::of(&table_of_two(3));
@@ -35,9 +35,37 @@ fn a_file_of_version_1_has_two_layers_and_no_hash() {
 }
 
 #[test]
+fn a_file_of_version_2_has_no_grazing_dip() {
+    let mut draft = Draft::of(&table_of_two(3)).without("arealight.grazing_dip");
+    draft.set("arealight.version", AttributeValue::I32(2));
+    assert_eq!(read(&draft.write()).unwrap(), table_of_two(3));
+    // Nor is one believed that it cannot have
+    let mut draft = Draft::of(&table_of_two(3));
+    draft.set("arealight.version", AttributeValue::I32(2));
+    draft.set_text("arealight.grazing_dip", "ggx");
+    assert_eq!(read(&draft.write()).unwrap(), table_of_two(3));
+}
+
+#[test]
+fn a_grazing_dip_comes_back_and_counts_in_the_hash() {
+    let dipped = ggx();
+    assert_eq!(dipped.description().grazing_dip, GrazingDip::Ggx);
+    assert_eq!(read(&write(&dipped)).unwrap(), dipped);
+    // The same texels are another table without it
+    let mut draft = Draft::of(&dipped);
+    draft.set_text("arealight.grazing_dip", "none");
+    assert!(read(&draft.write()).is_err());
+    let with = |grazing_dip| {
+        let description = TableDescription { grazing_dip, ..TableDescription::default() };
+        LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[0.9, -0.7]; 4])
+    };
+    assert!(with(GrazingDip::None).is_err() && with(GrazingDip::Ggx).is_err());
+}
+
+#[test]
 fn a_hash_is_of_texels_alone() {
     let described = |brdf: &str| {
-        let description = TableDescription { brdf: brdf.into(), made_by: String::new() };
+        let description = TableDescription { brdf: brdf.into(), ..TableDescription::default() };
         LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[1.0, 0.0]; 4]).unwrap()
     };
     assert_eq!(hash(&described("a")), hash(&described("b")));
@@ -63,7 +91,7 @@ fn a_different_table_makes_a_different_file() {
 
 #[test]
 fn characters_that_exr_lacks_are_replaced() {
-    let description = TableDescription { brdf: "α".into(), made_by: String::new() };
+    let description = TableDescription { brdf: "α".into(), ..TableDescription::default() };
     let table = LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[1.0, 0.0]; 4]).unwrap();
     assert_eq!(read(&write(&table)).unwrap().description().brdf, "?");
 }

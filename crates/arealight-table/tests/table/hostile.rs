@@ -38,10 +38,10 @@ fn a_file_cut_short_anywhere_is_refused() {
 
 #[test]
 fn another_version_is_refused() {
-    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(3)));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `3`; this program reads `1 to 2`");
+    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(4)));
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `4`; this program reads `1 to 3`");
     let error = spoil(|draft| draft.set_text("arealight.version", "one"));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1 to 2`");
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1 to 3`");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The convention of Heitz et al. 2016, by images that are made here from our table.
 
-use arealight::LightTable;
 use arealight::table::inverse_from_texel;
+use arealight::{LightTable, TableDescription};
 use arealight_table::{Adjusted, PublishedError, ReadError, ggx, read_published, resampled};
 use exr::prelude::*;
 use glam::DMat3;
@@ -17,9 +17,13 @@ enum Storage {
     Exr32,
 }
 
-/// Our table, of 8 nodes a side.
+/// The lobes of our table with other albedos, which their images hold as they are, of 8 nodes a side.
 fn table() -> LightTable {
-    resampled(&ggx(), SIZE).unwrap()
+    let table = resampled(&ggx(), SIZE).unwrap();
+    let magnitude = (0..SIZE * SIZE).map(|i| [1.0 - 0.005 * i as f32, 0.005 * i as f32]).collect();
+    LightTable::new(TableDescription::default(), SIZE, table.matrix().to_vec(), magnitude)
+        .and_then(|plain| plain.with_schlick_matrix(table.schlick_matrix().unwrap().to_vec()))
+        .unwrap()
 }
 
 /// M⁻¹ of node (x, y) in the surface frame, at the alpha that the convention has there.

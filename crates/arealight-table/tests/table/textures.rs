@@ -2,7 +2,7 @@
 
 use arealight::LightTable;
 use arealight_table::{
-    Format, Precision, ReadError, TableFile, Target, WriteError, ggx, hash, load, read, rounded,
+    Format, Precision, ReadError, TableFile, Target, WriteError, ggx, hash, load, read, resampled, rounded,
 };
 use half::f16;
 
@@ -48,6 +48,17 @@ fn half_floats_err_by_their_last_bit_at_most() {
     for (a, b) in table.texels().as_flattened().iter().zip(half.texels().as_flattened()) {
         // Half a unit of 11 bits; below 6e-5, of a subnormal number
         assert!((a - b).abs() <= a.abs() / 2048.0 + 3e-8, "{a} {b}");
+    }
+}
+
+#[test]
+fn what_the_gpu_reads_says_if_a_dip_was_added() {
+    for (table, dip) in [(table_of_two(4), 0.0), (resampled(&ggx(), 4).unwrap(), 1.0)] {
+        assert!(table.texels()[16..32].iter().all(|texel| texel[2..] == [dip, 0.0]), "{dip}");
+        let glsl = String::from_utf8(write(&table, Target::Glsl)).unwrap();
+        assert!(glsl.contains(&format!("+ node]), {dip:?}, 0.0)")), "{glsl}");
+        let header = String::from_utf8(write(&table, Target::CHeader(Precision::Half))).unwrap();
+        assert!(header.contains(&format!("The dip is {dip}")), "{header}");
     }
 }
 
@@ -248,6 +259,7 @@ fn attributes_are_checked_as_those_of_exr() {
             "arealight.normalisation",
             "arealight.brdf",
             "arealight.made_by",
+            "arealight.grazing_dip",
             "arealight.hash",
             "arealight.matrices",
         ] {
@@ -256,15 +268,24 @@ fn attributes_are_checked_as_those_of_exr() {
         }
         let message = |from, to| spoil(from, to).to_string();
         assert_eq!(
-            message("arealight.version\x002", "arealight.version\x001"),
-            "attribute `arealight.version` is `1`; this program reads `2`"
+            message("arealight.version\x003", "arealight.version\x001"),
+            "attribute `arealight.version` is `1`; this program reads `2 to 3`"
         );
         assert_eq!(
             message("arealight.matrices\x002", "arealight.matrices\x003"),
             "attribute `arealight.matrices` is `3`; this program reads `1 or 2`"
         );
+        assert_eq!(
+            message("arealight.grazing_dip\0none", "arealight.grazing_dip\0nine"),
+            "attribute `arealight.grazing_dip` is `nine`; this program reads `none or ggx`"
+        );
         let not_text = "attribute `arealight.brdf` is `a\\0test`; this program reads `a string`";
         assert_eq!(message("arealight.brdf\0a ", "arealight.brdf\0a\0"), not_text);
+        // A file of version 2 has no dip
+        let mut file = write(&table_of_two(3), target);
+        let at = file.windows(19).position(|bytes| bytes == b"arealight.version\x003").unwrap();
+        file[at + 18] = b'2';
+        assert_eq!(read(&file).unwrap(), rounded(&table_of_two(3), target.precision()).unwrap());
         // One matrix is another table
         assert!(matches!(
             spoil("arealight.matrices\x002", "arealight.matrices\x001"),

@@ -8,7 +8,7 @@
 //! Mean error of [`Formula::GGX`] over the fit's report, by F0 in one integral: 5.5e-4 at F0 = 0.02, 6.6e-4 at 0.04, 2.85e-3 at
 //! 1. The albedo is within 0.014 of the truth, that of Schlick's weight within 0.05 (2e-3 on average).
 
-use super::{TableSample, inverse_from_texel};
+use super::{TableSample, clamped_cosine, clamped_roughness, inverse_from_texel};
 
 /// The coefficients of a BRDF's lobes and albedos. `arealight-fit` makes them, [`Formula::GGX`] is built in.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +46,7 @@ impl Formula {
     ///
     /// Entries and albedos of a view below [`MIN_COS_VIEW`] are those at it; the mirror frame is the view's own.
     pub fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {
-        let roughness = roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt());
-        let cos_view = cos_view.clamp(0.0, 1.0).max(0.0);
+        let (roughness, cos_view) = (clamped_roughness(roughness), clamped_cosine(cos_view));
         let (alpha, cosine) = (roughness * roughness, cos_view.max(MIN_COS_VIEW));
         let inverse = |coefficients: &[[f64; 4]; 10]| {
             let texel: [f64; 4] = std::array::from_fn(|i| cubic(&coefficients.map(|c| c[i]), alpha, cosine));

@@ -247,7 +247,7 @@ mod tests {
     use arealight::TableDescription;
 
     fn table() -> LightTable {
-        let description = TableDescription { brdf: "a\u{1b}[2J".into(), made_by: "b".into() };
+        let description = TableDescription { brdf: "a\u{1b}[2J".into(), ..TableDescription::default() };
         let mut matrix = vec![[1.0, 0.0, 0.0, 1.0]; 9];
         matrix[7][2] = -0.5;
         LightTable::new(description, 3, matrix, vec![[0.5, 0.25]; 9]).unwrap()

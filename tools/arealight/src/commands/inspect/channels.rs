@@ -39,9 +39,12 @@ impl Channel {
                 ENTRIES.into_iter().enumerate().map(entry)
             },
         );
-        let magnitude = ["albedo", "schlick"].into_iter().enumerate().map(|(i, name)| {
-            Self::new("magnitude", name, size, table.magnitude().iter().map(|t| t[i]).collect())
-        });
+        // The albedos that the texels stand for, without the dip that may be added to them
+        let albedos = table.albedos();
+        let magnitude = ["albedo", "schlick"]
+            .into_iter()
+            .enumerate()
+            .map(|(i, name)| Self::new("magnitude", name, size, albedos.iter().map(|t| t[i]).collect()));
         entries.chain(magnitude).collect()
     }
 
@@ -77,7 +80,7 @@ mod tests {
 
     #[test]
     fn channels_know_their_range_and_largest_step() {
-        let description = TableDescription { brdf: "a".into(), made_by: "b".into() };
+        let description = TableDescription::default();
         let mut matrix = vec![[1.0, 0.0, 0.0, 1.0]; 9];
         matrix[7][2] = -0.5;
         let table = LightTable::new(description, 3, matrix, vec![[0.5, 0.25]; 9]).unwrap();
