@@ -186,7 +186,7 @@ impl LightTable {
             invertible("matrix", x, y, m)?;
             // The Schlick part is a part: with more, a surface without F90 would reflect less than nothing
             let dip = description.grazing_dip;
-            let [albedo, schlick] = without_dip(dip, size, x, y, a);
+            let [albedo, schlick] = without_dip(dip, size, x, y, *a);
             let tolerance = dip.tolerance();
             if albedo > 1.0 + tolerance || schlick < -tolerance || schlick > albedo + tolerance {
                 return Err(TableError::Magnitude { x, y, albedo, schlick });
@@ -241,7 +241,7 @@ impl LightTable {
     /// lie 1e-3 outside of their range.
     pub fn albedos(&self) -> Vec<[f32; 2]> {
         let texels = self.magnitude.iter().enumerate();
-        let albedos = |(i, texel)| {
+        let albedos = |(i, &texel)| {
             let (x, y) = (i as u32 % self.size, i as u32 / self.size);
             without_dip(self.description.grazing_dip, self.size, x, y, texel)
         };
@@ -312,9 +312,9 @@ fn clamped_cosine(cos_view: f64) -> f64 {
 }
 
 /// The albedos that a magnitude texel holds.
-fn without_dip(dip: GrazingDip, size: u32, x: u32, y: u32, texel: &[f32; 2]) -> [f32; 2] {
+fn without_dip(dip: GrazingDip, size: u32, x: u32, y: u32, texel: [f32; 2]) -> [f32; 2] {
     if dip == GrazingDip::None {
-        return *texel;
+        return texel;
     }
     let (roughness, cos_view) = LightTable::node(size, x, y);
     let dip = dip.at(roughness, cos_view);
