@@ -77,6 +77,11 @@ impl Region {
         Self { triangles: pairs.map(triangle).collect() }
     }
 
+    /// Adds the region of a planar polygon, as [`Region::polygon`] makes it. Polygons that share an edge count it once.
+    pub fn extend(&mut self, vertices: &[DVec3]) {
+        self.triangles.extend(Self::polygon(vertices).triangles);
+    }
+
     /// Every direction once: the faces of a box around the origin.
     pub fn sphere() -> Self {
         let mut triangles = Vec::new();

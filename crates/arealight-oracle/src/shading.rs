@@ -73,7 +73,11 @@ pub struct Truth {
     pub evaluations: usize,
 }
 
-/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term.
+/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, times what the light
+/// shows.
+///
+/// An image is cut where it bends, at its texels' centres, as long as a two-hundredth of the evaluations reach for that: up to
+/// 141 by 141 texels with the default settings. A larger one converges more slowly.
 ///
 /// `normal` and `view`, the direction to the viewer, have any length above zero; a view below the surface
 /// counts as grazing.
@@ -86,17 +90,26 @@ pub fn truth(
 ) -> Truth {
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
+    let image = light.image.as_ref().map(|image| image.in_frame(&frame));
     let region = if light.two_sided || faces_origin(&vertices) {
-        Region::polygon(&vertices).clipped(DVec3::Z)
+        let most_texels = settings.max_evaluations / EVALUATIONS_PER_TEXEL;
+        let whole = match &image {
+            None => Region::polygon(&vertices),
+            Some(image) => image.region(&vertices, most_texels),
+        };
+        whole.clipped(DVec3::Z)
     } else {
         Region::default()
     };
     let (view, lobe) = (frame.view(), Ggx { alpha: surface.alpha });
+    let shown = |direction| image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
     // Integrate each lobe over the light
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
         Estimate::default()
     } else {
-        region.integrate(settings, angles, |direction| [direction.z.max(0.0) / PI])
+        region.integrate(settings, angles, |direction| {
+            (shown(direction) * (direction.z.max(0.0) / PI)).to_array()
+        })
     };
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
         Estimate::default()
@@ -104,12 +117,12 @@ pub fn truth(
         let grazing = DVec3::splat(surface.f90) - surface.f0;
         integrate_lobe(lobe, view, &region, settings, |direction, value| {
             let fresnel = surface.f0 + grazing * Ggx::schlick_weight(view, direction);
-            (fresnel * value).to_array()
+            (shown(direction) * fresnel * value).to_array()
         })
     };
     // Add them; a two-sided light seen from behind has a negative solid angle
-    let sum = |diffuse: [f64; 1], glossy: [f64; 3]| {
-        (surface.diffuse_albedo * diffuse[0] + DVec3::from_array(glossy)) * light.radiance
+    let sum = |diffuse: [f64; 3], glossy: [f64; 3]| {
+        (surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)) * light.radiance
     };
     let signed = sum(diffuse.value, glossy.value);
     Truth {
@@ -118,6 +131,10 @@ pub fn truth(
         evaluations: diffuse.evaluations + glossy.evaluations,
     }
 }
+
+/// A texel is two triangles of 22 evaluations each, or more where a horizon or the lobe's ridge cuts it; as many again are
+/// for refinement.
+const EVALUATIONS_PER_TEXEL: usize = 200;
 
 /// Whether the front of a polygon is on the origin's side of its plane.
 fn faces_origin(vertices: &[DVec3]) -> bool {

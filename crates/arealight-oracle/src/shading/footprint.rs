@@ -50,7 +50,7 @@ pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -
         Filter::Rung(Footprint::Round) => {
             let (form_factor, hit) = light.seen(&light.vertices);
             let square = hit.length_squared();
-            let sigma = (square / (2.0 * light.normal().length() + END * square)).sqrt();
+            let sigma = (square / (WHOLE.bump * light.normal().length() + WHOLE.end * square)).sqrt();
             lookup(whole.clamp(box_coordinate(&light.map, hit)), sigma) * form_factor
         }
         Filter::Rung(Footprint::Ellipse) => {
@@ -62,11 +62,22 @@ pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -
     }
 }
 
-/// The inverse of the variance at which a footprint ends, in the light's size.
-const END: f64 = 8.0;
+/// The constants of a footprint. Found by search over the poses of `tests/oracle/footprints.rs`, through the pyramid.
+struct Shape {
+    /// The lobe's bump: its variance is the squared distance to the point seen, over this.
+    bump: f64,
+    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even spread would
+    /// be 12; a lookup's edge is extended, so that a wide blur sees less beside the middle.
+    end: f64,
+    /// How much blurrier taps are than they are apart.
+    overlap: f64,
+}
 
-/// How much blurrier taps are than they are apart.
-const OVERLAP: f64 = 1.15;
+/// Of a whole light.
+const WHOLE: Shape = Shape { bump: 1.5, end: 8.0, overlap: 1.15 };
+
+/// Of one of the parts, which mostly see a slope of the bump.
+const SPLIT: Shape = Shape { bump: 2.0, end: 12.0, overlap: 1.5 };
 
 /// A part of a light in box coordinates, one of `parts` a side.
 struct Part {
@@ -113,11 +124,12 @@ impl SeenLight {
             return DVec3::ZERO;
         }
         let place = part.clamp(box_coordinate(&self.map, hit));
+        let shape = if part.parts > 1.0 { SPLIT } else { WHOLE };
         // The inverse of the covariance, in the metric of texels: of the lobe's bump, and of the part's end
         let stretch = (self.texels.x / self.texels.y).sqrt();
         let (u, v) = (self.map.axis_u / stretch, self.map.axis_v * stretch);
-        let bump = 2.0 / hit.length_squared().max(f64::MIN_POSITIVE);
-        let end = END * part.parts * part.parts;
+        let bump = shape.bump / hit.length_squared().max(f64::MIN_POSITIVE);
+        let end = shape.end * part.parts * part.parts;
         let (xx, yy) =
             (bump * u.dot(u) + end / (stretch * stretch), bump * v.dot(v) + end * stretch * stretch);
         let xy = bump * u.dot(v);
@@ -130,7 +142,7 @@ impl SeenLight {
         let axis = axis.normalize_or_zero() / DVec2::new(stretch, stretch.recip());
         // Blur what one tap stands for, and lay them as far apart as makes up for the rest
         let (major, minor) = (smallest.recip(), largest.recip());
-        let share = (OVERLAP / taps.len() as f64).powi(2);
+        let share = (shape.overlap / taps.len() as f64).powi(2);
         let variance = major.min(minor.max(share * major));
         let step = axis * (major - variance).sqrt();
         let tap = |offset: &f64| lookup(part.clamp(place + step * *offset), variance.sqrt());

@@ -1,5 +1,6 @@
 //! An image in space: what shows where, and its pieces between which it does not bend.
 
+use crate::cubature::Region;
 use crate::frame::SurfaceFrame;
 use crate::texture::Texture;
 use arealight::TextureMap;
@@ -41,6 +42,35 @@ pub(crate) fn box_coordinate(map: &TextureMap, point: DVec3) -> DVec2 {
     let offset = point - map.corner;
     let along = DVec2::new(offset.cross(map.axis_v).dot(normal), map.axis_u.cross(offset).dot(normal));
     along / normal.length_squared()
+}
+
+impl ShownImage {
+    /// The image in a direction from the shading point.
+    pub(crate) fn color(&self, direction: DVec3) -> DVec3 {
+        let normal = self.map.axis_u.cross(self.map.axis_v);
+        let time = normal.dot(self.map.corner) / normal.dot(direction);
+        let place = box_coordinate(&self.map, direction * time);
+        self.texture.sample(self.map.low + self.map.size * place)
+    }
+
+    /// The outline of a light, in parts on which the image does not bend: an integrand that holds it is smooth there. An
+    /// image of more texels than `most` is left whole.
+    pub(crate) fn region(&self, vertices: &[DVec3], most: usize) -> Region {
+        let outline: Vec<DVec2> = vertices.iter().map(|vertex| box_coordinate(&self.map, *vertex)).collect();
+        let texels = self.texture.width() * self.texture.height();
+        if texels > most || !outline.iter().all(|place| place.is_finite()) {
+            return Region::polygon(vertices);
+        }
+        let mut region = Region::default();
+        for_each_piece(self, &outline, |_, part, sign| {
+            let mut corners: Vec<DVec3> = part.iter().map(|place| point(&self.map, *place)).collect();
+            if sign < 0.0 {
+                corners.reverse();
+            }
+            region.extend(&corners);
+        });
+        region
+    }
 }
 
 /// A rectangle in box coordinates on which a texture is bilinear.

@@ -2,6 +2,7 @@
 
 mod article;
 mod common;
+mod footprints;
 mod ggx;
 mod ltsd;
 mod polygon;
