@@ -6,11 +6,13 @@
 
 mod fields;
 
-use crate::shading::RelativeLight;
-use arealight::{MIN_ALPHA, Surface};
+use crate::shading::{RelativeLight, ShownImage};
+use crate::texture::Texture;
+use arealight::{LightTexture, MIN_ALPHA, PolygonLight, Surface, TextureError, TextureMap};
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
+use std::sync::Arc;
 
 /// Why a file of cases or answers cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -152,8 +154,10 @@ pub struct SupportedCase {
     pub normal: DVec3,
     /// Direction to the viewer, not zero, of any length.
     pub view: DVec3,
-    /// The light, relative to the shading point.
+    /// The light, relative to the shading point, with the image that it shows.
     pub light: RelativeLight,
+    /// Where that image is from, and its coordinates.
+    pub texture: Option<CaseTexture>,
 }
 
 /// A case is well-formed, but asks for what is not there yet.
@@ -289,19 +293,24 @@ fn vertex_off_plane(vertices: &[DVec3]) -> Option<(usize, f64)> {
 }
 
 impl Case {
-    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under untextured polygons.
+    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under polygons.
+    ///
+    /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called for every
+    /// case that has one, so it should keep what it has loaded.
     ///
     /// # Errors
     /// [`Unsupported`] with the reason, in words.
-    pub fn supported(&self) -> Result<SupportedCase, Unsupported> {
+    pub fn supported(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<SupportedCase, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         if let Some(field) = self.unknown_fields.first() {
             return unsupported(format!("the field \"{field}\" is not known"));
         }
         // The light
-        let vertices = match &self.light.shape {
-            CaseShape::Polygon { vertices, texture: None } => vertices,
-            CaseShape::Polygon { .. } => return unsupported("textured lights are not supported yet".into()),
+        let (vertices, texture) = match &self.light.shape {
+            CaseShape::Polygon { vertices, texture } => (vertices, texture),
             CaseShape::Disk { .. } => return unsupported("light.type \"disk\" is not supported yet".into()),
             CaseShape::Sphere { .. } => {
                 return unsupported("light.type \"sphere\" is not supported yet".into());
@@ -331,13 +340,38 @@ impl Case {
                 alpha: alpha.x,
             },
         };
-        let light = RelativeLight {
+        let mut light = RelativeLight {
             vertices: vertices.iter().map(|v| *v - self.position).collect(),
             radiance: self.light.radiance,
             two_sided: self.light.two_sided,
             image: None,
         };
-        Ok(SupportedCase { name: self.name.clone(), surface, normal: self.normal, view: self.view, light })
+        if let Some(texture) = texture {
+            let image = match load(&texture.path) {
+                Ok(image) => image,
+                Err(reason) => return unsupported(format!("light.texture: {}: {reason}", texture.path)),
+            };
+            match texture.map(&light.vertices) {
+                Ok(map) => light.image = Some(ShownImage { texture: image, map }),
+                Err(reason) => return unsupported(format!("light.uv: {reason}")),
+            }
+        }
+        Ok(SupportedCase {
+            name: self.name.clone(),
+            surface,
+            normal: self.normal,
+            view: self.view,
+            light,
+            texture: texture.clone(),
+        })
+    }
+}
+
+impl CaseTexture {
+    /// Where the image is on a polygon.
+    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, TextureError> {
+        let light = PolygonLight { vertices: vertices.to_vec(), ..PolygonLight::default() };
+        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&light)
     }
 }
 

@@ -3,6 +3,7 @@
 mod commands;
 mod failure;
 mod gpu;
+mod images;
 mod output;
 mod picture;
 mod progress;

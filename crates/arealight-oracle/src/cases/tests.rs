@@ -2,6 +2,11 @@
 
 use super::*;
 
+/// There is no image beside these cases.
+fn no_image(path: &str) -> Result<Arc<Texture>, String> {
+    Err(format!("asked for {path}"))
+}
+
 /// A case of `material` under `light`, both the inside of JSON objects.
 fn case(material: &str, light: &str) -> String {
     format!(
@@ -19,7 +24,7 @@ fn message(material: &str, light: &str) -> String {
 }
 
 fn reason(material: &str, light: &str) -> String {
-    read_one(&case(material, light)).unwrap().supported().unwrap_err().to_string()
+    read_one(&case(material, light)).unwrap().supported(no_image).unwrap_err().to_string()
 }
 
 const GGX: &str = r#""alpha": 0.25, "F0": [0.1, 0.2, 0.3], "albedo": [0.5, 0.6, 0.7]"#;
@@ -27,7 +32,7 @@ const QUAD: &str = r#""type": "polygon", "vertices": [[1, 2, 4], [2, 2, 4], [2, 
 
 #[test]
 fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
-    let supported = read_one(&case(GGX, QUAD)).unwrap().supported().unwrap();
+    let supported = read_one(&case(GGX, QUAD)).unwrap().supported(no_image).unwrap();
     assert_eq!(supported.name, "a case");
     assert_eq!((supported.normal, supported.view), (DVec3::new(0.0, 0.0, 2.0), DVec3::new(1.0, 0.0, 1.0)));
     let surface = Surface {
@@ -44,10 +49,10 @@ fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
 
 #[test]
 fn without_f0_there_is_no_fresnel_term_and_diffuse_has_no_glossy_lobe() {
-    let surface = read_one(&case(r#""alpha": 0.5"#, QUAD)).unwrap().supported().unwrap().surface;
+    let surface = read_one(&case(r#""alpha": 0.5"#, QUAD)).unwrap().supported(no_image).unwrap().surface;
     assert_eq!((surface.f0, surface.f90, surface.diffuse_albedo), (DVec3::ONE, 1.0, DVec3::ZERO));
     let diffuse = r#""bsdf": "diffuse", "albedo": [0.5, 0.25, 1]"#;
-    let surface = read_one(&case(diffuse, QUAD)).unwrap().supported().unwrap().surface;
+    let surface = read_one(&case(diffuse, QUAD)).unwrap().supported(no_image).unwrap().surface;
     assert_eq!((surface.f0, surface.f90), (DVec3::ZERO, 0.0));
     assert_eq!(surface.diffuse_albedo, DVec3::new(0.5, 0.25, 1.0));
 }
@@ -68,13 +73,31 @@ fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
     let cylinder = r#""type": "cylinder", "p0": [0, 0, 5], "p1": [1, 0, 5], "radius": 0.5, "caps": true"#;
     assert_eq!(reason(GGX, cylinder), "light.type \"cylinder\" is not supported yet");
     let textured = format!(r#"{QUAD}, "texture": "light.exr", "uv": [[0, 0], [1, 0], [1, 1], [0, 1]]"#);
-    assert_eq!(reason(GGX, &textured), "textured lights are not supported yet");
+    assert_eq!(reason(GGX, &textured), "light.texture: light.exr: asked for light.exr");
     assert_eq!(reason(r#""alpha_x": 0.5, "alpha_y": 0.1"#, QUAD), "anisotropic GGX is not supported yet");
-    assert!(read_one(&case(r#""alpha_x": 0.5, "alpha_y": 0.5"#, QUAD)).unwrap().supported().is_ok());
+    assert!(read_one(&case(r#""alpha_x": 0.5, "alpha_y": 0.5"#, QUAD)).unwrap().supported(no_image).is_ok());
     assert_eq!(
         reason(r#""alpha": 1e-9"#, QUAD),
         "alpha 0.000000001 is below 0.0001, the smallest that is shaded"
     );
+}
+
+#[test]
+fn a_textured_case_has_its_image_where_its_coordinates_say() {
+    let image = Arc::new(Texture::gradient(4, 4));
+    let with = |uv: &str| {
+        let light = format!(r#"{QUAD}, "texture": "light.exr", "uv": {uv}"#);
+        let case = read_one(&case(GGX, &light)).unwrap();
+        case.supported(|path| if path == "light.exr" { Ok(Arc::clone(&image)) } else { no_image(path) })
+    };
+    let supported = with("[[0, 1], [1, 1], [1, 0.5], [0, 0.5]]").unwrap();
+    let shown = supported.light.image.unwrap();
+    assert_eq!(shown.texture, image);
+    // Relative to the shading point: the vertex at uv (0, 0.5) is the box's corner
+    assert!((shown.map.corner - DVec3::new(0.0, 1.0, 1.0)).length() < 1e-12, "{:?}", shown.map);
+    assert_eq!(supported.texture.unwrap().uv[2], DVec2::new(1.0, 0.5));
+    let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err().to_string();
+    assert!(bent.starts_with("light.uv: uvs["), "{bent}");
 }
 
 #[test]

@@ -124,7 +124,9 @@ pub(crate) fn for_each_piece(
             for part in &parts {
                 clipped.clear();
                 clipped.extend(piece.corners());
-                part.sides.iter().for_each(|side| clip(&mut clipped, *side));
+                for side in &part.sides {
+                    clip(&mut clipped, *side);
+                }
                 if clipped.len() >= 3 {
                     visit(&piece, &clipped, part.sign);
                 }

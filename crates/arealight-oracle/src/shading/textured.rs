@@ -38,7 +38,9 @@ pub fn transformed_image_integral(
     for_each_piece(image, &outline, |piece, part, sign| {
         cut.clear();
         cut.extend_from_slice(part);
-        horizons.iter().for_each(|horizon| clip(&mut cut, *horizon));
+        for horizon in &horizons {
+            clip(&mut cut, *horizon);
+        }
         let color = |place| piece.color(place);
         let whole = piece.corners();
         if cut == whole {
@@ -63,6 +65,9 @@ const SMALL_RECTANGLE: f64 = 0.2;
 
 /// The same for triangles, with a rule of degree 8.
 const SMALL_TRIANGLE: f64 = 0.5;
+
+/// Where Gauss's rule of two points looks on [-1, 1].
+const GAUSS_2: f64 = 0.5773502691896258;
 
 /// z over box coordinates.
 fn heights(map: &TextureMap) -> DVec3 {
@@ -101,8 +106,7 @@ impl SeenPlane {
                 + self.rectangle(second, high, color, depth - 1);
         }
         // Gauss's rule of two points on each axis
-        const PLACE: f64 = 0.5773502691896258;
-        let signs = [(-PLACE, -PLACE), (PLACE, -PLACE), (-PLACE, PLACE), (PLACE, PLACE)];
+        let signs = [(-GAUSS_2, -GAUSS_2), (GAUSS_2, -GAUSS_2), (-GAUSS_2, GAUSS_2), (GAUSS_2, GAUSS_2)];
         let sample = |(x, y): (f64, f64)| {
             let place = middle + half * DVec2::new(x, y);
             color(place) * self.density(place)

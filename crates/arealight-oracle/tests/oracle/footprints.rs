@@ -233,10 +233,7 @@ fn print(title: &str, textures: &[Arc<Texture>], count: usize) {
     for family in Family::ALL {
         let rows = measure(family, textures, count, true);
         for ((name, _), [[rmse, median], [ideal_rmse, ideal_median]]) in FILTERS.iter().zip(rows) {
-            println!(
-                "{family:?} {name:8} {rmse:6.2}; {median:5.2} | {ideal_rmse:6.2}; {ideal_median:5.2}",
-                family = family
-            );
+            println!("{family:?} {name:8} {rmse:6.2}; {median:5.2} | {ideal_rmse:6.2}; {ideal_median:5.2}");
         }
     }
 }

@@ -5,6 +5,9 @@ use arealight_oracle::cases::{Case, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Family, relative_error};
 use arealight_oracle::shading::truth;
+use arealight_oracle::texture::Texture;
+use glam::DVec3;
+use std::sync::{Arc, LazyLock};
 
 fn read(file: &str) -> String {
     let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));
@@ -16,7 +19,35 @@ fn cases() -> Vec<Case> {
 }
 
 fn supported() -> Vec<(Family, SupportedCase)> {
-    cases().iter().filter_map(|case| Some((Family::of(case), case.supported().ok()?))).collect()
+    cases()
+        .iter()
+        .filter_map(|case| Some((Family::of(case), case.supported(|path| Ok(image(path))).ok()?)))
+        .collect()
+}
+
+/// The reference's one image.
+fn image(path: &str) -> Arc<Texture> {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    static IMAGE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
+        let path = format!("{}/../../tests/data/reference/light.exr", env!("CARGO_MANIFEST_DIR"));
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .rgb_channels(
+                |size, _| (size.width(), vec![DVec3::ZERO; size.area()]),
+                |(width, texels), at, (r, g, b): (f32, f32, f32)| {
+                    texels[at.y() * *width + at.x()] = DVec3::new(r.into(), g.into(), b.into());
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .from_file(&path)
+            .unwrap_or_else(|error| panic!("{path}: {error}"));
+        let (width, texels) = image.layer_data.channel_data.pixels;
+        Arc::new(Texture::new(width, texels.len() / width, texels).unwrap())
+    });
+    assert_eq!(path, "light.exr");
+    Arc::clone(&IMAGE)
 }
 
 fn known(name: &str) -> [f64; 3] {
@@ -29,18 +60,18 @@ fn answer(case: &SupportedCase) -> [f64; 3] {
 }
 
 #[test]
-fn every_untextured_polygon_case_with_an_isotropic_lobe_is_supported() {
+fn every_polygon_case_with_an_isotropic_lobe_is_supported() {
     let mut counts = std::collections::BTreeMap::new();
     for case in cases() {
         let (yes, no) = counts.entry(Family::of(&case).to_string()).or_insert((0, 0));
-        *if case.supported().is_ok() { yes } else { no } += 1;
+        *if case.supported(|path| Ok(image(path))).is_ok() { yes } else { no } += 1;
     }
     assert_eq!(counts.values().map(|(yes, no)| yes + no).sum::<i32>(), 176);
     assert_eq!(counts["polygon, ggx"], (50, 0));
     assert_eq!(counts["polygon, ggx + diffuse"], (10, 0));
     assert_eq!(counts["polygon, diffuse"], (10, 0));
-    assert_eq!(counts["textured polygon, ggx"].0, 0);
-    assert_eq!(counts.values().map(|(yes, _)| yes).sum::<i32>(), 70);
+    assert_eq!(counts["textured polygon, ggx"], (10, 0));
+    assert_eq!(counts.values().map(|(yes, _)| yes).sum::<i32>(), 84);
 }
 
 #[test]
@@ -65,4 +96,22 @@ fn a_slightly_wrong_lobe_does_not_agree() {
         });
     let wrong = changed.filter(|error| *error > 1e-4).count();
     assert!(wrong > 45, "only {wrong} of 50 cases notice");
+}
+
+#[test]
+fn an_image_upside_down_does_not_agree() {
+    // The twin for textured lights
+    let turned = supported().into_iter().filter(|(family, _)| family.textured).map(|(_, mut case)| {
+        if let Some(image) = &mut case.light.image {
+            let texture = &image.texture;
+            let (width, height) = (texture.width(), texture.height());
+            let flipped = Texture::from_fn(width, height, |column, row| {
+                texture.texels()[(height - 1 - row) * width + column]
+            });
+            image.texture = Arc::new(flipped);
+        }
+        relative_error(answer(&case), known(&case.name))
+    });
+    assert!(turned.clone().count() > 12);
+    assert!(turned.min_by(f64::total_cmp).unwrap() > 1e-3, "a case does not notice");
 }

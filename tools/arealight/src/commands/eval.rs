@@ -1,6 +1,7 @@
 //! `arealight eval`
 
 use crate::failure::Failure;
+use crate::images::Images;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
@@ -10,6 +11,8 @@ use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::shading::{ltc_on, truth};
+use arealight_oracle::texture::Texture;
+use glam::DVec3;
 use indicatif::ParallelProgressIterator;
 use rayon::prelude::*;
 use serde_json::json;
@@ -17,6 +20,7 @@ use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Answer a file of shading points, and measure answers against known radiance.
@@ -121,7 +125,10 @@ fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<
 fn check_known(cases: &[Case], known: &[Answer]) -> Result<(), UnknownTruth> {
     let known = known.iter().filter(|answer| answer.radiance.is_some());
     let names: HashSet<&str> = known.map(|answer| answer.name.as_str()).collect();
-    let unknown = |case: &&Case| !names.contains(case.name.as_str()) && case.supported().is_ok();
+    // Whether an image can be read is no matter here
+    let image = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
+    let supported = |case: &Case| case.supported(|_| Ok(Arc::clone(&image))).is_ok();
+    let unknown = |case: &&Case| !names.contains(case.name.as_str()) && supported(case);
     match cases.iter().find(unknown) {
         Some(case) => Err(UnknownTruth { case: case.name.clone() }),
         None => Ok(()),
@@ -147,7 +154,12 @@ fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
 /// One answer a case, in their order: the radiance, or why there is none.
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported
-    let supported: Vec<_> = cases.iter().map(Case::supported).collect();
+    let mut images = Images::beside(&arguments.cases);
+    let mut load = |path: &str| match arguments.on {
+        Method::Gpu => Err("textured lights are not answered on the GPU yet".into()),
+        Method::Oracle | Method::Truth => images.load(path),
+    };
+    let supported: Vec<_> = cases.iter().map(|case| case.supported(&mut load)).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
     // The most precise rungs, unless others are to be seen
     let precise =

@@ -1,0 +1,80 @@
+//! Images beside a file of cases.
+
+use arealight_oracle::texture::Texture;
+use exr::prelude::{ReadChannels, ReadLayers, read};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The largest image that is read: that of the largest light texture.
+const MAX_SIDE: usize = arealight::PyramidSize::LARGEST as usize;
+
+/// Images in one folder; each is read once.
+pub struct Images {
+    folder: PathBuf,
+    known: HashMap<String, Result<Arc<Texture>, String>>,
+}
+
+impl Images {
+    /// Those beside `file`.
+    pub fn beside(file: &Path) -> Self {
+        let folder = file.parent().unwrap_or(Path::new("")).to_owned();
+        Self { folder, known: HashMap::new() }
+    }
+
+    /// The image of a path in the folder: OpenEXR, linear, its channels R, G and B.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in words.
+    pub fn load(&mut self, path: &str) -> Result<Arc<Texture>, String> {
+        let folder = &self.folder;
+        let read = || load_exr(&folder.join(path)).map(Arc::new);
+        self.known.entry(path.to_owned()).or_insert_with(read).clone()
+    }
+}
+
+fn load_exr(path: &Path) -> Result<Texture, String> {
+    // The header first: what it says is not yet to be trusted with memory
+    let header = exr::meta::MetaData::read_from_file(path, true).map_err(|error| error.to_string())?;
+    for layer in &header.headers {
+        let (width, height) = (layer.layer_size.width(), layer.layer_size.height());
+        if width > MAX_SIDE || height > MAX_SIDE {
+            return Err(format!("{width} x {height} texels; at most {MAX_SIDE} a side"));
+        }
+    }
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size, _| (size.width(), vec![DVec3::ZERO; size.area()]),
+            |(width, texels), at, (r, g, b): (f32, f32, f32)| {
+                texels[at.y() * *width + at.x()] = DVec3::new(r.into(), g.into(), b.into());
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .map_err(|error| error.to_string())?;
+    let (width, texels) = image.layer_data.channel_data.pixels;
+    Texture::new(width, texels.len() / width.max(1), texels).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_image_is_read_once_and_what_is_none_has_a_reason() {
+        let folder = tempfile::tempdir().unwrap();
+        let pixel = |x: usize, y: usize| (x as f32, y as f32, -0.5);
+        exr::prelude::write_rgb_file(folder.path().join("a.exr"), 3, 2, pixel).unwrap();
+        std::fs::write(folder.path().join("b.exr"), "no image").unwrap();
+        let mut images = Images::beside(&folder.path().join("cases.json"));
+        let image = images.load("a.exr").unwrap();
+        assert_eq!((image.width(), image.height()), (3, 2));
+        assert_eq!(image.texel(2, 1), DVec3::new(2.0, 1.0, -0.5));
+        assert!(Arc::ptr_eq(&image, &images.load("a.exr").unwrap()));
+        assert!(images.load("b.exr").is_err() && images.load("c.exr").is_err());
+    }
+}
