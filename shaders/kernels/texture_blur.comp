@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // Makes a level of the light textures from the one before: half the texels a side, blurred by a separable kernel
-// whose taps stop at the margin's edge. arealight::PyramidSize::kernel gives its weights; sums are in float32.
+// with the image mirrored beyond its edge. arealight::PyramidSize::kernel gives its weights; sums are in float32.
 //
 // Each invocation makes a block of texels out of registers: of what it reads, neighbours share the most. Shared memory
 // would read less, and take twice the time in software. Wide groups read long rows.
@@ -57,7 +57,10 @@ void main() {
         // Read a row of the finer level
         vec3 texels[READ_WIDTH];
         for (int x = 0; x < READ_WIDTH; x++) {
-            ivec2 texel = clamp(corner + ivec2(x, row), ivec2(0), last);
+            // Mirrored once: no tap is farther out than the finer level is wide, but those of texels that are not there
+            ivec2 texel = corner + ivec2(x, row);
+            texel = max(texel, -1 - texel);
+            texel = max(min(texel, 2 * last + 1 - texel), ivec2(0));
             texels[x] = texelFetch(finer_level, ivec3(texel, layer), 0).rgb;
         }
         for (int x = 0; x < BLOCK_WIDTH; x++) {

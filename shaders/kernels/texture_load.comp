@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Resamples a part of an image into level 0 of a layer of the light textures, and extends its edge into the margin.
+// Resamples a part of an image into level 0 of a layer of the light textures.
 // crates/arealight/src/texture_part.rs makes the constants.
 
 layout(local_size_x = 32, local_size_y = 2) in;
@@ -13,9 +13,9 @@ layout(set = 0, binding = 0) uniform texture2D source;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image2DArray out_level;
 
 layout(push_constant, std430) uniform TextureLoadConstants {
-    ivec2 first_texel;  // of the source: where the middle of the content's first texel is, from the middle of texel 0;
+    ivec2 first_texel;  // of the source: where the middle of our first texel is, from the middle of texel 0;
     vec2 first_offset;  // and what is left of it, within 0 to 1
-    vec2 stride;        // texels of the source from one texel of the content to the next
+    vec2 stride;        // texels of the source from one texel of ours to the next
     uint flags;
     uint layer;
 } constants;
@@ -62,11 +62,11 @@ vec3 fetch_linear(ivec2 texel) {
     return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
 }
 
-// The color at a texel of the content: the mean under a tent, which is as wide as two texels of the source or, where it
+// The color at a texel of ours: the mean under a tent, which is as wide as two texels of the source or, where it
 // is minified, of ours.
-vec3 resampled(ivec2 content) {
+vec3 resampled(ivec2 texel) {
     // Place the tent on the source
-    vec2 place = constants.first_offset + vec2(content) * constants.stride;
+    vec2 place = constants.first_offset + vec2(texel) * constants.stride;
     vec2 middle = place - floor(place);
     ivec2 base = constants.first_texel + ivec2(floor(place));
     vec2 radius = max(constants.stride, vec2(1.0));
@@ -93,10 +93,7 @@ void main() {
     if (any(greaterThanEqual(texel, extent))) {
         return;
     }
-    // The margin, a tenth of the extent at each side, repeats the content's edge
-    ivec2 margin = extent / 10;
-    ivec2 content = clamp(texel - margin, ivec2(0), extent - 2 * margin - 1);
     vec3 color = (CALLED_FOR & CALLED_FOR_RESAMPLING) != 0u
-        ? resampled(content) : fetch_linear(wrap(constants.first_texel + content));
+        ? resampled(texel) : fetch_linear(wrap(constants.first_texel + texel));
     imageStore(out_level, ivec3(texel, constants.layer), vec4(round_to_half(color), 1.0));
 }

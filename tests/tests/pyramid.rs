@@ -68,7 +68,7 @@ impl Picture {
 
     /// The part that is shown, resampled by a tent: the kernel's twin.
     fn resampled(&self, size: PyramidSize) -> Texture {
-        let content = size.content();
+        let content = size.extent(0);
         let taps = [0, 1].map(|axis| -> Vec<Vec<(i64, f64)>> {
             let texels = f64::from(self.size[axis]);
             let stride = self.part.size[axis] * texels / f64::from(content[axis]);
@@ -97,7 +97,7 @@ impl Picture {
     fn resampling_error(&self, size: PyramidSize) -> f64 {
         let off = |axis: usize| {
             let texels = self.part.size[axis] * f64::from(self.size[axis]);
-            texels / (texels / f64::from(size.content()[axis])).max(1.0)
+            texels / (texels / f64::from(size.extent(0)[axis])).max(1.0)
         };
         4.0 * 2.0_f64.powi(-24) * (1.0 + off(0).max(off(1)))
     }

@@ -157,7 +157,9 @@ fn a_table_image_without_memory_is_refused() {
         let pass = ComputePass::new(engine.context(), &EVAL, &[]).unwrap();
         let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
         let set = pool.allocate(pass.set_layout()).unwrap();
-        let error = pass.write_set(set, &[image.resource(), whole, whole, whole, whole, engine.light_textures()]).unwrap_err();
+        let error = pass
+            .write_set(set, &[image.resource(), whole, whole, whole, whole, engine.light_textures()])
+            .unwrap_err();
         assert_eq!(field(&error), "table_image");
     }
 }

@@ -96,8 +96,8 @@ impl Texture {
     }
 
     /// The texel of a column and a row; beyond the edge, that at the edge.
-    pub fn texel(&self, column: i64, row: i64) -> DVec3 {
-        let clamp = |index: i64, count: usize| index.clamp(0, count as i64 - 1) as usize;
+    pub fn texel(&self, column: isize, row: isize) -> DVec3 {
+        let clamp = |index: isize, count: usize| index.clamp(0, count.cast_signed() - 1) as usize;
         self.texels[clamp(row, self.height) * self.width + clamp(column, self.width)]
     }
 
@@ -156,10 +156,10 @@ impl Tent {
         let radius = ratio.max(1.0);
         let tent = |index: usize| {
             let center = (index as f64 + 0.5) * ratio - 0.5;
-            let (first, last) = ((center - radius).ceil() as i64, (center + radius).floor() as i64);
-            let weight = |tap: i64| (1.0 - (tap as f64 - center).abs() / radius).max(0.0);
+            let (first, last) = ((center - radius).ceil() as isize, (center + radius).floor() as isize);
+            let weight = |tap: isize| (1.0 - (tap as f64 - center).abs() / radius).max(0.0);
             let sum: f64 = (first..=last).map(weight).sum();
-            let inside = |tap: i64| tap.clamp(0, source as i64 - 1) as usize;
+            let inside = |tap: isize| tap.clamp(0, source.cast_signed() - 1) as usize;
             Self { taps: (first..=last).map(|tap| (inside(tap), weight(tap) / sum)).collect() }
         };
         (0..target).map(tent).collect()
@@ -168,6 +168,13 @@ impl Tent {
     fn apply(&self, texel: impl Fn(usize) -> DVec3) -> DVec3 {
         self.taps.iter().map(|&(index, weight)| texel(index) * weight).sum()
     }
+}
+
+/// The texel of `count` that stands at `index` where they are mirrored at both ends, without end.
+fn mirrored(index: isize, count: usize) -> isize {
+    let count = count.cast_signed();
+    let within = index.rem_euclid(2 * count);
+    within.min(2 * count - 1 - within)
 }
 
 #[cfg(test)]

@@ -88,7 +88,7 @@ impl Scene {
         let sizes = sources.map(|source| {
             let texels = source.size * DVec2::new(f64::from(source.width), f64::from(source.height));
             let [width, height] = texels.to_array().map(|side| side.ceil() as u32);
-            PyramidSize::for_image(width.min(largest), height.min(largest)).content()
+            PyramidSize::for_image(width.min(largest), height.min(largest)).extent(0)
         });
         let [width, height] = sizes.reduce(|[a, b], [c, d]| [a.max(c), b.max(d)])?;
         // A limit between two powers of two is kept, too

@@ -442,10 +442,8 @@ fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), E
     };
     let ([width, height], [widest, highest]) = (size.extent(0), limits.extent);
     if width > widest || height > highest {
-        let [content_width, content_height] = size.content();
         let message = format!(
-            "{content_width} x {content_height} texels are {width} x {height} with their margins, but the device's \
-             largest image has {widest} x {highest}; take a smaller size"
+            "{width} x {height} texels, but the device's largest image has {widest} x {highest}; take a smaller size"
         );
         return Err(Error::InvalidArgument { field: "size", message });
     }

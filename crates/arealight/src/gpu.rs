@@ -143,12 +143,12 @@ pub struct EvalConstants {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TextureLoadConstants {
-    /// Where the middle of the content's first texel is in the image: in texels from the middle of texel 0, rounded
+    /// Where the middle of the layer's first texel is in the image: in texels from the middle of texel 0, rounded
     /// down. Where the image repeats, within its first repeat.
     pub first_texel: [i32; 2],
     /// What was rounded off, 0 to 1.
     pub first_offset: [f32; 2],
-    /// Texels of the image from one texel of the content to the next.
+    /// Texels of the image from one texel of the layer to the next.
     pub stride: [f32; 2],
     /// [`TextureLoadConstants::SRGB`], and a wrap mode for each axis.
     pub flags: u32,

@@ -229,8 +229,7 @@ pub static REFERENCE: Kernel = Kernel {
     constants: &[],
 };
 
-/// Loads a part of an image into level 0 of a layer of the light textures, margin included; an item a texel of the
-/// level. Push constants: [`crate::gpu::TextureLoadConstants`].
+/// Loads a part of an image into level 0 of a layer of the light textures; an item a texel of the level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel {
     name: "texture_load",
     spirv: include_bytes!("../spirv/texture_load.spv"),

@@ -157,8 +157,8 @@ mod tests {
         assert_eq!(eval(Effects::all(), Quality::default(), 65).groups, [2, 1, 1]);
         let size = PyramidSize::new(128, 64).unwrap();
         let constants = TexturePart::default().load_constants([128, 64], size, 0, false).unwrap();
-        assert_eq!(texture_load(size, &constants).groups, [5, 40, 1]);
+        assert_eq!(texture_load(size, &constants).groups, [4, 32, 1]);
         let (second, constants) = texture_blur(size, 1, 2..5);
-        assert_eq!((second.groups, constants.first_layer), ([1, 5, 3], 2));
+        assert_eq!((second.groups, constants.first_layer), ([1, 4, 3], 2));
     }
 }

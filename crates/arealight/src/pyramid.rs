@@ -2,15 +2,17 @@
 //!
 //! A light's texture is a layer of one array image that all lights share, so that no shader indexes an array of images.
 //! Level 0 is the image itself, in linear light; each further level has half the texels a side and about twice the
-//! blur, and is made from the one before with a separable Gaussian. Around the content of every level is a margin of an
-//! eighth of its size, into which the image's edge is extended. A blurred lookup is one trilinear fetch
-//! ([`PyramidSize::level_of`]).
+//! blur, and is made from the one before with a separable Gaussian. Beyond its edge the image is mirrored, so that every
+//! level has the image's mean. A blurred lookup is one trilinear fetch ([`PyramidSize::level_of`]).
 //!
 //! # Why so
 //! - Levels are twice apart: three times, as is common, doubles the error between them.
 //! - The blur of a level is 0.85 of its texels: less, and bilinear lookup shows the texels; more, and the kernel needs more
 //!   than six taps.
-//! - The last three levels are 2.29 times apart instead, so that the last, whose content is four texels a side, has
+//! - Mirrored, not extended: a blur that extends the edge sees too much of it. At the widest blur a picture with a bright
+//!   frame would be a fifth too bright, and a far light must show the image's mean. It also needs no margin, which would
+//!   take half as many texels again.
+//! - The last three levels are 2.29 times apart instead, so that the last, which is four texels a side, has
 //!   [`WIDEST_BLUR`]: no footprint is wider. A level of two texels cannot show a gradient.
 //! - Level 0 is sharp: a mirror shows the image, and updating it costs one copy.
 //! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a Gaussian than
@@ -36,12 +38,9 @@ const WIDENING: f64 = 1.310_209_9;
 const WIDENED: u32 = 3;
 
 /// How much the level's fraction is lowered in its middle, times four.
-const EASE: f64 = 0.25;
+const EASE: f64 = 0.2;
 
-/// The exponent of the level between 0 and 1, as a power of the blur.
-const FIRST_POWER: f64 = 1.6;
-
-/// The size of a light texture: content of `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`] to
+/// The size of a light texture: `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`] to
 /// [`PyramidSize::LARGEST`].
 ///
 /// Images of any other size are resampled when they are loaded. The blur is equally wide in both directions *in texels*, so
@@ -83,7 +82,7 @@ impl LevelKernel {
 }
 
 impl PyramidSize {
-    /// The smallest width and height of the content.
+    /// The smallest width and height.
     pub const SMALLEST: u32 = 64;
     /// The largest.
     pub const LARGEST: u32 = 4096;
@@ -107,27 +106,17 @@ impl PyramidSize {
         Self { width: side(width), height: side(height) }
     }
 
-    /// Width and height of the content of level 0, in texels.
-    pub fn content(self) -> [u32; 2] {
-        [self.width, self.height]
-    }
-
     /// How many levels there are, level 0 included.
     pub fn levels(self) -> u32 {
         self.width.min(self.height).ilog2() - 1
     }
 
-    /// Width and height of a level with its margins: 5/4 of the content's, a whole number.
+    /// Width and height of a level, in texels.
     pub fn extent(self, level: u32) -> [u32; 2] {
-        [self.width, self.height].map(|side| (side / 4 * 5) >> level)
+        [self.width, self.height].map(|side| side >> level)
     }
 
-    /// The margin to each side of a level's content, in its texels; half a texel in the last.
-    pub fn margin(self, level: u32) -> [f64; 2] {
-        [self.width, self.height].map(|side| f64::from(side) / f64::from(8u32 << level))
-    }
-
-    /// Texels of all levels of a layer: 2.08 times the content's.
+    /// Texels of all levels of a layer: 1.34 times the image's.
     pub fn texels(self) -> u64 {
         (0..self.levels()).map(|level| self.extent(level).map(u64::from).iter().product::<u64>()).sum()
     }
@@ -183,7 +172,9 @@ impl PyramidSize {
         // Regular levels: 4^level (VARIANCE + TENT) - TENT
         let octaves = 0.5 * ((square + TENT) / (VARIANCE + TENT)).log2();
         if octaves < 1.0 {
-            return (square / (4.0 * (VARIANCE + TENT) - TENT)).powf(0.5 * FIRST_POWER);
+            // From sharp to the first, the sharper level's share falls faster than the variance rises
+            let first = 4.0 * (VARIANCE + TENT) - TENT;
+            return 3.0 * square / (first + 2.0 * square);
         }
         let widened = last - f64::from(WIDENED);
         let level = octaves.min(widened) + (octaves - widened).max(0.0) / (1.0 + 0.5 * WIDENING.log2());
@@ -220,23 +211,22 @@ mod tests {
             let error = PyramidSize::new(width, height).unwrap_err();
             assert!(error.to_string().contains(&format!("{width} x {height}")), "{error}");
         }
-        assert_eq!(PyramidSize::for_image(1920, 1080).content(), [2048, 2048]);
-        assert_eq!(PyramidSize::for_image(1, 100_000).content(), [64, 4096]);
+        assert_eq!(PyramidSize::for_image(1920, 1080).extent(0), [2048, 2048]);
+        assert_eq!(PyramidSize::for_image(1, 100_000).extent(0), [64, 4096]);
     }
 
     #[test]
-    fn levels_halve_down_to_five_texels_with_the_margins() {
+    fn levels_halve_down_to_four_texels() {
         let size = PyramidSize::new(256, 256).unwrap();
         assert_eq!(size.levels(), 7);
-        assert_eq!(size.extent(0), [320, 320]);
-        assert_eq!(size.extent(6), [5, 5]);
-        assert_eq!(size.margin(6), [0.5, 0.5]);
+        assert_eq!(size.extent(0), [256, 256]);
+        assert_eq!(size.extent(6), [4, 4]);
         // A wide one stops where its height does
         let wide = PyramidSize::new(512, 64).unwrap();
-        assert_eq!(wide.extent(wide.levels() - 1), [40, 5]);
-        // 1.25^2 times a geometric series
+        assert_eq!(wide.extent(wide.levels() - 1), [32, 4]);
+        // A geometric series
         let ratio = size.texels() as f64 / (256.0 * 256.0);
-        assert!(ratio < 2.084, "{ratio}");
+        assert!(ratio < 1.334, "{ratio}");
     }
 
     #[test]

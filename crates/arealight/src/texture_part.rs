@@ -112,8 +112,7 @@ impl TexturePart {
         }
 
         // From one texel of the layer to the next, and the first, from the middle of texel 0
-        let content = DVec2::from_array(size.content().map(f64::from));
-        let stride = covered / content;
+        let stride = covered / DVec2::from_array(size.extent(0).map(f64::from));
         let mut first = self.low * texels + 0.5 * stride - 0.5;
         // A repeated image begins within its first repeat, so that the kernel's numbers are small
         for axis in 0..2 {

@@ -13,11 +13,13 @@
 // the level whose blur is that of the bump. With the distance d to that point and the area A of the image in cosine
 // space, in units where A is 1, the variance is
 //
-//     d^2 / (2 A + 8 d^2)
+//     d^2 / (1.5 A + 6 d^2)
 //
-// d^2 / 2 of Heitz et al. 2016 (eq. 35) at the point seen instead of the plane's foot, and no more than an eighth: as the
-// light ends there, so must the footprint. The bump is longer than wide where the plane is seen at an angle; better rungs
-// fetch along its longer axis, and split the light. Error against the integral of image times lobe: docs/textures.md.
+// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point that is seen is a better place than the
+// plane's foot, and as the light ends, so must the footprint: the widest is that of an even spread, nearly, as the image is
+// mirrored at its ends. The bump is longer than wide where the plane is seen at an angle; better rungs fetch along its
+// longer axis, and split the light. The numbers were found by search, against the integral of image times lobe: errors are
+// in docs/textures.md.
 
 // Whether lights may show images. A host that says so defines the two bridges below, and sets AREALIGHT_EFFECT_TEXTURED
 // where a light does.
@@ -44,7 +46,7 @@ struct ArealightImage {
 // The host's bridge to the light textures: layer `layer`, trilinear and clamped to the edge, at normalised coordinates,
 // level explicit; textureLod of an array image.
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
-// Width and height of level 0 with its margins, in texels.
+// Width and height of level 0, in texels.
 ivec2 arealight_bridge_light_texture_size();
 
 // An image as a lobe sees it, in its cosine space.
@@ -70,10 +72,10 @@ ArealightSeenImage arealight_see_image(ArealightImage image, vec3 center, mat3 t
     seen.axis_u = transform * image.axis_u;
     seen.axis_v = transform * image.axis_v;
     seen.normal = cross(seen.axis_u, seen.axis_v);
-    // Content is four fifths of the size with margins
     ivec2 size = arealight_bridge_light_texture_size();
-    seen.texels = vec2(size) * 0.8 * image.size;
-    seen.last = float(findMSB(min(size.x, size.y) / 5));
+    seen.texels = vec2(size) * image.size;
+    // The last level is four texels wide or high
+    seen.last = float(findMSB(min(size.x, size.y)) - 2);
     return seen;
 }
 
@@ -82,27 +84,31 @@ vec2 arealight_clamp_coordinate(vec2 x, vec2 low, vec2 high) {
     return vec2(x.x > low.x ? min(x.x, high.x) : low.x, x.y > low.y ? min(x.y, high.y) : low.y);
 }
 
+// x where what is beyond low or high is mirrored there once; at most an end.
+vec2 arealight_mirror_coordinate(vec2 x, vec2 low, vec2 high) {
+    return arealight_clamp_coordinate(high - abs(high - low - abs(x - low)), low, high);
+}
+
 // The level of the pyramid whose blur is `square`, a variance in squares of level 0's texels, between two levels;
 // PyramidSize::level_of in Rust.
 float arealight_texture_level(float square, float last) {
-    const float REGULAR = 0.8891666667; // variance of a level's blur and of bilinear lookup, in its own texels
-    const float TENT = 0.1666666667;    // of bilinear lookup alone
-    float octaves = 0.5 * log2((square + TENT) / REGULAR);
-    if (!(octaves >= 1.0)) {
-        return square > 0.0 ? pow(square / (4.0 * REGULAR - TENT), 0.8) : 0.0;
+    const float TENT = 0.1666666667;    // variance that bilinear lookup adds, in texels
+    const float REGULAR = 0.8891666667; // of a level's blur and of bilinear lookup, in its own texels
+    const float FIRST = 4.0 * REGULAR - TENT;
+    if (!(square >= FIRST)) {
+        return square > 0.0 ? 3.0 * square / (FIRST + 2.0 * square) : 0.0;
     }
-    float widened = last - 3.0;
-    float level = min(min(octaves, widened) + max(octaves - widened, 0.0) * 0.83687, last);
+    float octaves = 0.5 * log2((square + TENT) / REGULAR);
+    float regular = last - 3.0;
+    float level = min(min(octaves, regular) + max(octaves - regular, 0.0) * 0.83687, last);
     float fraction = fract(level);
-    return level - 0.25 * fraction * (1.0 - fraction);
+    return level - 0.2 * fraction * (1.0 - fraction);
 }
 
 // The image at box coordinates, blurred by `variance`, in units of the box's area.
 vec3 arealight_image_blurred(ArealightSeenImage image, vec2 box, float variance) {
-    // A margin of an eighth of the content is on every side
-    vec2 coordinate = (image.low + image.size * box) * 0.8 + 0.1;
     float level = arealight_texture_level(variance * image.texels.x * image.texels.y, image.last);
-    return arealight_bridge_light_texture(image.layer, coordinate, level);
+    return arealight_bridge_light_texture(image.layer, image.low + image.size * box, level);
 }
 
 // The point of the image's plane that the light comes from.
@@ -134,14 +140,12 @@ struct ArealightEllipse {
     float minor;
 };
 
-// `parts` is how many of the light's parts go on a side of it: the footprint ends where a part does.
-ArealightEllipse arealight_footprint_ellipse(ArealightSeenImage image, float square, float parts) {
+// The inverse of the covariance is `bump` over the squared distance, of the lobe, and `end`, in units of the box.
+ArealightEllipse arealight_footprint_ellipse(ArealightSeenImage image, float square, float bump, float end) {
     float stretch = sqrt(image.texels.x / image.texels.y);
     vec3 u = image.axis_u / stretch;
     vec3 v = image.axis_v * stretch;
-    // The inverse of the covariance: of the bump, and of the part's end
-    float end = 8.0 * parts * parts;
-    float bump = 2.0 / max(square, AREALIGHT_TINY);
+    bump /= max(square, AREALIGHT_TINY);
     float xx = bump * dot(u, u) + end / (stretch * stretch);
     float yy = bump * dot(v, v) + end * (stretch * stretch);
     float xy = bump * dot(u, v);
@@ -166,17 +170,17 @@ vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
     vec2 box = arealight_clamp_coordinate(point.box, vec2(0.0), vec2(1.0));
     if (footprint == AREALIGHT_FOOTPRINT_ROUND) {
         float area = sqrt(dot(image.normal, image.normal));
-        return arealight_image_blurred(image, box, point.square / (2.0 * area + 8.0 * point.square));
+        return arealight_image_blurred(image, box, point.square / (1.5 * area + 6.0 * point.square));
     }
     // Four taps along the longer axis, with the variance that is missing to it between them
-    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.0);
+    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.5, 6.0);
     float variance = min(ellipse.major, max(ellipse.minor, 0.08265625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = vec3(0.0);
     for (int tap = 0; tap < 4; tap++) {
         float offset = (tap & 1) == 0 ? 0.378 : 1.363;
         vec2 place = box + step * (tap < 2 ? offset : -offset);
-        color += arealight_image_blurred(image, arealight_clamp_coordinate(place, vec2(0.0), vec2(1.0)), variance);
+        color += arealight_image_blurred(image, arealight_mirror_coordinate(place, vec2(0.0), vec2(1.0)), variance);
     }
     return 0.25 * color;
 }
@@ -186,11 +190,11 @@ vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
 vec3 arealight_footprint_of_part(ArealightSeenImage image, vec3 sum, vec2 low, vec2 high, float parts) {
     ArealightSeenPoint point = arealight_seen_point(image, sum);
     vec2 box = arealight_clamp_coordinate(point.box, low, high);
-    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, parts);
-    float variance = min(ellipse.major, max(ellipse.minor, 0.330625 * ellipse.major));
+    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 2.0, 10.0 * parts * parts);
+    float variance = min(ellipse.major, max(ellipse.minor, 0.5625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
-    vec3 color = arealight_image_blurred(image, arealight_clamp_coordinate(box + step, low, high), variance)
-               + arealight_image_blurred(image, arealight_clamp_coordinate(box - step, low, high), variance);
+    vec3 color = arealight_image_blurred(image, arealight_mirror_coordinate(box + step, low, high), variance)
+               + arealight_image_blurred(image, arealight_mirror_coordinate(box - step, low, high), variance);
     return 0.5 * color;
 }
 
@@ -215,7 +219,7 @@ void arealight_image_coordinates(ArealightImage image, ArealightQuad quad, out v
 // The image itself at an offset from the light's center, in its plane.
 vec3 arealight_image_color(ArealightImage image, vec3 offset) {
     vec2 box = arealight_clamp_coordinate(arealight_image_coordinate(image, offset), vec2(0.0), vec2(1.0));
-    return arealight_bridge_light_texture(image.layer, (image.low + image.size * box) * 0.8 + 0.1, 0.0);
+    return arealight_bridge_light_texture(image.layer, image.low + image.size * box, 0.0);
 }
 
 #endif

@@ -150,7 +150,7 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
     let screen = scene("screen.glb");
     let card = inspect(&[&screen, "-o", "card.png"]);
     assert_eq!(
-        (&card["content"], card["levels"].as_array().unwrap().len()),
+        (&card["size"], card["levels"].as_array().unwrap().len()),
         (&serde_json::json!([512, 512]), 8)
     );
     assert!(card["texture"].as_str().unwrap().ends_with("'test card', shown by 'television'"), "{card}");
@@ -168,7 +168,7 @@ fn inspect_draws_the_pyramid_of_a_scene_and_of_images() {
         [("gray.png", [64, 64], [0.502_886; 3]), ("bright.exr", [128, 128], [300.0, 0.5, 0.0])]
     {
         let summary = inspect(&[name, "-o", "constant.png"]);
-        assert_eq!(summary["content"], serde_json::json!(content));
+        assert_eq!(summary["size"], serde_json::json!(content));
         for level in summary["levels"].as_array().unwrap() {
             for (channel, expected) in expected.into_iter().enumerate() {
                 let mean = level["mean"][channel].as_f64().unwrap();

@@ -105,7 +105,7 @@ impl Engine {
         Ok(())
     }
 
-    /// A level of a layer, margins included: [`PyramidSize::extent`] texels, row after row.
+    /// A level of a layer: [`PyramidSize::extent`] texels, row after row.
     ///
     /// # Errors
     /// [`EngineError::NoTextureLevel`] where it is not there; else memory is out.

@@ -66,18 +66,18 @@ pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -
 struct Shape {
     /// The lobe's bump: its variance is the squared distance to the point seen, over this.
     bump: f64,
-    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even spread would
-    /// be 12; a lookup's edge is extended, so that a wide blur sees less beside the middle.
+    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even spread is 12; a
+    /// whole light's image is mirrored at its ends, so that a wider blur is more even.
     end: f64,
     /// How much blurrier taps are than they are apart.
     overlap: f64,
 }
 
 /// Of a whole light.
-const WHOLE: Shape = Shape { bump: 1.5, end: 8.0, overlap: 1.15 };
+const WHOLE: Shape = Shape { bump: 1.5, end: 6.0, overlap: 1.15 };
 
 /// Of one of the parts, which mostly see a slope of the bump.
-const SPLIT: Shape = Shape { bump: 2.0, end: 12.0, overlap: 1.5 };
+const SPLIT: Shape = Shape { bump: 2.0, end: 10.0, overlap: 1.5 };
 
 /// A part of a light in box coordinates, one of `parts` a side.
 struct Part {
@@ -91,6 +91,12 @@ impl Part {
     fn clamp(&self, place: DVec2) -> DVec2 {
         let clamp = |x: f64, low: f64, high: f64| if x > low { x.min(high) } else { low };
         DVec2::new(clamp(place.x, self.low.x, self.high.x), clamp(place.y, self.low.y, self.high.y))
+    }
+
+    /// The place where one beyond an end is mirrored there, as images are.
+    fn mirror(&self, place: DVec2) -> DVec2 {
+        let from_low = self.low + (place - self.low).abs();
+        self.clamp(self.high - (self.high - from_low).abs())
     }
 }
 
@@ -145,7 +151,7 @@ impl SeenLight {
         let share = (shape.overlap / taps.len() as f64).powi(2);
         let variance = major.min(minor.max(share * major));
         let step = axis * (major - variance).sqrt();
-        let tap = |offset: &f64| lookup(part.clamp(place + step * *offset), variance.sqrt());
+        let tap = |offset: &f64| lookup(part.mirror(place + step * *offset), variance.sqrt());
         taps.iter().map(tap).sum::<DVec3>() * (form_factor / taps.len() as f64)
     }
 

@@ -1,13 +1,13 @@
 //! A picture blurred with a Gaussian, exactly: what a pyramid approximates.
 
-use super::Texture;
+use super::{Texture, mirrored};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
 /// Where the Gaussian is cut off, in standard deviations: 1e-15 of it is beyond.
 const REACH: f64 = 8.0;
 
-/// The Gaussian blur of a bilinear texture whose edge is extended without end, at a grid of coordinates.
+/// The Gaussian blur of a bilinear texture that is mirrored at its edges without end, at a grid of coordinates.
 ///
 /// The weights of the texels are integrals of the Gaussian times a texel's tent, to 1e-12.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,17 +69,20 @@ impl Weights {
     fn new(coordinate: f64, sigma: f64, count: usize) -> Self {
         let (center, sigma) = (coordinate * count as f64 - 0.5, (sigma * count as f64).max(0.0));
         let reach = REACH * sigma + 1.0;
-        let last = count as i64 - 1;
-        let inside = |index: f64| (index as i64).clamp(0, last) as usize;
-        let (low, high) = ((center - reach).floor(), (center + reach).ceil());
-        let first = inside(low);
-        let mut shares = vec![0.0; inside(high) - first + 1];
-        // What is beyond the edge is the edge's
-        for index in low as i64..=high as i64 {
-            shares[inside(index as f64) - first] += tent_under_gaussian(index as f64 - center, sigma);
+        let (low, high) = ((center - reach).floor() as isize, (center + reach).ceil() as isize);
+        // Beyond the edges the texels come again
+        let within = low >= 0 && high < count.cast_signed();
+        let (first, taken) =
+            if within { (low.cast_unsigned(), (high - low + 1).cast_unsigned()) } else { (0, count) };
+        let mut shares = vec![0.0; taken];
+        for index in low..=high {
+            shares[mirrored(index, count).cast_unsigned() - first] +=
+                tent_under_gaussian(index as f64 - center, sigma);
         }
         let sum: f64 = shares.iter().sum();
-        shares.iter_mut().for_each(|share| *share /= sum);
+        for share in &mut shares {
+            *share /= sum;
+        }
         Self { first, shares }
     }
 

@@ -22,12 +22,10 @@ pub struct Pyramid {
     pub levels: Vec<Level>,
 }
 
-/// A level with its margins.
+/// A level.
 pub struct Level {
     /// Width and height in texels.
     pub extent: [u32; 2],
-    /// Texels of the margin to each side of the content.
-    pub margin: [f64; 2],
     /// The standard deviation of its blur, in texels of level 0.
     pub blur: f64,
     /// Linear light, row after row from the top.
@@ -40,19 +38,13 @@ impl Level {
         DVec3::new(r, g, b)
     }
 
-    /// The mean of the content; texels on its border count in part.
+    /// The mean: that of the image, on every level.
     fn mean(&self) -> DVec3 {
-        let share = |index: u32, axis: usize| {
-            let (low, high) = (self.margin[axis], f64::from(self.extent[axis]) - self.margin[axis]);
-            ((f64::from(index) + 1.0).min(high) - f64::from(index).max(low)).max(0.0)
-        };
-        let (mut sum, mut area) = (DVec3::ZERO, 0.0);
-        for (x, y) in (0..self.extent[1]).flat_map(|y| (0..self.extent[0]).map(move |x| (x, y))) {
-            let weight = share(x, 0) * share(y, 1);
-            sum += self.texel(x, y) * weight;
-            area += weight;
-        }
-        sum / area
+        let sum: DVec3 = (0..self.extent[1])
+            .flat_map(|y| (0..self.extent[0]).map(move |x| (x, y)))
+            .map(|(x, y)| self.texel(x, y))
+            .sum();
+        sum / self.texels.len() as f64
     }
 }
 
@@ -115,8 +107,8 @@ fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure>
 fn read_back(engine: &Engine, name: String, layer: u32) -> Result<Pyramid, EngineError> {
     let size = engine.texture_size().expect("textures were loaded");
     let level = |level: u32| -> Result<Level, EngineError> {
-        let (extent, margin, blur) = (size.extent(level), size.margin(level), size.blur(level));
-        Ok(Level { extent, margin, blur, texels: engine.download_level(layer, level)? })
+        let (extent, blur) = (size.extent(level), size.blur(level));
+        Ok(Level { extent, blur, texels: engine.download_level(layer, level)? })
     };
     let levels = (0..size.levels()).map(level).collect::<Result<_, _>>()?;
     Ok(Pyramid { name, size, levels })
@@ -180,35 +172,29 @@ impl Loaded {
 }
 
 impl Pyramid {
-    /// A level's blur in units of the content's size, the geometric mean of both sides.
+    /// A level's blur in units of the image's size, the geometric mean of both sides.
     pub fn share(&self, level: &Level) -> f64 {
-        let [width, height] = self.size.content().map(f64::from);
+        let [width, height] = self.size.extent(0).map(f64::from);
         level.blur / (width * height).sqrt()
     }
 
     pub fn to_text(&self) -> String {
-        let [width, height] = self.size.content();
+        let [width, height] = self.size.extent(0);
         let mut text =
-            format!("{}\ncontent  {width} x {height} texels, {} in all\n\n", self.name, self.size.texels());
-        let heads = ["level", "extent", "margin", "blur/texels", "blur/size"];
-        let [level, extent, margin, blur, share] = heads;
-        let _ = writeln!(text, "{level:<6} {extent:>11} {margin:>9} {blur:>12} {share:>10}  mean");
+            format!("{}\nsize  {width} x {height} texels, {} in all\n\n", self.name, self.size.texels());
+        let [level, extent, blur, share] = ["level", "extent", "blur/texels", "blur/size"];
+        let _ = writeln!(text, "{level:<6} {extent:>11} {blur:>12} {share:>10}  mean");
         for (number, level) in self.levels.iter().enumerate() {
             let mean = level.mean();
-            let [extent, margin] = [
-                format!("{} x {}", level.extent[0], level.extent[1]),
-                format!("{}, {}", level.margin[0], level.margin[1]),
-            ];
+            let extent = format!("{} x {}", level.extent[0], level.extent[1]);
             let (blur, share) = (level.blur, self.share(level));
             let _ = writeln!(
                 text,
-                "{number:<6} {extent:>11} {margin:>9} {blur:>12.2} {share:>10.4}  {:.4} {:.4} {:.4}",
+                "{number:<6} {extent:>11} {blur:>12.2} {share:>10.4}  {:.4} {:.4} {:.4}",
                 mean.x, mean.y, mean.z
             );
         }
-        text.push_str(
-            "\nblur: a standard deviation, in texels of level 0 and in sizes of the content. mean: of the content\n",
-        );
+        text.push_str("\nblur: a standard deviation, in texels of level 0 and in sizes of the image\n");
         text
     }
 
@@ -216,7 +202,6 @@ impl Pyramid {
         let level = |level: &Level| {
             json!({
                 "extent": level.extent,
-                "margin": level.margin,
                 "blur_texels": level.blur,
                 "blur": self.share(level),
                 "mean": level.mean().to_array(),
@@ -224,7 +209,7 @@ impl Pyramid {
         };
         let summary = json!({
             "texture": self.name,
-            "content": self.size.content(),
+            "size": self.size.extent(0),
             "levels": self.levels.iter().map(level).collect::<Value>(),
         });
         format!("{summary:#}\n")

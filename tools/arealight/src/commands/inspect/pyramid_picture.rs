@@ -2,20 +2,20 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, Colour, LINE};
+use super::canvas::{Align, Canvas, LINE};
 use super::colour::{FAINT, INK, PAPER};
 use super::pyramid::{Level, Pyramid};
 use crate::picture::srgb_from_linear;
 use glam::DVec3;
 
-/// The longer side of a level, with its margins, in pixels.
+/// The longer side of a level, in pixels.
 const SIDE: u32 = 320;
 
 const COLUMNS: usize = 3;
 const BORDER: i32 = 24;
 const TOP: i32 = 76;
 
-/// Draws all levels with their margins, and a frame where the content ends.
+/// Draws all levels.
 pub fn draw(pyramid: &Pyramid) -> Canvas {
     // All levels have the same shape
     let [width, height] = pyramid.size.extent(0);
@@ -28,11 +28,8 @@ pub fn draw(pyramid: &Pyramid) -> Canvas {
     let across = (BORDER + COLUMNS as i32 * stride.0).max(640);
     let mut canvas = Canvas::new(across as u32, (TOP + rows * stride.1) as u32, PAPER);
     let (exposure, note) = exposure(&pyramid.levels[0]);
-    let [content_width, content_height] = pyramid.size.content();
     canvas.text((BORDER, 10), &shortened(&pyramid.name, (across - 2 * BORDER) / 8), Align::Left, INK);
-    let notes = format!(
-        "{content_width} x {content_height} texels; the frame is where the image ends, beyond is margin{note}"
-    );
+    let notes = format!("{width} x {height} texels{note}");
     canvas.text((BORDER, 10 + LINE + 3), &notes, Align::Left, FAINT);
 
     for (number, level) in pyramid.levels.iter().enumerate() {
@@ -51,7 +48,6 @@ pub fn draw(pyramid: &Pyramid) -> Canvas {
             let color = pixel(level, [x, y], cell) * exposure;
             color.to_array().map(|channel| srgb_from_linear(channel as f32))
         });
-        frame(&mut canvas, level, corner, cell);
     }
     canvas
 }
@@ -67,23 +63,6 @@ fn pixel(level: &Level, [x, y]: [i32; 2], cell: (i32, i32)) -> DVec3 {
     let count = (columns.len() * rows.len()) as f64;
     rows.flat_map(|y| columns.clone().map(move |x| (x, y))).map(|(x, y)| level.texel(x, y)).sum::<DVec3>()
         / count
-}
-
-/// A dashed line around the content, seen on any colour.
-fn frame(canvas: &mut Canvas, level: &Level, corner: (i32, i32), cell: (i32, i32)) {
-    const DASH: i32 = 4;
-    let edge = |axis: usize, pixels: i32| {
-        let share = level.margin[axis] / f64::from(level.extent[axis]);
-        ((f64::from(pixels) * share).round() as i32, (f64::from(pixels) * (1.0 - share)).round() as i32)
-    };
-    let ((left, right), (top, bottom)) = (edge(0, cell.0), edge(1, cell.1));
-    let dash = |along: i32| -> Colour { if along / DASH % 2 == 0 { [255; 3] } else { [0; 3] } };
-    for y in [top - 1, bottom] {
-        canvas.rectangle((corner.0 + left - 1, corner.1 + y), (right - left + 2, 1), |x, _| dash(x));
-    }
-    for x in [left - 1, right] {
-        canvas.rectangle((corner.0 + x, corner.1 + top - 1), (1, bottom - top + 2), |_, y| dash(y));
-    }
 }
 
 /// What makes the brightest texel white, and what to say of it; images within what a screen shows stay as they are.
@@ -121,7 +100,7 @@ mod tests {
             let gray = (level + 1) as f32 / 8.0;
             let mut texels = vec![[gray; 4]; (extent[0] * extent[1]) as usize];
             texels[0] = [2.0 * gray; 4];
-            Level { extent, margin: size.margin(level), blur: size.blur(level), texels }
+            Level { extent, blur: size.blur(level), texels }
         };
         Pyramid { name: "gray".into(), size, levels: (0..size.levels()).map(level).collect() }
     }
@@ -147,12 +126,12 @@ mod tests {
     #[test]
     fn pixels_are_texels_or_their_means() {
         let levels = pyramid().levels;
-        // Level 0 has 160 by 80 texels: a pixel of 80 by 40 is the mean of four
-        assert_eq!(pixel(&levels[0], [0, 0], (80, 40)), DVec3::splat(0.125 * 1.25));
-        assert_eq!(pixel(&levels[0], [1, 0], (80, 40)), DVec3::splat(0.125));
-        // Level 4 has 10 by 5: a texel is 32 pixels of 320
-        assert_eq!(pixel(&levels[4], [31, 31], (320, 160)), DVec3::splat(1.25));
-        assert_eq!(pixel(&levels[4], [32, 31], (320, 160)), DVec3::splat(0.625));
+        // Level 0 has 128 by 64 texels: a pixel of 64 by 32 is the mean of four
+        assert_eq!(pixel(&levels[0], [0, 0], (64, 32)), DVec3::splat(0.125 * 1.25));
+        assert_eq!(pixel(&levels[0], [1, 0], (64, 32)), DVec3::splat(0.125));
+        // Level 4 has 8 by 4: a texel is 40 pixels of 320
+        assert_eq!(pixel(&levels[4], [39, 39], (320, 160)), DVec3::splat(1.25));
+        assert_eq!(pixel(&levels[4], [40, 39], (320, 160)), DVec3::splat(0.625));
     }
 
     #[test]
