@@ -4,6 +4,8 @@ use arealight::{
     Footprint, FormFactor, Fresnel, Horizon, LightTexture, PolygonLight, PyramidSize, Quality, Surface,
 };
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
+use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
+use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use glam::{DVec2, DVec3, Vec3};
 
@@ -17,15 +19,20 @@ const HUGE: u32 = 2;
 
 const SIZE: u32 = 64;
 
+/// The colors of a texel of the layer [`SPLIT`].
+fn split(column: u32, row: u32) -> [f32; 4] {
+    let half = |index: u32| if index < SIZE / 2 { 1.0 } else { 0.0 };
+    [half(column), 1.0 - half(column), half(row), 1.0]
+}
+
 /// White; red on the left half, green on the right, and blue added to the upper half; and texels of 0 and 65,504 in turn.
 fn engine() -> Option<TestEngine> {
     let mut engine = TestEngine::new()?;
-    let half = |index: u32| if index < SIZE / 2 { 1.0 } else { 0.0 };
     let picture = |texel: &dyn Fn(u32, u32) -> [f32; 4]| -> Vec<[f32; 4]> {
         (0..SIZE * SIZE).map(|index| texel(index % SIZE, index / SIZE)).collect()
     };
     let white = picture(&|_, _| [1.0; 4]);
-    let split = picture(&|column, row| [half(column), 1.0 - half(column), half(row), 1.0]);
+    let split = picture(&split);
     let huge = picture(&|column, row| [if (column + row) % 2 == 0 { 65_504.0 } else { 0.0 }; 4]);
     let image = |texels| SourceImage {
         texels: SourceTexels::Linear(texels),
@@ -138,6 +145,69 @@ fn a_white_image_changes_nothing() {
     let plain = engine.eval(&plain, Quality::default()).unwrap();
     let changed = other.iter().zip(&plain).filter(|(a, b)| (a.x - b.x).abs() > 1e-2 * b.x).count();
     assert!(changed > 200, "{changed}");
+}
+
+#[test]
+fn lookups_are_those_of_their_float64_twins() {
+    let Some(engine) = engine() else { return };
+    let texel = |column: usize, row: usize| {
+        let [r, g, b, _] = split(column as u32, row as u32);
+        DVec3::new(r.into(), g.into(), b.into())
+    };
+    let size = PyramidSize::new(SIZE, SIZE).unwrap();
+    let pyramid = Pyramid::new(&Texture::from_fn(SIZE as usize, SIZE as usize, texel), size);
+    // Under Lambert's lobe cosine space is the surface's: nothing else differs
+    let mut given = points(4, SPLIT, 900);
+    given.retain(|point| point.surface == lambert_surface());
+    for footprint in FOOTPRINTS {
+        // Relative precision, as lights may be small
+        let quality = Quality { form_factor: FormFactor::ExactDifference, footprint, ..Quality::default() };
+        let answers = engine.eval(&given, quality).unwrap();
+        let mut comparison = Comparison::new(format!("{footprint:?}"));
+        let mut twin = 0;
+        for (index, (point, answer)) in given.iter().zip(&answers).enumerate() {
+            let expected = seen_color(point, &pyramid, Filter::Rung(footprint));
+            // Sixteen bits a texel and levels' share and place to 1/256 between texels that differ by one: 1/256 of the
+            // light, twice; a footprint's axis turns freely where it is nearly round, which moves taps by what is left
+            let whole =
+                seen_color(&without_texture(std::slice::from_ref(point))[0], &pyramid, Filter::Article).x;
+            let bound = 1e-2 * whole + 2e-5;
+            for axis in 0..3 {
+                comparison.add(f64::from(answer[axis]), expected[axis], bound, || format!("point {index}"));
+            }
+            let other = seen_color(point, &pyramid, Filter::Article);
+            twin += usize::from((other - answer.as_dvec3()).abs().max_element() > bound);
+        }
+        comparison.assert_all();
+        assert!(twin > 20, "{footprint:?}: another filter's answers are told from these: {twin}");
+    }
+}
+
+/// What the filter's twin says of a point under Lambert's lobe; without an image, of a white one.
+fn seen_color(point: &EvalPoint, pyramid: &Pyramid, filter: Filter) -> DVec3 {
+    let mut light = point.light.clone();
+    let white = light.texture.is_none();
+    if white {
+        shown(&mut light, WHITE);
+    }
+    let map = light.texture.as_ref().unwrap().map(&light).unwrap();
+    let seen = SeenLight {
+        vertices: light.vertices.clone(),
+        center: light.center(),
+        map,
+        texels: DVec2::splat(f64::from(SIZE)) * map.size,
+        horizons: Vec::new(),
+        convex_quad: light.is_convex_quad(),
+    };
+    let color =
+        filtered(
+            filter,
+            &seen,
+            |uv, sigma| {
+                if white { DVec3::ONE } else { pyramid.blurred(uv, sigma, map.size) }
+            },
+        );
+    if light.two_sided { color.abs() } else { color.max(DVec3::ZERO) }
 }
 
 #[test]

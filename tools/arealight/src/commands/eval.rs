@@ -155,11 +155,7 @@ fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported
     let mut images = Images::beside(&arguments.cases);
-    let mut load = |path: &str| match arguments.on {
-        Method::Gpu => Err("textured lights are not answered on the GPU yet".into()),
-        Method::Oracle | Method::Truth => images.load(path),
-    };
-    let supported: Vec<_> = cases.iter().map(|case| case.supported(&mut load)).collect();
+    let supported: Vec<_> = cases.iter().map(|case| case.supported(|path| images.load(path))).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
     // The most precise rungs, unless others are to be seen
     let precise =

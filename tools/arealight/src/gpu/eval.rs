@@ -2,12 +2,14 @@
 
 use super::{engine, failure};
 use crate::failure::Failure;
-use arealight::{LightTable, PolygonLight, Quality};
-use arealight_engine::EvalPoint;
+use arealight::{LightTable, LightTexture, PolygonLight, PyramidSize, Quality, TexturePart};
+use arealight_engine::{Engine, EngineError, EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
+use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use std::path::Path;
+use std::sync::Arc;
 
 /// One answer a case, by the GLSL of the shade pass with `table`. A case whose light float32 cannot hold gets the reason;
 /// the others are answered all the same. `input` is the file of the cases, for errors.
@@ -19,7 +21,8 @@ pub fn answer(
     input: &Path,
 ) -> Result<Vec<Answer>, Failure> {
     // Set aside the lights that cannot be shaded
-    let points: Vec<_> = cases.iter().map(point).collect();
+    let mut images = Images::default();
+    let points: Vec<_> = cases.iter().map(|case| point(case, &mut images)).collect();
     let checked: Vec<_> = points.iter().map(|point| point.light.validate()).collect();
     let shaded = points.into_iter().zip(&checked).filter(|(_, checked)| checked.is_ok());
     let shaded: Vec<EvalPoint> = shaded.map(|(point, _)| point).collect();
@@ -27,7 +30,8 @@ pub fn answer(
     let radiance = if shaded.is_empty() {
         Vec::new()
     } else {
-        let engine = engine(device, table)?;
+        let mut engine = engine(device, table)?;
+        images.load(&mut engine).map_err(|error| failure(error, input))?;
         engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
@@ -43,7 +47,8 @@ pub fn answer(
 }
 
 /// A case's light is relative to its shading point already.
-fn point(case: &SupportedCase) -> EvalPoint {
+fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
+    let shown = case.light.image.as_ref().zip(case.texture.as_ref());
     EvalPoint {
         surface: case.surface,
         position: DVec3::ZERO,
@@ -54,7 +59,48 @@ fn point(case: &SupportedCase) -> EvalPoint {
             vertices: case.light.vertices.clone(),
             radiance: case.light.radiance.as_vec3(),
             two_sided: case.light.two_sided,
-            texture: None,
+            texture: shown.map(|(image, texture)| LightTexture {
+                layer: images.layer(&image.texture),
+                uvs: texture.uv.clone(),
+            }),
         },
+    }
+}
+
+/// The images that lights show, a layer each.
+#[derive(Default)]
+struct Images {
+    layers: Vec<Arc<Texture>>,
+}
+
+impl Images {
+    /// The layer of an image.
+    fn layer(&mut self, image: &Arc<Texture>) -> u32 {
+        let known = self.layers.iter().position(|layer| Arc::ptr_eq(layer, image));
+        known.unwrap_or_else(|| {
+            self.layers.push(Arc::clone(image));
+            self.layers.len() - 1
+        }) as u32
+    }
+
+    /// Loads them, in the size of the largest.
+    fn load(&self, engine: &mut Engine) -> Result<(), EngineError> {
+        let largest =
+            |side: fn(&Texture) -> usize| self.layers.iter().map(|layer| side(layer)).max().unwrap_or(1);
+        let size = PyramidSize::for_image(largest(Texture::width) as u32, largest(Texture::height) as u32);
+        let texel = |texel: &DVec3| texel.as_vec3().extend(1.0).to_array();
+        let texels: Vec<Vec<[f32; 4]>> =
+            self.layers.iter().map(|layer| layer.texels().iter().map(texel).collect()).collect();
+        let sources: Vec<SourceImage<'_>> = self
+            .layers
+            .iter()
+            .zip(&texels)
+            .map(|(layer, texels)| SourceImage {
+                texels: SourceTexels::Linear(texels),
+                size: [layer.width() as u32, layer.height() as u32],
+                part: TexturePart::default(),
+            })
+            .collect();
+        engine.load_textures(size, &sources)
     }
 }
