@@ -8,7 +8,7 @@ use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use arealight_oracle::polygon::form_factor;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// The reflection in the plane of incidence, the xz plane.
 const REFLECTION: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Y, DVec3::Z);
@@ -167,4 +167,30 @@ fn at_grazing_the_last_entry_vanishes_and_the_middle_one_does_not() {
         // the twin: seen from above, both can be divided by
         assert!(inverse_from_texel([1.0, 0.0, 0.0, 2.0], alpha, 1.0).inverse().z_axis.z > 0.4);
     }
+}
+
+/// Equations 32 to 37: the clamped cosine on a plane parallel to the surface, as a density over the plane's area.
+#[test]
+fn the_lobe_on_a_parallel_plane_is_a_bump() {
+    let height = 0.7;
+    let bump = |x: f64, y: f64| {
+        let square = x * x + y * y + height * height;
+        height * height / (PI * square * square)
+    };
+    // Its integral over a rectangle is the rectangle's form factor: the midpoint rule errs by the cell's square
+    let cells = 400;
+    let side = |i: u32| (f64::from(i) + 0.5) / f64::from(cells);
+    let mut sum = 0.0;
+    for (i, j) in (0..cells).flat_map(|j| (0..cells).map(move |i| (i, j))) {
+        sum += bump(0.2 + 1.3 * side(i), -0.4 + 0.9 * side(j)) * 1.3 * 0.9 / f64::from(cells * cells);
+    }
+    let corner = |x: f64, y: f64| DVec3::new(x, y, height);
+    // The front faces down
+    let rectangle = [corner(0.2, -0.4), corner(0.2, 0.5), corner(1.5, 0.5), corner(1.5, -0.4)];
+    assert!((sum - form_factor(&rectangle)).abs() < 1e-6, "{sum} {}", form_factor(&rectangle));
+    // The Gaussian of its peak has the variance r^2 / 2; the bump itself has heavier tails
+    let variance = 0.5 * height * height;
+    assert!((bump(0.0, 0.0) - 1.0 / (2.0 * PI * variance)).abs() < 1e-15);
+    let gaussian = |x: f64| (-0.5 * x * x / variance).exp() / (2.0 * PI * variance);
+    assert!(bump(3.0, 0.0) > 100.0 * gaussian(3.0));
 }
