@@ -215,7 +215,9 @@ fn twice_the_radiance_is_twice_the_answer() {
     let Some(engine) = engine() else { return };
     let once = points(2, SPLIT, 300);
     let mut twice = once.clone();
-    twice.iter_mut().for_each(|point| point.light.radiance = Vec3::splat(2.0));
+    for point in &mut twice {
+        point.light.radiance = Vec3::splat(2.0);
+    }
     for footprint in FOOTPRINTS {
         let quality = Quality { footprint, ..Quality::default() };
         let (once, twice) = (engine.eval(&once, quality).unwrap(), engine.eval(&twice, quality).unwrap());
@@ -289,8 +291,8 @@ fn largest_step(engine: &TestEngine, sweep: &[EvalPoint], quality: Quality) -> f
 
 #[test]
 fn sweeps_have_no_seams() {
-    let Some(engine) = engine() else { return };
     const STEPS: u32 = 2000;
+    let Some(engine) = engine() else { return };
     let share = |step: u32| f64::from(step) / f64::from(STEPS);
     // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; the surface that rises past
     // the light's plane
@@ -301,7 +303,9 @@ fn sweeps_have_no_seams() {
         .map(|step| {
             let mut point = screen(0.3, 0.2, 1.0);
             point.light.two_sided = true;
-            point.light.vertices.iter_mut().for_each(|vertex| vertex.y += 2.0 * share(step) - 3.0);
+            for vertex in &mut point.light.vertices {
+                vertex.y += 2.0 * share(step) - 3.0;
+            }
             point
         })
         .collect();

@@ -172,7 +172,7 @@ impl TextureLoadConstants {
     pub fn called_for(&self) -> u32 {
         let copies = self.first_offset == [0.0; 2] && self.stride == [1.0; 2];
         let decodes = self.flags & Self::SRGB != 0;
-        u32::from(!copies) * Self::RESAMPLING | u32::from(decodes) * Self::DECODING
+        (u32::from(!copies) * Self::RESAMPLING) | (u32::from(decodes) * Self::DECODING)
     }
 
     /// Called for: texels are not copied one to one.

@@ -39,7 +39,7 @@ impl Engine {
         }
         let mut radiance = vec![Vec3::ZERO; points.len()];
         for (needed, indices) in subsets {
-            let effects = Effects::all() - (Effects::POLYGON | Effects::TEXTURED) | needed;
+            let effects = (Effects::all() - (Effects::POLYGON | Effects::TEXTURED)) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
             let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;

@@ -3,7 +3,6 @@
 use crate::shapes::{panel, polygon};
 use crate::writer::{Shape, Writer};
 use crate::{load, warnings};
-use arealight::pyramid::PyramidSize;
 use arealight::{Effects, PolygonLight, TexturePart};
 use arealight_scene::{MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, Scene, Wrap, required_effects};
 use glam::{DVec2, DVec3, Vec3};
