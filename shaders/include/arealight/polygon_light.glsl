@@ -169,10 +169,10 @@ ArealightPart arealight_split_part(ArealightPart whole, vec2 cell, float count) 
 }
 
 // What a lobe sees of a part of a light in `count` by `count` pieces, each with a form factor and a footprint of its own:
-// the sum of form factors times colours.
-vec3 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, ArealightPart whole, float count,
+// the sum of form factors times colours, and of form factors.
+vec4 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, ArealightPart whole, float count,
                           float parts, bool two_sided, ArealightQuality quality) {
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     for (float y = 0.0; y < count; y += 1.0) {
         for (float x = 0.0; x < count; x += 1.0) {
             ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
@@ -181,8 +181,8 @@ vec3 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, Area
                             min(min(part.v.x, part.v.y), min(part.v.z, part.v.w)));
             vec2 high = vec2(max(max(part.u.x, part.u.y), max(part.u.z, part.u.w)),
                              max(max(part.v.x, part.v.y), max(part.v.z, part.v.w)));
-            sum += arealight_form_factor(arcs, two_sided)
-                 * arealight_footprint_of_part(image, arcs.sum, low, high, parts);
+            vec3 color = arealight_footprint_of_part(image, arcs.sum, low, high, parts);
+            sum += arealight_form_factor(arcs, two_sided) * vec4(color, 1.0);
         }
     }
     return sum;
@@ -197,24 +197,26 @@ vec3 arealight_lobe_parts(ArealightLobeView view, ArealightSeenImage image, Area
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         part.quad = quad;
         arealight_image_coordinates(light.image, quad, part.u, part.v);
-        return arealight_part_color(view, image, part, parts, parts, light.two_sided, quality);
+        vec4 sum = arealight_part_color(view, image, part, parts, parts, light.two_sided, quality);
+        return sum.rgb / max(sum.a, 1.0);
     }
     if (seen.facing <= 0.0 && !light.two_sided) {
         return vec3(0.0);
     }
     // Triangles that run against the outline are taken away again
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     uint end = light.first_vertex + light.vertex_count;
     vec3 last = arealight_bridge_vertex(end - 1u);
     for (uint index = light.first_vertex; index < end; index++) {
         vec3 next = arealight_bridge_vertex(index);
         part.quad = ArealightQuad(vec3(0.0), last, next, next);
         arealight_image_coordinates(light.image, part.quad, part.u, part.v);
-        vec3 color = arealight_part_color(view, image, part, 0.5 * parts, parts, true, quality);
+        vec4 color = arealight_part_color(view, image, part, 0.5 * parts, parts, true, quality);
         sum += dot(cross(last, next), light.area) < 0.0 ? -color : color;
         last = next;
     }
-    return max(sum, vec3(0.0));
+    // The outline of a light is flat, and its parts make up no more than all there is; other bits may
+    return max(sum.rgb, vec3(0.0)) / max(sum.a, 1.0);
 }
 
 #endif
