@@ -5,6 +5,7 @@
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
 //! | [`cost`] | the time of each rung, as a ratio to the practice |
 //! | [`textures`] | the time of filtering a light's texture |
+//! | [`footprints`] | the errors and the time of looking one up |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
@@ -12,6 +13,7 @@
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
 pub mod cost;
+pub mod footprints;
 pub mod kernel;
 pub mod method;
 pub mod report;

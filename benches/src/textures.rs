@@ -12,6 +12,7 @@ use arealight_engine::{
 use arealight_host::{Host, Image, ImageDescription, Usage};
 use arealight_vk::Resource;
 use ash::vk;
+use serde::Serialize;
 use std::fmt::Write as _;
 use std::time::Instant;
 
@@ -42,7 +43,7 @@ pub static BOX_MIPS: Kernel = Kernel {
 const SIDE: u32 = 0;
 
 /// What was measured at a size.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct TextureCost {
     /// Texels a side.
     pub side: u32,
@@ -156,16 +157,20 @@ fn record(
     unsafe { array.record(commands, sources) }
 }
 
+/// Whether the device is the processor.
+pub(crate) fn is_software(host: &Host) -> bool {
+    host.properties().device_type == vk::PhysicalDeviceType::CPU
+}
+
 /// Seconds that the device took.
-fn timed(
+pub(crate) fn timed(
     host: &Host,
     record: impl FnOnce(vk::CommandBuffer) -> Result<(), EngineError>,
 ) -> Result<f64, EngineError> {
-    let is_software = host.properties().device_type == vk::PhysicalDeviceType::CPU;
     let start = (Instant::now(), processor_seconds());
     let took = host.try_submit_timed(record)?;
     Ok(match (start.1, processor_seconds()) {
-        (Some(before), Some(after)) if is_software => after - before,
+        (Some(before), Some(after)) if is_software(host) => after - before,
         _ => took.unwrap_or_else(|| start.0.elapsed()).as_secs_f64(),
     })
 }

@@ -2,6 +2,7 @@
 //! in float64, the twin of the GLSL.
 
 pub mod footprint;
+pub mod poses;
 mod shown;
 mod textured;
 
@@ -246,6 +247,7 @@ pub fn ltc_on(
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
     let glossy = match quality.fresnel {
+        _ if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 => DVec3::ZERO,
         Fresnel::Split => {
             let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
             parts.max(DVec3::ZERO)
@@ -257,6 +259,7 @@ pub fn ltc_on(
     };
     // Integrate the cosine
     let shown = match &image {
+        _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
         None => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
         Some(image) => {
             let signed = transformed_image_integral(&DMat3::IDENTITY, &vertices, image, false);

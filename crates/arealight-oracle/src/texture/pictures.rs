@@ -76,4 +76,13 @@ impl Texture {
             if inside { DVec3::new(100.0, 80.0, 60.0) } else { DVec3::splat(0.05) }
         })
     }
+
+    /// A bright frame, a sixteenth of the picture wide, around a dark middle: who sees too much of the edge is far too bright.
+    pub fn framed(width: usize, height: usize) -> Self {
+        Self::from_fn(width, height, |column, row| {
+            let near_edge = |index: usize, count: usize| 16 * index.min(count - 1 - index) < count;
+            let bright = near_edge(column, width) || near_edge(row, height);
+            if bright { DVec3::new(1.0, 0.9, 0.8) } else { DVec3::splat(0.02) }
+        })
+    }
 }

@@ -12,7 +12,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 /// A light of any outline that shows `texture`: its box holds the image between `low` and `low + size`.
-pub fn showing(vertices: &[DVec3], texture: &Arc<Texture>, low: DVec2, size: DVec2) -> RelativeLight {
+fn showing(vertices: &[DVec3], texture: &Arc<Texture>, low: DVec2, size: DVec2) -> RelativeLight {
     let mut light =
         PolygonLight { vertices: vertices.to_vec(), radiance: Vec3::ONE, ..PolygonLight::default() };
     let normal = light.area_vector().normalize_or(DVec3::Z);

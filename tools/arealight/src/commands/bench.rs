@@ -1,6 +1,7 @@
 //! `arealight bench`
 
 mod stability;
+mod textures;
 
 use crate::failure::Failure;
 use std::process::ExitCode;
@@ -15,10 +16,12 @@ pub struct Arguments {
 #[derive(clap::Subcommand)]
 enum Bench {
     Stability(stability::Arguments),
+    Textures(textures::Arguments),
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match &arguments.bench {
         Bench::Stability(arguments) => stability::run(arguments),
+        Bench::Textures(arguments) => textures::run(arguments),
     }
 }

@@ -1,0 +1,341 @@
+//! How far off the lookups of light textures are, on a device and through its pyramid: against the integral of image times
+//! lobe in float64, over families of poses, beside the filter of Heitz et al. 2016.
+
+mod cost;
+mod report;
+
+use crate::textures::{self, TextureCost};
+use arealight::kernels::{EVAL, Kernel};
+use arealight::{
+    Effects, Footprint, FormFactor, LightTable, PolygonLight, PyramidSize, Quality, Surface, TexturePart,
+    plan,
+};
+use arealight_engine::{Engine, EngineError, EvalPoint, SourceImage, SourceTexels};
+use arealight_host::Host;
+use arealight_oracle::shading::footprint::Filter;
+use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, Summary, poses};
+use arealight_oracle::shading::{RelativeLight, ltc_on};
+use arealight_oracle::texture::Texture;
+use arealight_vk::TableFormat;
+pub use cost::Cost;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// The eval kernel with the lookup of Heitz et al. 2016.
+pub static TEXTURED_ARTICLE: Kernel = Kernel {
+    name: "textured_article",
+    spirv: include_bytes!("../spirv/textured_article.spv"),
+    local_size: EVAL.local_size,
+    push_constant_size: EVAL.push_constant_size,
+    bindings: EVAL.bindings,
+    constants: EVAL.constants,
+};
+
+/// A way to look up a light's texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Method {
+    /// A short name.
+    pub name: &'static str,
+    /// What it does, in a few words.
+    pub description: &'static str,
+    /// The same in the oracle.
+    pub filter: Filter,
+}
+
+/// Every method, the yardstick first.
+pub static METHODS: [Method; 5] = [
+    Method {
+        name: "article",
+        description: "the filter of Heitz et al. 2016: one fetch at the foot of the perpendicular",
+        filter: Filter::Article,
+    },
+    rung("round", "one fetch where the light comes from", Footprint::Round),
+    rung("ellipse", "four fetches along the footprint's longer axis", Footprint::Ellipse),
+    rung("split-two", "2 x 2 parts of the light, two fetches each", Footprint::SplitTwo),
+    rung("split-four", "4 x 4 parts of the light, two fetches each", Footprint::SplitFour),
+];
+
+const fn rung(name: &'static str, description: &'static str, footprint: Footprint) -> Method {
+    Method { name, description, filter: Filter::Rung(footprint) }
+}
+
+impl Method {
+    /// The kernel, and the values of its constants.
+    fn kernel(&self, effects: Effects, quality: Quality) -> (&'static Kernel, Vec<(u32, u32)>) {
+        let footprint = match self.filter {
+            Filter::Article => Footprint::default(),
+            Filter::Rung(footprint) => footprint,
+        };
+        let dispatch = plan::eval(effects, Quality { footprint, ..quality }, 0);
+        let kernel = if self.filter == Filter::Article { &TEXTURED_ARTICLE } else { dispatch.kernel };
+        (kernel, dispatch.specialization)
+    }
+
+    fn answers(
+        &self,
+        engine: &Engine,
+        quality: Quality,
+        points: &[EvalPoint],
+    ) -> Result<Vec<DVec3>, EngineError> {
+        let (kernel, specialization) = self.kernel(EFFECTS, quality);
+        let answers = engine.eval_by(kernel, &specialization, &points.iter().collect::<Vec<_>>())?;
+        Ok(answers.into_iter().map(Vec3::as_dvec3).collect())
+    }
+}
+
+/// What the poses call for.
+const EFFECTS: Effects = Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::TEXTURED);
+
+/// Texels of the pictures, and of the pyramid, to a side.
+const SIDE: u32 = 256;
+
+/// The layers of the pictures that the bars are for: [`pictures`] makes them.
+const JUDGED: std::ops::Range<u32> = 0..3;
+const NOISE: u32 = 2;
+const SPOT: u32 = 3;
+const FRAMED: u32 = 4;
+
+fn pictures() -> Vec<Arc<Texture>> {
+    let side = SIDE as usize;
+    let pictures = [
+        Texture::checker(side, side, 8),
+        Texture::gradient(side, side),
+        Texture::noise(side, side, 1),
+        Texture::spot(side, side),
+        Texture::framed(side, side),
+    ];
+    pictures.map(Arc::new).to_vec()
+}
+
+/// What to run.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// Poses of each family.
+    pub poses: usize,
+    /// Another seed makes other poses.
+    pub seed: u64,
+    /// Rounds in which time is taken; with none it is not.
+    pub rounds: usize,
+}
+
+impl Default for Options {
+    /// 600 poses a family, ten rounds: with half as many a few bright poses decide, and errors scatter by a tenth.
+    fn default() -> Self {
+        Self { poses: 600, seed: 1, rounds: 10 }
+    }
+}
+
+impl Options {
+    /// How often progress is told of, in all.
+    pub fn steps(&self) -> u64 {
+        (self.poses * Family::ALL.len()) as u64
+    }
+}
+
+/// A method on a family.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The pictures shown.
+    pub pictures: &'static str,
+    /// The family of poses.
+    pub family: Family,
+    /// The method's name.
+    pub method: &'static str,
+    /// Its errors.
+    pub errors: Summary,
+    /// The most that they may be.
+    pub bar: Option<Bar>,
+}
+
+impl Row {
+    /// Whether the errors are within the bar, if there is one.
+    pub fn is_kept(&self) -> bool {
+        self.bar.is_none_or(|bar| bar.holds(&self.errors))
+    }
+}
+
+/// A light far away, which shows its mean.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Far {
+    /// The picture shown.
+    pub picture: &'static str,
+    /// The surface lit.
+    pub surface: &'static str,
+    /// The method's name.
+    pub method: &'static str,
+    /// The answer over the truth, all channels together.
+    pub ratio: f64,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Footprints {
+    /// The device's name.
+    pub device: String,
+    /// Poses of each family.
+    pub poses: usize,
+    /// The seed of the poses.
+    pub seed: u64,
+    /// Errors: by pictures, by family, each method in turn.
+    pub rows: Vec<Row>,
+    /// Lights far away.
+    pub far: Vec<Far>,
+    /// Costs of the lookup, the light without a texture first; none where time was not taken.
+    pub costs: Vec<Cost>,
+    /// Costs of an update; none where time was not taken.
+    pub updates: Vec<TextureCost>,
+}
+
+/// The judged pictures, in words.
+pub const JUDGED_PICTURES: &str = "checker, gradient and noise";
+const SPOT_PICTURE: &str = "spot";
+
+impl Footprints {
+    /// Where a rung misses its bar.
+    pub fn shortfalls(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.is_kept())
+    }
+
+    /// A method's errors on a family, of the judged pictures.
+    pub fn errors(&self, method: &str, family: Family) -> Option<&Summary> {
+        let is_it =
+            |row: &&Row| row.pictures == JUDGED_PICTURES && row.method == method && row.family == family;
+        self.rows.iter().find(is_it).map(|row| &row.errors)
+    }
+}
+
+/// Runs every method on a device. `progress` is told how many more poses are integrated.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn run(
+    host: &Host,
+    table: &LightTable,
+    options: &Options,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<Footprints, EngineError> {
+    let pictures = pictures();
+    let engine = engine(host, table, &pictures)?;
+    let truth = |quality: Quality, point: &EvalPoint| truth(quality, table, &pictures, point);
+
+    // Judge every method on every family
+    let mut rows = Vec::new();
+    let mut judged_points = Vec::new();
+    for family in Family::ALL {
+        let poses = poses(family, options.poses, options.seed, table);
+        let expected: Vec<Vec<DVec3>> = poses
+            .par_iter()
+            .map(|pose| {
+                let truths = (0..=SPOT).map(|layer| truth(Quality::default(), &point(pose, layer))).collect();
+                progress(1);
+                truths
+            })
+            .collect();
+        // A lobe counts by what it sees of a light, not by how much of it the surface reflects
+        let albedos: Vec<f64> = poses.iter().map(|pose| pose.albedo(table)).collect();
+        for (name, layers) in [(JUDGED_PICTURES, JUDGED), (SPOT_PICTURE, SPOT..SPOT + 1)] {
+            let points = poses.iter().flat_map(|pose| layers.clone().map(|layer| point(pose, layer)));
+            let points: Vec<EvalPoint> = points.collect();
+            let shown = layers.start as usize..layers.end as usize;
+            for method in &METHODS {
+                let answers = method.answers(&engine, Quality::default(), &points)?;
+                let answers = answers.chunks_exact(shown.len());
+                let mut errors = Errors::default();
+                for ((found, expected), albedo) in answers.zip(&expected).zip(&albedos) {
+                    for (found, expected) in found.iter().zip(&expected[shown.clone()]) {
+                        errors.add(*found / *albedo, *expected / *albedo);
+                    }
+                }
+                let bar = if name == SPOT_PICTURE { None } else { Bar::of(method.filter, family) };
+                rows.push(Row { pictures: name, family, method: method.name, errors: errors.summary(), bar });
+            }
+            if name == JUDGED_PICTURES {
+                judged_points.extend(points);
+            }
+        }
+    }
+    rows.sort_by_key(|row| row.pictures != JUDGED_PICTURES);
+
+    let far = far(&engine, &truth)?;
+    let (mut costs, mut updates) = (Vec::new(), Vec::new());
+    if options.rounds > 0 {
+        costs = cost::measure(&engine, &judged_points, options.rounds)?;
+        for side in [512, 1024] {
+            updates.push(textures::measure(host, side, options.rounds)?);
+        }
+    }
+    let (poses, seed) = (options.poses, options.seed);
+    Ok(Footprints { device: host.device_name(), poses, seed, rows, far, costs, updates })
+}
+
+/// An engine that has the pictures for layers.
+fn engine(host: &Host, table: &LightTable, pictures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
+    let mut engine = Engine::new(host.clone(), table, TableFormat::Rgba32Float)?;
+    let texels: Vec<Vec<[f32; 4]>> = pictures
+        .iter()
+        .map(|picture| picture.texels().iter().map(|t| t.as_vec3().extend(1.0).to_array()).collect())
+        .collect();
+    let image = |texels| SourceImage {
+        texels: SourceTexels::Linear(texels),
+        size: [SIDE; 2],
+        part: TexturePart::default(),
+    };
+    let images: Vec<SourceImage<'_>> = texels.iter().map(|texels| image(texels)).collect();
+    let size = PyramidSize::new(SIDE, SIDE).expect("a size of light textures");
+    engine.load_textures(size, &images)?;
+    Ok(engine)
+}
+
+fn point(pose: &Pose, layer: u32) -> EvalPoint {
+    EvalPoint {
+        surface: pose.surface,
+        position: DVec3::ZERO,
+        normal: DVec3::Z,
+        view: pose.view,
+        light: pose.light(layer),
+    }
+}
+
+/// The integral of image times the table's lobe.
+fn truth(quality: Quality, table: &LightTable, pictures: &[Arc<Texture>], point: &EvalPoint) -> DVec3 {
+    let layer = point.light.texture.as_ref().map_or(0, |texture| texture.layer);
+    let light = RelativeLight::textured(&point.light, point.position, Arc::clone(&pictures[layer as usize]));
+    light.map_or(DVec3::NAN, |light| ltc_on(quality, table, &point.surface, point.normal, point.view, &light))
+}
+
+/// How far the far lights are, in their size.
+const FAR: f64 = 1000.0;
+
+/// A square of size 1 in the mirror direction, that faces the point.
+fn far(engine: &Engine, truth: &dyn Fn(Quality, &EvalPoint) -> DVec3) -> Result<Vec<Far>, EngineError> {
+    let view = DVec3::new(1.0, 0.0, 1.0) * std::f64::consts::FRAC_1_SQRT_2;
+    let towards = view.with_x(-view.x);
+    let (u, v) = (DVec3::Y * 0.5, towards.cross(DVec3::Y) * -0.5);
+    let vertices = [-u - v, u - v, u + v, v - u].map(|corner| towards * FAR + corner);
+    let lambert = Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 };
+    let glossy = Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: 0.25 };
+    // An absolute error of 1e-6 would be as much as these lights are
+    let quality = Quality { form_factor: FormFactor::ExactDifference, ..Quality::default() };
+
+    let mut rows = Vec::new();
+    for (picture, layer) in [("noise", NOISE), (SPOT_PICTURE, SPOT), ("framed", FRAMED)] {
+        for (name, surface) in [("Lambert", lambert), ("roughness .5", glossy)] {
+            let point = point(&Pose { surface, view, vertices }, layer);
+            let expected = truth(quality, &point).element_sum();
+            for method in &METHODS {
+                let found = method.answers(engine, quality, std::slice::from_ref(&point))?;
+                let found: f64 = found.iter().map(|found| found.element_sum()).sum();
+                let ratio = found / expected;
+                rows.push(Far { picture, surface: name, method: method.name, ratio });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// The point's light without its texture.
+fn untextured(point: &EvalPoint) -> EvalPoint {
+    EvalPoint { light: PolygonLight { texture: None, ..point.light.clone() }, ..point.clone() }
+}

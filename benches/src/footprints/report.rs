@@ -1,0 +1,168 @@
+//! What was found, for people: as text for a terminal, as Markdown for the documents.
+
+use super::cost::UNTEXTURED;
+use super::{Footprints, JUDGED_PICTURES, METHODS, Method, Row};
+use crate::textures;
+use arealight_oracle::shading::poses::Family;
+use std::fmt::Write as _;
+
+/// The document before and after what is measured.
+const HEAD: &str = include_str!("head.md");
+const TAIL: &str = include_str!("tail.md");
+
+/// A table: its heads, and its rows, the first cell of each being a name.
+struct Table {
+    heads: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A row for each method, under its name.
+    fn by_method(heads: &[String], cells: impl Fn(&Method) -> Vec<String>) -> Self {
+        let heads = std::iter::once("lookup".to_owned()).chain(heads.iter().cloned()).collect();
+        let row = |method: &Method| {
+            let mut row = vec![method.name.to_owned()];
+            row.extend(cells(method));
+            row
+        };
+        Self { heads, rows: METHODS.iter().map(row).collect() }
+    }
+
+    fn to_text(&self) -> String {
+        let width = |column: usize| {
+            let all = self.rows.iter().chain([&self.heads]);
+            all.map(|row| row[column].chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
+        let mut text = String::new();
+        for row in [&self.heads].into_iter().chain(&self.rows) {
+            let mut line = format!("  {:<1$}", row[0], widths[0]);
+            for (cell, width) in row.iter().zip(&widths).skip(1) {
+                let _ = write!(line, "  {cell:>width$}");
+            }
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+        text
+    }
+
+    fn to_markdown(&self) -> String {
+        let mut text = format!("| {} |\n|{}\n", self.heads.join(" | "), "---|".repeat(self.heads.len()));
+        for row in &self.rows {
+            let _ = writeln!(text, "| {} |", row.join(" | "));
+        }
+        text
+    }
+}
+
+impl Row {
+    /// nRMSE; median; marked where the bar is missed.
+    fn cell(&self, mark: &str) -> String {
+        let errors = format!("{}; {}", percent(self.errors.rmse), percent(self.errors.median));
+        if self.is_kept() { errors } else { format!("{mark}{errors}{mark}") }
+    }
+}
+
+/// Two digits of what is small, else one after the point at most.
+fn percent(value: f64) -> String {
+    match value.abs() {
+        small if small < 0.995 => format!("{value:.2}"),
+        large if large >= 99.5 => format!("{value:.0}"),
+        _ => format!("{value:.1}"),
+    }
+}
+
+impl Footprints {
+    /// A cell for each family.
+    fn by_family(&self, pictures: &str, cell: impl Fn(&Row) -> String) -> Table {
+        let heads = Family::ALL.map(|family| family.description().to_owned());
+        Table::by_method(&heads, |method| {
+            let is_it = |row: &&Row| row.pictures == pictures && row.method == method.name;
+            self.rows.iter().filter(is_it).map(&cell).collect()
+        })
+    }
+
+    /// The first table: errors and costs.
+    fn overview(&self, mark: &str) -> Table {
+        let mut table = self.by_family(JUDGED_PICTURES, |row| row.cell(mark));
+        if self.costs.is_empty() {
+            return table;
+        }
+        table.heads.extend(["time, round = 1".to_owned(), "time, no texture = 1".to_owned()]);
+        let mut plain = vec![String::new(); table.heads.len() - 2];
+        UNTEXTURED.clone_into(&mut plain[0]);
+        table.rows.insert(0, plain);
+        for (row, cost) in table.rows.iter_mut().zip(&self.costs) {
+            row.extend([format!("{:.2}", cost.to_round), format!("{:.2}", cost.to_untextured)]);
+        }
+        table
+    }
+
+    fn biases(&self) -> Table {
+        self.by_family(JUDGED_PICTURES, |row| format!("{:+.2}", row.errors.bias))
+    }
+
+    fn spots(&self) -> Table {
+        let pictures = self.rows.last().map_or("", |row| row.pictures);
+        self.by_family(pictures, |row| row.cell(""))
+    }
+
+    fn far_table(&self) -> Table {
+        let first = &METHODS[0];
+        let of = |method: &Method| {
+            let name = method.name;
+            self.far.iter().filter(move |far| far.method == name)
+        };
+        let heads: Vec<String> = of(first).map(|far| format!("{}, {}", far.picture, far.surface)).collect();
+        Table::by_method(&heads, |method| of(method).map(|far| format!("{:.4}", far.ratio)).collect())
+    }
+
+    /// Tables for a terminal.
+    pub fn to_text(&self) -> String {
+        let mut text = String::new();
+        for method in &METHODS {
+            let _ = writeln!(text, "  {:<10}  {}", method.name, method.description);
+        }
+        let _ = writeln!(
+            text,
+            "\n{JUDGED_PICTURES}: nRMSE %; median %, ! where the bar is missed\n{}",
+            self.overview("!").to_text()
+        );
+        let _ = writeln!(text, "the same: mean over the true mean, - 1, in %\n{}", self.biases().to_text());
+        let _ = writeln!(text, "a bright spot: nRMSE %; median %\n{}", self.spots().to_text());
+        let _ = writeln!(
+            text,
+            "a thousand times its size away: mean over the true mean\n{}",
+            self.far_table().to_text()
+        );
+        match self.shortfalls().count() {
+            0 => text + "Every rung is within its bars.\n",
+            count => format!("{text}RUNGS MISS THEIR BARS in {count} places: see above.\n"),
+        }
+    }
+
+    /// The document `docs/textures.md`.
+    pub fn to_markdown(&self) -> String {
+        let made = format!(
+            "Made by `arealight bench textures --poses {} --seed {} --markdown FILE` on {}.",
+            self.poses, self.seed, self.device
+        );
+        let methods: Vec<String> =
+            METHODS.iter().map(|method| format!("| {} | {} |", method.name, method.description)).collect();
+        let mut text = HEAD.replace("{made}", &made).replace("{methods}", &methods.join("\n"));
+        for (place, table) in [
+            ("{errors}", self.overview("**").to_markdown()),
+            ("{biases}", self.biases().to_markdown()),
+            ("{spots}", self.spots().to_markdown()),
+            ("{far}", self.far_table().to_markdown()),
+        ] {
+            text = text.replace(place, table.trim_end());
+        }
+        let updates = if self.updates.is_empty() {
+            "Not measured.".to_owned()
+        } else {
+            textures::markdown(&self.updates)
+        };
+        text + "\n" + &TAIL.replace("{updates}", updates.trim_end())
+    }
+}

@@ -1,0 +1,31 @@
+//! The errors of light textures' lookups in short form: every rung is within its bars, and the filter of Heitz et al. 2016 is
+//! not. `arealight bench textures` is the long form.
+
+use arealight::Footprint;
+use arealight_benches::footprints::{METHODS, Options, run};
+use arealight_host::testing::device_or_skip;
+use arealight_oracle::shading::footprint::Filter;
+use arealight_oracle::shading::poses::{Bar, Family};
+
+#[test]
+fn every_rung_is_within_its_bars_and_the_article_is_not() {
+    let Some(host) = device_or_skip() else { return };
+    let options = Options { poses: 20, rounds: 0, ..Options::default() };
+    let found = run(&host, &arealight_table::ggx(), &options, &|_| {}).unwrap();
+    let judged = found.rows.iter().filter(|row| row.bar.is_some()).count();
+    assert_eq!(judged, 12, "four rungs on three families");
+    assert_eq!(found.shortfalls().count(), 0, "{}", found.to_text());
+
+    // The twin: against the bar of the first rung
+    let bar = Bar::of(Filter::Rung(Footprint::Round), Family::Diffuse).unwrap();
+    let errors = found.errors(METHODS[0].name, Family::Diffuse).unwrap();
+    assert!(!bar.holds(errors), "the bars let the article's filter pass: {errors:?}");
+
+    // The texture is there: a bright spot is nothing that a light of one colour could be taken for
+    let spot = found.rows.iter().find(|row| row.pictures == "spot" && row.family == Family::Sharp).unwrap();
+    assert!(spot.errors.rmse > 10.0, "{spot:?}");
+
+    let text = found.to_markdown();
+    let left = text.lines().find(|line| line.contains('{'));
+    assert!(left.is_none(), "a place of the document was not filled: {left:?}");
+}
