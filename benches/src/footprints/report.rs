@@ -98,6 +98,15 @@ impl Footprints {
         table
     }
 
+    fn bars(&self) -> Table {
+        let mut table = self.by_family(JUDGED_PICTURES, |row| {
+            row.bar.map_or_else(String::new, |bar| format!("{}; {}", bar.rmse, bar.median))
+        });
+        // The yardstick has none
+        table.rows.remove(0);
+        table
+    }
+
     fn biases(&self) -> Table {
         self.by_family(JUDGED_PICTURES, |row| format!("{:+.2}", row.errors.bias))
     }
@@ -152,6 +161,7 @@ impl Footprints {
         let mut text = HEAD.replace("{made}", &made).replace("{methods}", &methods.join("\n"));
         for (place, table) in [
             ("{errors}", self.overview("**").to_markdown()),
+            ("{bars}", self.bars().to_markdown()),
             ("{biases}", self.biases().to_markdown()),
             ("{spots}", self.spots().to_markdown()),
             ("{far}", self.far_table().to_markdown()),
