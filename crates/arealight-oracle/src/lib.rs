@@ -11,6 +11,8 @@
 //! | [`hard`] | polygons that break form factors in float32, with their truth in 106 bits |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
+//! | [`ellipse`] | the clamped cosine over an ellipse, which is a disk light, in closed form and by quadrature |
+//! | [`sphere`] | the clamped cosine over a sphere |
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
 //! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
 //! | [`texture`] | what a textured light shows, its blur, and the prefilter's pyramid |
@@ -21,6 +23,7 @@
 pub mod answers;
 pub mod cases;
 pub mod cubature;
+pub mod ellipse;
 pub mod frame;
 pub mod ggx;
 pub mod hard;
@@ -28,4 +31,5 @@ pub mod ltsd;
 pub mod measure;
 pub mod polygon;
 pub mod shading;
+pub mod sphere;
 pub mod texture;

@@ -2,6 +2,7 @@
 
 mod article;
 mod common;
+mod ellipse;
 mod footprints;
 mod ggx;
 mod ltsd;
@@ -9,4 +10,5 @@ mod polygon;
 mod pyramid;
 mod reference;
 mod shading;
+mod sphere;
 mod textured;

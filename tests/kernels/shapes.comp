@@ -1,0 +1,74 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+// Form factors of disks, spheres and tubes over a list of arguments, so that tests can hold them to what their comments
+// say; and the published disk as a yardstick.
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const int FUNCTION = 0;
+layout(constant_id = 1) const int RUNG = 0;
+
+const int FUNCTION_ELLIPSE = 0;
+const int FUNCTION_ELLIPSE_BARE = 1;
+const int FUNCTION_ELLIPSE_VECTOR = 2;
+const int FUNCTION_SPHERE = 3;
+const int FUNCTION_SILHOUETTE = 4;
+const int FUNCTION_ARCTANGENT = 5;
+const int FUNCTION_PUBLISHED = 6;
+
+#include "arealight/elliptic_arc.glsl"
+#include "arealight/sphere.glsl"
+#include "published_disk.glsl"
+
+struct ShapeArguments {
+    vec4 a;
+    vec4 b;
+    vec4 c;
+    vec4 d;
+};
+
+layout(set = 0, binding = 0, std430) readonly buffer Arguments {
+    ShapeArguments arguments[];
+};
+layout(set = 0, binding = 1, std430) writeonly buffer Results {
+    vec4 results[];
+};
+
+layout(push_constant, std430) uniform ShapeConstants {
+    uint count;
+} constants;
+
+vec4 silhouette_of(vec3 center, float radius, mat3 transform, bool two_sided) {
+    ArealightSilhouette silhouette = arealight_sphere_silhouette(center, radius);
+    float form_factor = arealight_ellipse_form_factor(transform * silhouette.center, transform * silhouette.axis_u,
+                                                      transform * silhouette.axis_v, two_sided, RUNG);
+    return vec4(silhouette.inside ? 0.0 : form_factor, silhouette.center);
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= constants.count) {
+        return;
+    }
+    ShapeArguments given = arguments[index];
+    bool two_sided = given.d.w != 0.0;
+    vec4 result = vec4(0.0);
+    if (FUNCTION == FUNCTION_ELLIPSE) {
+        result.x = arealight_ellipse_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
+    } else if (FUNCTION == FUNCTION_ELLIPSE_BARE) {
+        result.x = arealight_ellipse_bare(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
+    } else if (FUNCTION == FUNCTION_ELLIPSE_VECTOR) {
+        result.xyz = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+    } else if (FUNCTION == FUNCTION_SPHERE) {
+        result.x = arealight_sphere_form_factor(given.a.xyz, given.a.w, two_sided, RUNG);
+    } else if (FUNCTION == FUNCTION_SILHOUETTE) {
+        mat3 transform = mat3(given.b.xyz, given.c.xyz, given.d.xyz);
+        result = silhouette_of(given.a.xyz, given.a.w, transform, two_sided);
+    } else if (FUNCTION == FUNCTION_ARCTANGENT) {
+        result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
+    } else {
+        result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+    }
+    results[index] = result;
+}
