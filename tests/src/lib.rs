@@ -8,6 +8,7 @@ pub mod lobe;
 mod points;
 mod property;
 mod rungs;
+pub mod shapes;
 
 pub use cases::Cases;
 pub use compare::{Comparison, rounding};

@@ -7,8 +7,8 @@
 // The angle of the point (x, y) from the x axis, in [-pi, pi]; 0 for the origin. The built-in function's precision is
 // undefined.
 //
-// Error of the exact rung: 1.5e-8 of the angle before rounding, 3e-7 of it or of one radian, whichever is smaller, after;
-// of the fast one 3e-5 of the angle. Squares and products are not taken, so that any size of x and y down to 1e-37 will
+// Error of the exact rung: 1.5e-8 of the angle before rounding, after it 4e-7 of the angle or of one radian, whichever is
+// smaller; of the fast one 3.1e-5 of the angle. Squares and products are not taken, so that any size of x and y down to 1e-37 will
 // do. Source: minimax polynomials of atan(r) / r in r^2 on [0, 1], by the exchange algorithm.
 float arealight_arctangent(float y, float x, int rung) {
     float width = abs(x);

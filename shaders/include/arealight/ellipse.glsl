@@ -127,21 +127,37 @@ float arealight_confocal_root(ArealightEllipse ellipse, int rung) {
     return clamp(l, h2, h2 + y2 + x * x);
 }
 
+// 1 / (a^2 + l) and 1 / (b^2 + l).
+vec2 arealight_confocal_reciprocals(ArealightEllipse ellipse, float root) {
+    return 1.0 / (vec2(ellipse.major * ellipse.major, ellipse.minor * ellipse.minor) + root);
+}
+
 // The axis of the cone under which the ellipse is seen, in its frame: the normal of the confocal ellipsoid of parameter
 // `root`, of no particular length.
 vec3 arealight_ellipse_cone_axis(ArealightEllipse ellipse, float root) {
-    vec3 center = ellipse.center;
-    return vec3(center.x * (root / (ellipse.major * ellipse.major + root)),
-                center.y * (root / (ellipse.minor * ellipse.minor + root)), center.z);
+    return vec3(ellipse.center.xy * (root * arealight_confocal_reciprocals(ellipse, root)), ellipse.center.z);
 }
 
 // The integral of the direction over pi, over the directions that the ellipse covers, in its frame: a vector whose
 // product with any unit normal above whose horizon all of the ellipse lies is the form factor.
 vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    float across = (ellipse.major * ellipse.major + root) * (ellipse.minor * ellipse.minor + root);
+    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
-    return axis * (area * inversesqrt(across) / dot(axis, axis));
+    return axis * (area * sqrt(reciprocals.x) * sqrt(reciprocals.y) / dot(axis, axis));
+}
+
+// The form factor of an ellipse that lies wholly above the horizon, of either side; see arealight_ellipse_bare.
+float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
+    float a2 = ellipse.major * ellipse.major;
+    float b2 = ellipse.minor * ellipse.minor;
+    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
+    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
+    // The cone's axis is the center less what is small for a far ellipse: so its height keeps the center's precision
+    vec2 less = ellipse.center.xy * vec2(a2, b2) * arealight_confocal_reciprocals(ellipse, root);
+    float height = root > a2 ? ellipse.height - dot(less, up.xy) : dot(axis, up);
+    float area = ellipse.center.z * ellipse.major * ellipse.minor;
+    return height * (area * inversesqrt((a2 + root) * (b2 + root)) / dot(axis, axis));
 }
 
 // A form factor as the library returns it: in [0, 1], and 0 where it is negative or NaN, or where `square` is not
@@ -160,10 +176,8 @@ float arealight_guarded_form_factor(float form_factor, float square) {
 // moved by 4 x 2^-24 of their lengths. The fast rung adds 3e-5 of the result.
 float arealight_ellipse_bare(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided, int rung) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    vec3 vector = arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse, rung));
-    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
-    float form_factor = two_sided || ellipse.front ? dot(vector, up) : 0.0;
-    return arealight_guarded_form_factor(form_factor, ellipse.square);
+    float form_factor = arealight_whole_ellipse(ellipse, arealight_confocal_root(ellipse, rung));
+    return arealight_guarded_form_factor(two_sided || ellipse.front ? form_factor : 0.0, ellipse.square);
 }
 
 // The vector form factor of a whole ellipse, in the space that it is given in: the integral of the direction over pi, of

@@ -45,10 +45,9 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     vec3 first = vec3(across, -axis.x * axis.y * reciprocal, -axis.x * axis.z * reciprocal);
     vec3 second = vec3(0.0, axis.z * reciprocal, -axis.y * reciprocal);
     // D between them. The center's part along the cone's axis is left out: it does not count
-    float x = ellipse.center.x * (a2 / (a2 + root));
-    float y = ellipse.center.y * (b2 / (b2 + root));
-    float along_first = x * first.x + y * first.y;
-    float along_second = y * second.y;
+    vec2 less = ellipse.center.xy * vec2(a2, b2) * arealight_confocal_reciprocals(ellipse, root);
+    float along_first = dot(less, first.xy);
+    float along_second = less.y * second.y;
     float m11 = a2 * first.x * first.x + b2 * first.y * first.y - along_first * along_first;
     float m12 = b2 * first.y * second.y - along_first * along_second;
     float m22 = b2 * second.y * second.y - along_second * along_second;
@@ -89,10 +88,10 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc, int rung) 
     float sin_sin = sin_end * sin_begin;
     vec3 integral;
     // Along the axis: an angle that is more than pi for more than half of the outline
-    float pq = sqrt(p * q);
-    float turn = arealight_arctangent(2.0 * sh * ch * pq, p * cos_cos + q * sin_sin, rung);
+    float pq_reciprocal = inversesqrt(max(p * q, 1e-37));
+    float turn = arealight_arctangent(2.0 * sh * ch * (p * q * pq_reciprocal), p * cos_cos + q * sin_sin, rung);
     turn = ch < 0.0 ? turn + 2.0 * AREALIGHT_PI : turn;
-    integral.z = a * b * turn / pq;
+    integral.z = a * b * turn * pq_reciprocal;
     // Along the shorter axis: an arctangent over its own argument, which vanishes for a round cone
     float eq = sqrt(e * q);
     float denominator = q + e * cos_cos;
@@ -100,12 +99,14 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc, int rung) 
     integral.y = a * c * (eq > 1e-6 * q ? lean / eq : -2.0 * ss * sh / denominator);
     // Along the longer axis: a hyperbolic arctangent over its own argument
     float sum = q + e * (cs * cs + sh * sh);
-    float ratio = 2.0 * abs(cs) * sh * sqrt(e * p) / sum;
+    float sum_reciprocal = 1.0 / max(sum, 1e-37);
+    float ratio = 2.0 * abs(cs) * sh * sqrt(e * p) * sum_reciprocal;
     float ratio2 = ratio * ratio;
     float series = 1.0 + ratio2 * (0.33333333 + ratio2 * (0.2 + ratio2 * 0.14285714));
-    float ends = sqrt((q + e * cos_end * cos_end) * (q + e * cos_begin * cos_begin));
-    float logarithm = log((1.0 + ratio) * sum / ends);
-    integral.x = -2.0 * b * c * cs * sh / sum * (ratio < 0.15 ? series : logarithm / ratio);
+    float end = inversesqrt(max(q + e * cos_end * cos_end, 1e-37));
+    float begin = inversesqrt(max(q + e * cos_begin * cos_begin, 1e-37));
+    float logarithm = log((1.0 + ratio) * sum * (end * begin));
+    integral.x = -2.0 * b * c * cs * sh * sum_reciprocal * (ratio < 0.15 ? series : logarithm / ratio);
     return integral;
 }
 
@@ -178,7 +179,7 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
     if (ellipse.height <= -ellipse.rise) {
         form_factor = 0.0;
     } else if (ellipse.height >= ellipse.rise) {
-        form_factor = dot(arealight_ellipse_vector(ellipse, root), up);
+        form_factor = arealight_whole_ellipse(ellipse, root);
     } else if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0
                && ellipse.major * ellipse.major < 4e-4 * dot(ellipse.center, ellipse.center)) {
         form_factor = arealight_small_ellipse_crossing(ellipse, up, rung);

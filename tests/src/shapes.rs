@@ -1,0 +1,98 @@
+//! The kernel that evaluates shapes, and its arguments.
+
+use crate::TestEngine;
+use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight_oracle::ellipse::Ellipse;
+use arealight_vk::Resource;
+use glam::{DMat3, DVec3};
+
+const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
+    Binding { name, kind: BindingKind::StorageBuffer, access, content }
+}
+
+/// Form factors of shapes over a list of arguments.
+pub static SHAPES: Kernel = Kernel {
+    name: "shapes",
+    spirv: include_bytes!("../spirv/shapes.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        storage("arguments", Access::Read, "vec4[4] a call"),
+        storage("results", Access::Write, "vec4 a call"),
+    ],
+    constants: &[0, 1],
+};
+
+/// The functions that the kernel calls: its first specialisation constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum ShapeFunction {
+    /// `arealight_ellipse_form_factor` of a center a and axes b and c, two-sided where d.w is not 0.
+    Ellipse = 0,
+    /// `arealight_ellipse_bare`, likewise.
+    EllipseBare = 1,
+    /// `arealight_ellipse_vector_form_factor` of a center a and axes b and c.
+    EllipseVector = 2,
+    /// `arealight_sphere_form_factor` of a center a and a radius a.w, two-sided where d.w is not 0.
+    Sphere = 3,
+    /// The form factor of the silhouette of a sphere of a center a and a radius a.w, under the matrix of columns b, c and d.
+    Silhouette = 4,
+    /// `arealight_arctangent` of a.y and a.x.
+    Arctangent = 5,
+    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The rung is
+    /// whether its discriminant is clamped.
+    Published = 6,
+}
+
+/// What a call is given.
+pub type ShapeArguments = [[f32; 4]; 4];
+
+fn narrow(v: DVec3, w: f64) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, w as f32]
+}
+
+/// An ellipse's arguments, which are two-sided.
+pub fn ellipse_arguments(ellipse: &Ellipse) -> ShapeArguments {
+    [
+        narrow(ellipse.center, 0.0),
+        narrow(ellipse.axis_u, 0.0),
+        narrow(ellipse.axis_v, 0.0),
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+}
+
+/// A sphere's arguments, under a matrix.
+pub fn sphere_arguments(center: DVec3, radius: f64, matrix: &DMat3) -> ShapeArguments {
+    [
+        narrow(center, radius),
+        narrow(matrix.x_axis, 0.0),
+        narrow(matrix.y_axis, 0.0),
+        narrow(matrix.z_axis, 1.0),
+    ]
+}
+
+impl TestEngine {
+    /// Calls a function on shapes, by form factor bits.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn shapes(&self, function: ShapeFunction, rung: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 4]> {
+        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
+        let inputs = [Resource::buffer(given.handle())];
+        self.dispatch(&SHAPES, &[(0, function as u32), (1, rung)], &inputs, arguments.len())
+    }
+
+    /// Form factors of ellipses, of both sides.
+    ///
+    /// # Panics
+    /// Where the device fails, or a result is not in [0, 1] by its bits.
+    pub fn ellipses(&self, function: ShapeFunction, rung: u32, ellipses: &[Ellipse]) -> Vec<f64> {
+        let arguments: Vec<_> = ellipses.iter().map(ellipse_arguments).collect();
+        let found = self.shapes(function, rung, &arguments);
+        let factor = |(found, ellipse): (&[f32; 4], &Ellipse)| {
+            assert!(found[0].to_bits() <= 1.0_f32.to_bits(), "{}: {ellipse:?}", found[0]);
+            f64::from(found[0])
+        };
+        found.iter().zip(ellipses).map(factor).collect()
+    }
+}
