@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int RUNG = 0;
+layout(constant_id = 2) const int ENDS = 0;
 
 const int FUNCTION_ELLIPSE = 0;
 const int FUNCTION_ELLIPSE_BARE = 1;
@@ -16,9 +17,11 @@ const int FUNCTION_SPHERE = 3;
 const int FUNCTION_SILHOUETTE = 4;
 const int FUNCTION_ARCTANGENT = 5;
 const int FUNCTION_PUBLISHED = 6;
+const int FUNCTION_TUBE = 7;
 
 #include "arealight/elliptic_arc.glsl"
 #include "arealight/sphere.glsl"
+#include "arealight/tube.glsl"
 #include "published_disk.glsl"
 
 struct ShapeArguments {
@@ -67,6 +70,12 @@ void main() {
         result = silhouette_of(given.a.xyz, given.a.w, transform, two_sided);
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
         result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
+    } else if (FUNCTION == FUNCTION_TUBE) {
+        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, ENDS);
+        // The matrix's rows, of which the last one is of unit length
+        vec3 row = vec3(given.c.w, given.d.w, given.b.w);
+        mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
+        result.x = arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG);
     } else {
         result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
     }

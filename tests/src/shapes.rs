@@ -3,6 +3,7 @@
 use crate::TestEngine;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
 use arealight_oracle::ellipse::Ellipse;
+use arealight_oracle::tube::{Ends, Tube};
 use arealight_vk::Resource;
 use glam::{DMat3, DVec3};
 
@@ -20,7 +21,7 @@ pub static SHAPES: Kernel = Kernel {
         storage("arguments", Access::Read, "vec4[4] a call"),
         storage("results", Access::Write, "vec4 a call"),
     ],
-    constants: &[0, 1],
+    constants: &[0, 1, 2],
 };
 
 /// The functions that the kernel calls: its first specialisation constant.
@@ -42,6 +43,9 @@ pub enum ShapeFunction {
     /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The rung is
     /// whether its discriminant is clamped.
     Published = 6,
+    /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth
+    /// components of c, d and b.
+    Tube = 7,
 }
 
 /// What a call is given.
@@ -71,7 +75,32 @@ pub fn sphere_arguments(center: DVec3, radius: f64, matrix: &DMat3) -> ShapeArgu
     ]
 }
 
+/// A tube's arguments, under a matrix. Its center and half its axis should be of float32.
+pub fn tube_arguments(tube: &Tube, matrix: &DMat3) -> ShapeArguments {
+    let last = matrix.row(2);
+    [
+        narrow((tube.start + tube.end) * 0.5, tube.radius),
+        narrow((tube.end - tube.start) * 0.5, last.z),
+        narrow(matrix.row(0), last.x),
+        narrow(matrix.row(1), last.y),
+    ]
+}
+
 impl TestEngine {
+    /// Form factors of tubes, as bits; all of the same ends.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn tubes(&self, ends: Ends, rung: u32, arguments: &[ShapeArguments]) -> Vec<f32> {
+        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
+        let inputs = [Resource::buffer(given.handle())];
+        let constants = [(0, ShapeFunction::Tube as u32), (1, rung), (2, ends as u32)];
+        self.dispatch::<[f32; 4]>(&SHAPES, &constants, &inputs, arguments.len())
+            .iter()
+            .map(|r| r[0])
+            .collect()
+    }
+
     /// Calls a function on shapes, by form factor bits.
     ///
     /// # Panics
@@ -79,7 +108,7 @@ impl TestEngine {
     pub fn shapes(&self, function: ShapeFunction, rung: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 4]> {
         let given = self.host().storage_buffer("arguments", arguments).expect("memory");
         let inputs = [Resource::buffer(given.handle())];
-        self.dispatch(&SHAPES, &[(0, function as u32), (1, rung)], &inputs, arguments.len())
+        self.dispatch(&SHAPES, &[(0, function as u32), (1, rung), (2, 0)], &inputs, arguments.len())
     }
 
     /// Form factors of ellipses, of both sides.

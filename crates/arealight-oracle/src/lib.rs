@@ -13,6 +13,7 @@
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`ellipse`] | the clamped cosine over an ellipse, which is a disk light, in closed form and by quadrature |
 //! | [`sphere`] | the clamped cosine over a sphere |
+//! | [`tube`] | the clamped cosine over a tube or capsule, by its silhouette |
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
 //! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
 //! | [`texture`] | what a textured light shows, its blur, and the prefilter's pyramid |
@@ -33,3 +34,4 @@ pub mod polygon;
 pub mod shading;
 pub mod sphere;
 pub mod texture;
+pub mod tube;

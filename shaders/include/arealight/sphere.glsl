@@ -43,6 +43,15 @@ float arealight_sphere_form_factor(vec3 center, float radius, bool two_sided, in
     return arealight_guarded_form_factor(form_factor, square + radius * radius);
 }
 
+// Two unit vectors with axis = x x y, for a unit axis. Source: Duff et al. 2017.
+void arealight_perpendiculars(vec3 axis, out vec3 x, out vec3 y) {
+    float side = axis.z < 0.0 ? -1.0 : 1.0;
+    float a = -1.0 / (side + axis.z);
+    float b = axis.x * axis.y * a;
+    x = vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
+    y = vec3(b, side + axis.y * axis.y * a, -axis.y);
+}
+
 // The disk that covers the same directions as a sphere, as an ellipse's arguments: transform each of the three by a
 // lobe's matrix. Its front is to the point. In the space of `center`, which keeps lengths.
 struct ArealightSilhouette {
@@ -60,12 +69,10 @@ ArealightSilhouette arealight_sphere_silhouette(vec3 center, float radius) {
     silhouette.inside = !(distance > radius);
     float cosine = sqrt(max((distance - radius) * (distance + radius), 0.0)) / distance;
     silhouette.center = center * cosine;
-    // Any two perpendiculars (Duff et al. 2017), turning clockwise about the direction to the sphere
-    float side = axis.z < 0.0 ? -1.0 : 1.0;
-    float a = -1.0 / (side + axis.z);
-    float b = axis.x * axis.y * a;
-    silhouette.axis_v = radius * vec3(1.0 + side * axis.x * axis.x * a, side * b, -side * axis.x);
-    silhouette.axis_u = radius * vec3(b, side + axis.y * axis.y * a, -axis.y);
+    // Turning clockwise about the direction to the sphere
+    arealight_perpendiculars(axis, silhouette.axis_v, silhouette.axis_u);
+    silhouette.axis_u *= radius;
+    silhouette.axis_v *= radius;
     return silhouette;
 }
 

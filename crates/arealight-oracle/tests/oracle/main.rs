@@ -12,3 +12,4 @@ mod reference;
 mod shading;
 mod sphere;
 mod textured;
+mod tube;

@@ -1,0 +1,284 @@
+//! Tubes and capsules on the device against float64.
+
+use arealight_oracle::polygon;
+use arealight_oracle::sphere::{self, Sphere};
+use arealight_oracle::tube::{Ends, Tube, form_factor, transformed_form_factor};
+use arealight_tests::shapes::tube_arguments;
+use arealight_tests::{Comparison, Random, TestEngine};
+use glam::{DMat3, DVec3};
+
+const EXACT: u32 = 0;
+const FAST: u32 = 1;
+const DIFFERENCE: u32 = 2;
+const ENDS: [Ends; 3] = [Ends::Open, Ends::Flat, Ends::Round];
+const COUNT: usize = 100;
+
+fn round(v: DVec3) -> DVec3 {
+    v.as_vec3().as_dvec3()
+}
+
+/// Where a tube is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Place {
+    /// About as long as far, any way.
+    Generic,
+    /// Across the horizon.
+    Crossing,
+    /// An end's rim in the plane of the point.
+    Level,
+    /// Thinner than a hundredth of its distance.
+    Thin,
+    /// 1e3 to 1e5 times as far as long.
+    Far,
+    /// Its surface 1e-3 to 1e-1 of the radius away.
+    Near,
+    /// Seen along its axis, from past an end.
+    EndOn,
+}
+
+fn tubes(place: Place, ends: Ends) -> Vec<Tube> {
+    let mut random = Random::new(90 + place as u64);
+    let mut tube = || {
+        let mut start = random.direction() * random.between(-1.5, 1.5).exp2();
+        let mut axis = random.direction() * random.between(-2.0, 2.0).exp2();
+        let mut radius = random.between(-4.0, 0.0).exp2();
+        match place {
+            Place::Generic => {}
+            Place::Crossing => start.z = -axis.z * random.unit(),
+            Place::Level => {
+                start -= axis * (start.dot(axis) / axis.length_squared());
+                radius = radius.min(0.9 * start.length());
+            }
+            Place::Thin => radius = random.between(-17.0, -7.0).exp2() * start.length(),
+            Place::Far => start *= random.between(10.0, 17.0).exp2(),
+            Place::Near => {
+                let towards = axis.any_orthonormal_vector();
+                let away = radius * (1.0 + random.between(-10.0, -3.0).exp2());
+                start = towards * away - axis * random.between(-0.1, 1.1);
+            }
+            Place::EndOn => {
+                let towards = axis.any_orthonormal_vector();
+                start = axis * random.between(0.2, 2.0) + towards * (radius * random.between(0.0, 3.0));
+                if random.bits().is_multiple_of(2) {
+                    start += axis;
+                    axis = -axis;
+                }
+            }
+        }
+        let (center, half) = (round(start + axis * 0.5), round(axis * 0.5));
+        Tube { start: center - half, end: center + half, radius: f64::from(radius as f32), ends }
+    };
+    (0..COUNT).map(|_| tube()).collect()
+}
+
+/// A lobe's cosine space.
+fn lobe(random: &mut Random) -> DMat3 {
+    let rotation = DMat3::from_axis_angle(random.direction(), random.between(0.0, 6.0));
+    let alpha = random.between(-5.0, 0.0).exp2();
+    (DMat3::from_diagonal(DVec3::new(1.0, 0.8, alpha)) * rotation).as_mat3().as_dmat3()
+}
+
+fn found(engine: &TestEngine, rung: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
+    let arguments: Vec<_> = tubes.iter().zip(matrices).map(|(t, m)| tube_arguments(t, m)).collect();
+    let found = engine.tubes(tubes[0].ends, rung, &arguments);
+    let bits = found.iter().all(|factor| factor.to_bits() <= 1.0_f32.to_bits());
+    assert!(bits, "{found:?}");
+    found.into_iter().map(f64::from).collect()
+}
+
+#[test]
+fn tubes_are_what_their_outlines_are() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(99);
+    let mut sixteen = 0;
+    for ends in ENDS {
+        for place in [Place::Generic, Place::Crossing, Place::Level, Place::Near, Place::EndOn] {
+            let tubes = tubes(place, ends);
+            let lobes: Vec<_> =
+                (0..COUNT).map(|i| if i % 2 == 0 { DMat3::IDENTITY } else { lobe(&mut random) }).collect();
+            let truth: Vec<_> =
+                tubes.iter().zip(&lobes).map(|(t, m)| transformed_form_factor(m, t)).collect();
+            for rung in [EXACT, FAST, DIFFERENCE] {
+                // A thousandth of the radius away, the center's rounding of 6e-8 of it is 6e-5 of the distance: of the form
+                // factor that is a tenth or less, as a rim's place is what matters
+                let bound = match (rung, place) {
+                    (FAST, Place::Near) => 2e-4,
+                    (FAST, _) => 4e-5,
+                    (_, Place::Near) => 1e-5,
+                    _ => 2e-6,
+                };
+                let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, rung {rung}"));
+                for (i, found) in found(&engine, rung, &tubes, &lobes).into_iter().enumerate() {
+                    comparison.add(found, truth[i], bound, || format!("{:?}, {:?}", tubes[i], lobes[i]));
+                    let polygon = polygon::transformed_form_factor(&lobes[i], &tubes[i].outline(16));
+                    sixteen += usize::from(rung == EXACT && (polygon.abs() - truth[i]).abs() > bound);
+                }
+                comparison.assert_all();
+            }
+        }
+    }
+    // The twin: outlines of sixteen segments an end
+    assert!(sixteen > 4 * COUNT, "{sixteen} noticed");
+}
+
+#[test]
+fn thin_and_far_tubes_keep_relative_precision() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(98);
+    let (mut plain, mut dark) = (0, 0);
+    for ends in ENDS {
+        for place in [Place::Thin, Place::Far] {
+            let tubes = tubes(place, ends);
+            let lobes: Vec<_> =
+                (0..COUNT).map(|i| if i % 2 == 0 { DMat3::IDENTITY } else { lobe(&mut random) }).collect();
+            let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, relative"));
+            let outlines = found(&engine, EXACT, &tubes, &lobes);
+            for (i, found) in found(&engine, DIFFERENCE, &tubes, &lobes).into_iter().enumerate() {
+                // What the whole tube sends with the horizon out of the way
+                let (tube, lobe) = (tubes[i], lobes[i]);
+                let truth = transformed_form_factor(&lobe, &tube);
+                let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)) * lobe;
+                let whole = truth + transformed_form_factor(&mirror, &tube);
+                let thickness = tube.radius / distance(&tube);
+                // Beyond the switch the outline's rounding, below it the line's own error: the thickness's square; and of
+                // what is thin in the surface's space and not in the lobe's, the outline's too. Heights in the lobe's space are
+                // rounded to 2^-23 of the distance, of which they are a hundredth
+                let bound =
+                    if found == outlines[i] { 5e-7 / whole } else { 1e-4 + 10.0 * thickness * thickness };
+                if whole > 0.0 {
+                    comparison.add(found / whole, truth / whole, bound, || {
+                        format!("{tube:?}, {lobe:?}, {whole:e}")
+                    });
+                    plain += usize::from((outlines[i] - truth).abs() > 1e-4 * whole);
+                } else {
+                    dark += 1;
+                }
+            }
+            comparison.assert_all();
+        }
+    }
+    // The twin: outlines alone have lost many digits
+    assert!(plain > COUNT && dark < COUNT, "{plain} noticed, {dark} dark");
+}
+
+/// The point's distance from the axis as a line.
+fn distance(tube: &Tube) -> f64 {
+    let axis = (tube.end - tube.start).try_normalize().expect("long enough");
+    tube.start.cross(axis).length()
+}
+
+#[test]
+fn at_the_switch_nothing_jumps() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(97);
+    for ends in ENDS {
+        let mut pairs = Vec::new();
+        for _ in 0..200 {
+            let half = round(random.direction() * random.between(-2.0, 1.0).exp2());
+            let center = round(random.direction());
+            let tube = Tube { start: center - half, end: center + half, radius: 1.0, ends };
+            let at = |share: f64| f64::from((3e-3 * share * distance(&tube)) as f32);
+            pairs.push(Tube { radius: at(1.0 - 1e-5), ..tube });
+            pairs.push(Tube { radius: at(1.0 + 1e-5), ..tube });
+        }
+        let found = found(&engine, DIFFERENCE, &pairs, &vec![DMat3::IDENTITY; pairs.len()]);
+        let jumps = found.chunks_exact(2).map(|pair| (pair[0] - pair[1]).abs());
+        let (largest, light) = (jumps.fold(0.0, f64::max), found.iter().fold(0.0, |a: f64, b| a.max(*b)));
+        println!("{ends:?}: {largest:.1e} of {light:.1e}");
+        // The line's error, some (3e-3)^2 of form factors of up to 3e-3, and the outline's rounding
+        assert!(largest < 1e-6 && light > 1e-3, "{ends:?}: {largest:e}");
+    }
+}
+
+#[test]
+fn a_capsule_shrinks_to_a_sphere() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(96);
+    let mut comparison = Comparison::new("short capsules");
+    let mut twin = 0;
+    for exponent in [-2, -6, -10, -14, -18] {
+        let tubes: Vec<_> = (0..100)
+            .map(|_| {
+                let center = round(random.direction());
+                let half = round(random.direction() * f64::from(exponent).exp2());
+                Tube { start: center - half, end: center + half, radius: 0.25, ends: Ends::Round }
+            })
+            .collect();
+        for (tube, found) in tubes.iter().zip(found(&engine, EXACT, &tubes, &vec![DMat3::IDENTITY; 100])) {
+            let sphere = Sphere { center: (tube.start + tube.end) * 0.5, radius: tube.radius };
+            // What the length adds, 2 r L / pi, and rounding: a short axis has a rounded direction
+            let bound = 2e-6 + 0.4 * (tube.end - tube.start).length();
+            comparison.add(found, sphere::form_factor(&sphere), bound, || format!("{tube:?}"));
+            twin += usize::from(exponent == -2 && (found - sphere::form_factor(&sphere)).abs() > 1e-2);
+        }
+    }
+    comparison.assert_all();
+    assert!(twin > 20, "{twin} noticed");
+}
+
+#[test]
+fn a_tube_that_passes_the_horizon_does_not_jump() {
+    const STEPS: usize = 4000;
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(95);
+    for ends in ENDS {
+        let half = random.direction() * 0.4;
+        let sweep: Vec<_> = (0..=STEPS)
+            .map(|step| {
+                let height = 1.6 * step as f64 / STEPS as f64 - 0.8;
+                let (center, half) = (round(DVec3::new(0.7, 0.4, height)), round(half));
+                Tube { start: center - half, end: center + half, radius: 0.25, ends }
+            })
+            .collect();
+        let found = found(&engine, EXACT, &sweep, &vec![DMat3::IDENTITY; sweep.len()]);
+        assert!(found[0] < 1e-6 && found[STEPS] > 0.01);
+        // The steps are small and the form factor is smooth but for a few kinks: float64 has them too
+        let mut bends: Vec<_> =
+            (1..STEPS).map(|i| ((found[i - 1] - 2.0 * found[i] + found[i + 1]).abs(), i)).collect();
+        bends.sort_by(|a, b| b.0.total_cmp(&a.0));
+        println!("{ends:?}: {:.1e}, and the twentieth {:.1e}", bends[0].0, bends[20].0);
+        assert!(bends[20].0 < 2e-6, "{ends:?}: {:e}", bends[20].0);
+        for (_, place) in &bends[..20] {
+            for i in place - 1..=place + 1 {
+                let truth = form_factor(&sweep[i]);
+                assert!((found[i] - truth).abs() < 2e-6, "{:?}: {} is not {truth}", sweep[i], found[i]);
+            }
+        }
+        // The twin: a jump would be seen among them
+        assert!(found[STEPS / 2] > 1e-3);
+    }
+}
+
+#[test]
+fn any_bits_give_a_form_factor() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(94);
+    let mut arguments = Vec::new();
+    for _ in 0..50_000 {
+        let scales = [0; 2].map(|_| random.between(-149.0, 128.0).exp2());
+        let kinds = [random.bits() % 4, random.bits() % 4];
+        let mut given = [[0.0_f32; 4]; 4];
+        for (row, given) in given.iter_mut().enumerate() {
+            let (kind, scale) = (kinds[row / 2], scales[row / 2]);
+            *given = [0; 4].map(|_| match kind {
+                0 => f32::from_bits(random.bits()),
+                1 if random.bits().is_multiple_of(8) => f32::from_bits(random.bits()),
+                1 => random.between(-1.0, 1.0) as f32,
+                2 => (random.between(-1.0, 1.0) * scale) as f32,
+                _ => (random.between(-3.0, 3.0).round() * scale) as f32,
+            });
+        }
+        arguments.push(given);
+    }
+    for ends in ENDS {
+        for rung in 0..4 {
+            let found = engine.tubes(ends, rung, &arguments);
+            let wrong = found.iter().filter(|factor| factor.to_bits() > 1.0_f32.to_bits()).count();
+            let partial = found.iter().filter(|factor| **factor > 0.0 && **factor < 1.0).count();
+            println!("{ends:?}, rung {rung}: {partial} between 0 and 1");
+            assert_eq!(wrong, 0, "{ends:?}, rung {rung}");
+            // The twin: it is not that all are dark
+            assert!(partial > 1000, "{partial}");
+        }
+    }
+}
