@@ -8,7 +8,8 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int RUNG = 0;
-layout(constant_id = 2) const int ENDS = 0;
+// How tubes end, and a lobe's horizon
+layout(constant_id = 2) const int CHOICE = 0;
 
 const int FUNCTION_ELLIPSE = 0;
 const int FUNCTION_ELLIPSE_BARE = 1;
@@ -18,10 +19,9 @@ const int FUNCTION_SILHOUETTE = 4;
 const int FUNCTION_ARCTANGENT = 5;
 const int FUNCTION_PUBLISHED = 6;
 const int FUNCTION_TUBE = 7;
+const int FUNCTION_LOBE = 8;
 
-#include "arealight/elliptic_arc.glsl"
-#include "arealight/sphere.glsl"
-#include "arealight/tube.glsl"
+#include "arealight/shapes.glsl"
 #include "published_disk.glsl"
 
 struct ShapeArguments {
@@ -49,6 +49,21 @@ vec4 silhouette_of(vec3 center, float radius, mat3 transform, bool two_sided) {
     return vec4(silhouette.inside ? 0.0 : form_factor, silhouette.center);
 }
 
+// What a white lobe reflects of a disk or sphere, the surface's normal being z. The lobe's matrix has the rows (a.w, b.w, c.w), d
+// and a third one across them, of the length d.w.
+float lobe_of(ShapeArguments given, bool sphere) {
+    vec3 first = vec3(given.a.w, given.b.w, given.c.w);
+    vec3 third = given.d.w * arealight_normalize_or(cross(first, given.d.xyz), vec3(0.0, 0.0, 1.0));
+    ArealightCosineSpace space = arealight_cosine_space(transpose(mat3(first, given.d.xyz, third)));
+    ArealightLobe lobe = ArealightLobe(space, vec3(1.0), 1.0);
+    ArealightQuality quality = ArealightQuality(RUNG, CHOICE, AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE);
+    float radius = sphere ? given.b.x : length(given.b.xyz) + length(given.c.xyz);
+    ArealightShape shape = ArealightShape(sphere ? AREALIGHT_SHAPE_SPHERE : AREALIGHT_SHAPE_ELLIPSE, vec3(1.0),
+                                          given.a.xyz, given.b.xyz, given.c.xyz, radius, AREALIGHT_TUBE_OPEN, true);
+    ArealightSeenShape seen = arealight_see_shape(vec3(0.0), shape);
+    return arealight_lobe_shape(lobe, vec3(0.0, 0.0, 1.0), seen, shape, false, quality).x;
+}
+
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= constants.count) {
@@ -71,11 +86,13 @@ void main() {
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
         result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
     } else if (FUNCTION == FUNCTION_TUBE) {
-        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, ENDS);
+        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, CHOICE);
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
         result.x = arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG);
+    } else if (FUNCTION == FUNCTION_LOBE) {
+        result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else {
         result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
     }

@@ -46,6 +46,9 @@ pub enum ShapeFunction {
     /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth
     /// components of c, d and b.
     Tube = 7,
+    /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center and the radius b.x:
+    /// see the kernel for the lobe's matrix.
+    Lobe = 8,
 }
 
 /// What a call is given.
@@ -86,7 +89,29 @@ pub fn tube_arguments(tube: &Tube, matrix: &DMat3) -> ShapeArguments {
     ]
 }
 
+/// The arguments of a disk before a lobe: its matrix has these two first rows, and a third one across them of length `alpha`.
+pub fn lobe_arguments(ellipse: &Ellipse, rows: [DVec3; 2], alpha: f64) -> ShapeArguments {
+    [
+        narrow(ellipse.center, rows[0].x),
+        narrow(ellipse.axis_u, rows[0].y),
+        narrow(ellipse.axis_v, rows[0].z),
+        narrow(rows[1], alpha),
+    ]
+}
+
 impl TestEngine {
+    /// What a white lobe reflects of ellipses and of spheres, clipped at a horizon (`AREALIGHT_HORIZON_*`).
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn lobes(&self, horizon: u32, rung: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 2]> {
+        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
+        let inputs = [Resource::buffer(given.handle())];
+        let constants = [(0, ShapeFunction::Lobe as u32), (1, rung), (2, horizon)];
+        let found = self.dispatch::<[f32; 4]>(&SHAPES, &constants, &inputs, arguments.len());
+        found.iter().map(|r| [r[0], r[1]]).collect()
+    }
+
     /// Form factors of tubes, as bits; all of the same ends.
     ///
     /// # Panics

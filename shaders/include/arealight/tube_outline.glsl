@@ -1,6 +1,7 @@
 #ifndef AREALIGHT_TUBE_OUTLINE_GLSL
 #define AREALIGHT_TUBE_OUTLINE_GLSL
 
+#include "arealight/rim.glsl"
 #include "arealight/sphere.glsl"
 
 // A tube as it is seen: a cylinder without or with flat caps, or a capsule. Its outline is two arcs of circles and two edges
@@ -10,14 +11,6 @@
 const int AREALIGHT_TUBE_OPEN = 0;  // the lateral surface alone shines
 const int AREALIGHT_TUBE_FLAT = 1;  // flat caps shine too
 const int AREALIGHT_TUBE_ROUND = 2; // half spheres: a capsule
-
-// An end of the outline: center + cos(t) middle + sin(t) side for t from -half to half.
-struct ArealightTubeRim {
-    vec3 center;
-    vec3 middle;
-    vec3 side;
-    vec2 half_width; // cosine and sine
-};
 
 // A tube as seen from the shading point, in the space of its arguments, scaled by a power of two.
 struct ArealightTube {
@@ -34,14 +27,14 @@ struct ArealightTube {
     bool seen;      // there is something to see
     bool before;    // the point is before the start, along the axis
     bool past;      // or past the end
-    ArealightTubeRim rims[2];
+    ArealightRim rims[2];
 };
 
 // An end's rim. `outwards` is -1 at the start, 1 at the end; `cosine` and `sine` of half the angle under which the
 // circle of the tube sees its own contacts.
-ArealightTubeRim arealight_tube_rim(ArealightTube tube, vec3 center, float outwards, float cosine, float sine) {
+ArealightRim arealight_tube_rim(ArealightTube tube, vec3 center, float outwards, float cosine, float sine) {
     vec3 towards = tube.towards;
-    ArealightTubeRim rim;
+    ArealightRim rim;
     if (tube.ends == AREALIGHT_TUBE_ROUND) {
         // The circle where the cone of tangents meets the sphere
         float square = dot(center, center);
@@ -101,11 +94,11 @@ ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends
         if (ends == AREALIGHT_TUBE_ROUND) {
             ArealightSilhouette disk = arealight_sphere_silhouette(center, tube.radius);
             tube.seen = tube.seen && !disk.inside;
-            tube.rims[0] = ArealightTubeRim(disk.center, disk.axis_u, disk.axis_v, vec2(-1.0, 0.0));
+            tube.rims[0] = ArealightRim(disk.center, disk.axis_u, disk.axis_v, vec2(-1.0, 0.0));
         } else {
             vec3 axis_u, axis_v;
             arealight_perpendiculars(tube.axis, axis_u, axis_v);
-            tube.rims[0] = ArealightTubeRim(center, axis_u * tube.radius, axis_v * tube.radius, vec2(-1.0, 0.0));
+            tube.rims[0] = ArealightRim(center, axis_u * tube.radius, axis_v * tube.radius, vec2(-1.0, 0.0));
         }
     }
     return tube;

@@ -1,0 +1,149 @@
+#ifndef AREALIGHT_SHAPES_GLSL
+#define AREALIGHT_SHAPES_GLSL
+
+#include "arealight/effects.glsl"
+#include "arealight/form_factor.glsl"
+#include "arealight/rim.glsl"
+#include "arealight/shading_point.glsl"
+#include "arealight/sphere.glsl"
+#include "arealight/tube.glsl"
+
+// Disks, spheres and tubes as lights: from a light's record to the radiance that a surface reflects of it, as
+// polygon_light.glsl has it for polygons.
+
+// What a shape is. Pass it as a literal or a specialisation constant where all lights of a pass are alike.
+const int AREALIGHT_SHAPE_ELLIPSE = 0; // a flat disk or ellipse
+const int AREALIGHT_SHAPE_SPHERE = 1;
+const int AREALIGHT_SHAPE_TUBE = 2; // a cylinder or capsule
+
+// A light of constant radiance.
+struct ArealightShape {
+    int kind;       // one of AREALIGHT_SHAPE_*
+    vec3 radiance;  // of the front or outside, W/(m^2 sr)
+    vec3 center;    // relative to the origin of ArealightSurface.position
+    vec3 axis_u;    // ellipse: a half axis; tube: half of its axis, from the center to one end
+    vec3 axis_v;    // ellipse: the conjugate half axis; axis_u x axis_v points to where the front shines
+    float radius;   // of a sphere or tube; of an ellipse the longer half axis, or more
+    int ends;       // of a tube: one of AREALIGHT_TUBE_*
+    bool two_sided; // ellipse: the back emits too; sphere: so does the inside
+};
+
+// A shape before a shading point, made ready for any number of lobes: scaled by a power of two, in the surface's space.
+struct ArealightSeenShape {
+    vec3 center; // an ellipse, that of a sphere being its silhouette: from the shading point
+    vec3 axis_u;
+    vec3 axis_v;
+    bool inside; // the point is in the sphere
+    vec3 sphere; // a sphere's center and radius
+    float radius;
+    ArealightTube tube;
+};
+
+ArealightSeenShape arealight_see_shape(vec3 position, ArealightShape shape) {
+    ArealightSeenShape seen;
+    vec3 center = shape.center - position;
+    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+        seen.tube = arealight_tube(center, shape.axis_u, shape.radius, shape.ends);
+        return seen;
+    }
+    float scale = arealight_power_of_two_scale(arealight_max_component(center) + shape.radius);
+    seen.center = center * scale;
+    seen.axis_u = shape.axis_u * scale;
+    seen.axis_v = shape.axis_v * scale;
+    seen.sphere = seen.center;
+    seen.radius = shape.radius * scale;
+    seen.inside = false;
+    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+        ArealightSilhouette silhouette = arealight_sphere_silhouette(seen.sphere, seen.radius);
+        seen.center = silhouette.center;
+        seen.axis_u = silhouette.axis_u;
+        seen.axis_v = silhouette.axis_v;
+        seen.inside = silhouette.inside;
+    }
+    return seen;
+}
+
+// A height that is a rounding of zero for a vector of this size, as zero.
+float arealight_settled_height(float height, float width) {
+    return abs(height) > width ? height : 0.0;
+}
+
+// The form factor of an ellipse, or of a sphere's silhouette, in a lobe's cosine space. `normal` is the surface's.
+float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, bool two_sided,
+                             ArealightQuality quality) {
+    vec3 center = lobe.space.to_cosine * seen.center;
+    vec3 axis_u = lobe.space.to_cosine * seen.axis_u;
+    vec3 axis_v = lobe.space.to_cosine * seen.axis_v;
+    int rung = quality.form_factor;
+    if ((rung & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0) {
+        float extent = lobe.space.stretch * seen.radius;
+        bool whole = quality.horizon != AREALIGHT_HORIZON_BOTH || dot(normal, seen.center) > seen.radius;
+        if (whole && arealight_is_far(center, extent)) {
+            float facing = -AREALIGHT_PI * dot(cross(seen.axis_u, seen.axis_v), seen.center) * lobe.space.determinant;
+            return arealight_one_point_form_factor(center, facing, two_sided);
+        }
+    }
+    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
+        return arealight_ellipse_bare(center, axis_u, axis_v, two_sided, rung);
+    }
+    // Whether a light in the surface's plane is above or below must not hang on the last bit
+    float horizon = AREALIGHT_HORIZON_WIDTH * lobe.space.flatness;
+    float across = arealight_max_component(axis_u) + arealight_max_component(axis_v);
+    center.z = arealight_settled_height(center.z, horizon * (arealight_max_component(center) + across));
+    axis_u.z = arealight_settled_height(axis_u.z, horizon * across);
+    axis_v.z = arealight_settled_height(axis_v.z, horizon * across);
+    if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+        float size = arealight_max_component(seen.center) + seen.radius;
+        vec3 heights = vec3(dot(normal, seen.center), dot(normal, seen.axis_u), dot(normal, seen.axis_v));
+        heights.x = arealight_settled_height(heights.x, 2.0 * AREALIGHT_HORIZON_WIDTH * size);
+        heights.y = arealight_settled_height(heights.y, 2.0 * AREALIGHT_HORIZON_WIDTH * seen.radius);
+        heights.z = arealight_settled_height(heights.z, 2.0 * AREALIGHT_HORIZON_WIDTH * seen.radius);
+        return arealight_ellipse_both_horizons(center, axis_u, axis_v, heights, two_sided, horizon, rung);
+    }
+    return arealight_ellipse_form_factor(center, axis_u, axis_v, two_sided, rung);
+}
+
+// What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space. `keeps_lengths`:
+// the lobe is Lambert's. A tube is clipped at the horizon of cosine space alone, whatever the quality, and has no gain.
+vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, ArealightShape shape,
+                          bool keeps_lengths, ArealightQuality quality) {
+    float form_factor;
+    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+        lobe.gain = 1.0;
+        float horizon = AREALIGHT_HORIZON_WIDTH * lobe.space.flatness;
+        form_factor = arealight_tube_form_factor(seen.tube, lobe.space.to_cosine, horizon, quality.form_factor);
+    } else if (shape.kind == AREALIGHT_SHAPE_SPHERE && keeps_lengths) {
+        form_factor = arealight_sphere_form_factor(lobe.space.to_cosine * seen.sphere, seen.radius, shape.two_sided,
+                                                   quality.form_factor);
+    } else {
+        form_factor = arealight_lobe_ellipse(lobe, normal, seen, shape.two_sided, quality);
+        form_factor = seen.inside ? (shape.two_sided ? 1.0 : 0.0) : form_factor;
+    }
+    return lobe.albedo * min(form_factor * lobe.gain, 1.0);
+}
+
+// Outgoing radiance towards the viewer from one shape, W/(m^2 sr), without visibility. Errors: as those of the shape's
+// form factor; see arealight_polygon_radiance.
+vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape, uint effects,
+                              ArealightQuality quality) {
+    shape.two_sided = shape.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
+    ArealightSeenShape seen = arealight_see_shape(point.position, shape);
+    vec3 reflected = vec3(0.0);
+    if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
+        reflected = arealight_lobe_shape(point.glossy, point.normal, seen, shape, false, quality);
+        if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {
+            reflected += arealight_lobe_shape(point.schlick, point.normal, seen, shape, false, quality);
+            reflected = max(reflected, vec3(0.0));
+        }
+    }
+    if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
+        // The surface's horizon is that of the Lambert lobe's cosine space
+        if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+            quality.horizon = AREALIGHT_HORIZON_COSINE;
+        }
+        reflected += arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, quality);
+    }
+    return shape.radiance * reflected;
+}
+
+#endif
