@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int RUNG = 0;
-// How tubes end, and a lobe's horizon
+// How tubes end, and with 4 more that they are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
 
 const int FUNCTION_ELLIPSE = 0;
@@ -86,11 +86,13 @@ void main() {
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
         result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
     } else if (FUNCTION == FUNCTION_TUBE) {
-        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, CHOICE);
+        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, CHOICE & 3);
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
-        result.x = arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG);
+        result.x = CHOICE < 4
+                 ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG)
+                 : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH, RUNG);
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else {

@@ -117,9 +117,18 @@ impl TestEngine {
     /// # Panics
     /// Where the device fails.
     pub fn tubes(&self, ends: Ends, rung: u32, arguments: &[ShapeArguments]) -> Vec<f32> {
+        self.tubes_above(ends, false, rung, arguments)
+    }
+
+    /// As [`TestEngine::tubes`], cut by a surface whose normal is z where asked for.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn tubes_above(&self, ends: Ends, cut: bool, rung: u32, arguments: &[ShapeArguments]) -> Vec<f32> {
         let given = self.host().storage_buffer("arguments", arguments).expect("memory");
         let inputs = [Resource::buffer(given.handle())];
-        let constants = [(0, ShapeFunction::Tube as u32), (1, rung), (2, ends as u32)];
+        let constants =
+            [(0, ShapeFunction::Tube as u32), (1, rung), (2, ends as u32 + if cut { 4 } else { 0 })];
         self.dispatch::<[f32; 4]>(&SHAPES, &constants, &inputs, arguments.len())
             .iter()
             .map(|r| r[0])

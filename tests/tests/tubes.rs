@@ -250,6 +250,38 @@ fn a_tube_that_passes_the_horizon_does_not_jump() {
 }
 
 #[test]
+fn tubes_are_cut_by_the_surface_too() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(93);
+    let (mut cut, mut hidden) = (0, 0);
+    for ends in ENDS {
+        for place in [Place::Generic, Place::Crossing, Place::Level, Place::EndOn] {
+            let tubes = tubes(place, ends);
+            let lobes: Vec<_> = (0..COUNT).map(|_| lobe(&mut random)).collect();
+            let arguments: Vec<_> = tubes.iter().zip(&lobes).map(|(t, m)| tube_arguments(t, m)).collect();
+            let one = found(&engine, EXACT, &tubes, &lobes);
+            let both = engine.tubes_above(ends, true, EXACT, &arguments);
+            let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, both horizons"));
+            for (i, (tube, lobe)) in tubes.iter().zip(&lobes).enumerate() {
+                let at = |count| {
+                    let outline = polygon::above_horizon(&tube.outline(count));
+                    polygon::transformed_form_factor(lobe, &outline).abs()
+                };
+                let (coarse, fine) = (at(500), at(1000));
+                let truth = fine + (fine - coarse) / 3.0;
+                // The outline's rounding, and where an arc of the polygon is cut, its third order
+                comparison.add(both[i].into(), truth, 3e-6, || format!("{tube:?}, {lobe:?}"));
+                cut += usize::from(one[i] - truth > 1e-4 && truth > 0.0);
+                hidden += usize::from(one[i] > 1e-4 && truth == 0.0);
+            }
+            comparison.assert_all();
+        }
+    }
+    // The twin: what the surface takes away
+    assert!(cut > COUNT && hidden > COUNT / 4, "{cut} cut, {hidden} hidden");
+}
+
+#[test]
 fn any_bits_give_a_form_factor() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(94);
@@ -271,8 +303,8 @@ fn any_bits_give_a_form_factor() {
         arguments.push(given);
     }
     for ends in ENDS {
-        for rung in 0..4 {
-            let found = engine.tubes(ends, rung, &arguments);
+        for (cut, rung) in [(false, 0), (false, 1), (false, 2), (false, 3), (true, 0), (true, 1)] {
+            let found = engine.tubes_above(ends, cut, rung, &arguments);
             let wrong = found.iter().filter(|factor| factor.to_bits() > 1.0_f32.to_bits()).count();
             let partial = found.iter().filter(|factor| **factor > 0.0 && **factor < 1.0).count();
             println!("{ends:?}, rung {rung}: {partial} between 0 and 1");

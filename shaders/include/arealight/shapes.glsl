@@ -6,7 +6,7 @@
 #include "arealight/rim.glsl"
 #include "arealight/shading_point.glsl"
 #include "arealight/sphere.glsl"
-#include "arealight/tube.glsl"
+#include "arealight/tube_horizons.glsl"
 
 // Disks, spheres and tubes as lights: from a light's record to the radiance that a surface reflects of it, as
 // polygon_light.glsl has it for polygons.
@@ -103,15 +103,19 @@ float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape
     return arealight_ellipse_form_factor(center, axis_u, axis_v, two_sided, rung);
 }
 
-// What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space. `keeps_lengths`:
-// the lobe is Lambert's. A tube is clipped at the horizon of cosine space alone, whatever the quality, and has no gain.
+// What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space.
+// `keeps_lengths`: the lobe is Lambert's.
 vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, ArealightShape shape,
                           bool keeps_lengths, ArealightQuality quality) {
     float form_factor;
     if (shape.kind == AREALIGHT_SHAPE_TUBE) {
-        lobe.gain = 1.0;
         float horizon = AREALIGHT_HORIZON_WIDTH * lobe.space.flatness;
-        form_factor = arealight_tube_form_factor(seen.tube, lobe.space.to_cosine, horizon, quality.form_factor);
+        if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
+            form_factor = arealight_tube_both_horizons(seen.tube, normal, lobe.space.to_cosine, horizon,
+                                                       quality.form_factor);
+        } else {
+            form_factor = arealight_tube_form_factor(seen.tube, lobe.space.to_cosine, horizon, quality.form_factor);
+        }
     } else if (shape.kind == AREALIGHT_SHAPE_SPHERE && keeps_lengths) {
         form_factor = arealight_sphere_form_factor(lobe.space.to_cosine * seen.sphere, seen.radius, shape.two_sided,
                                                    quality.form_factor);
