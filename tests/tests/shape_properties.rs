@@ -141,39 +141,38 @@ fn what_the_horizon_hides_is_the_mirror_image() {
     assert!(twin > 500, "{twin} noticed");
 }
 
-/// The largest difference between neighbours among ellipses given in order, beyond what float64 has.
-fn largest_jump(engine: &TestEngine, rung: u32, cases: &[Ellipse]) -> f64 {
-    let cases: Vec<_> = cases.iter().map(rounded).collect();
-    let found = engine.ellipses(ShapeFunction::Ellipse, rung, &cases);
-    let errors: Vec<f64> = found.iter().zip(&cases).map(|(f, case)| f - form_factor(case).abs()).collect();
-    errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
-}
-
 #[test]
 fn nothing_jumps_past_the_horizon() {
     const STEPS: usize = 20_000;
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(84);
+    let mut sweeps = Vec::new();
     for _ in 0..6 {
         let (x, y) = random.direction().any_orthonormal_pair();
         let base = Ellipse { center: DVec3::new(0.9, 0.5, 0.0), axis_u: x * 0.8, axis_v: y * 0.3 };
         let rise = base.axis_u.z.hypot(base.axis_v.z);
         // From wholly below to wholly above
-        let at = |step: usize| {
+        for step in 0..=STEPS {
             let height = 1.1 * rise * (2.0 * step as f64 / STEPS as f64 - 1.0);
-            Ellipse { center: base.center.with_z(height), ..base }
-        };
-        let sweep: Vec<_> = (0..=STEPS).map(at).collect();
-        for (rung, bound) in [(EXACT, 6e-7), (DIFFERENCE, 6e-7), (1, 2e-5)] {
-            let jump = largest_jump(&engine, rung, &sweep);
-            assert!(jump < bound, "rung {rung}: {jump:e} of {base:?}");
+            sweeps.push(rounded(&Ellipse { center: base.center.with_z(height), ..base }));
         }
-        // The twin: the published disk has a kink of another kind, and errs by more than that on the way
-        let arguments: Vec<_> = sweep.iter().map(ellipse_arguments).collect();
-        let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
-        let errors =
-            found.iter().zip(&sweep).map(|(f, case)| (f64::from(f[0]) - form_factor(case).abs()).abs());
-        assert!(errors.fold(0.0, f64::max) > 1e-4, "{base:?}");
+    }
+    let truth: Vec<f64> = sweeps.iter().map(|case| form_factor(case).abs()).collect();
+    for (rung, bound) in [(EXACT, 6e-7), (DIFFERENCE, 6e-7), (1, 2e-5)] {
+        let found = engine.ellipses(ShapeFunction::Ellipse, rung, &sweeps);
+        let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| f - t).collect();
+        for (sweep, errors) in sweeps.chunks_exact(STEPS + 1).zip(errors.chunks_exact(STEPS + 1)) {
+            // Beyond what float64 changes by
+            let jump = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+            assert!(jump < bound, "rung {rung}: {jump:e} of {:?}", sweep[0]);
+        }
+    }
+    // The twin: the published disk errs by much more on the way
+    let arguments: Vec<_> = sweeps.iter().map(ellipse_arguments).collect();
+    let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
+    let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| (f64::from(f[0]) - t).abs()).collect();
+    for errors in errors.chunks_exact(STEPS + 1) {
+        assert!(errors.iter().fold(0.0_f64, |a, b| a.max(*b)) > 1e-4);
     }
 }
 
@@ -183,7 +182,7 @@ fn nothing_jumps_past_the_horizon() {
 fn nothing_jumps_where_formulas_change() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(85);
-    let (mut by_size, mut by_arc) = (0.0_f64, 0.0_f64);
+    let (mut cases, mut scales) = (Vec::new(), Vec::new());
     for _ in 0..100 {
         let (x, y) = random.direction().any_orthonormal_pair();
         let thin = random.between(0.1, 1.0);
@@ -195,17 +194,17 @@ fn nothing_jumps_where_formulas_change() {
             let distance = (1.0 - height * height).sqrt();
             rounded(&Ellipse { center: (direction * distance).with_z(height), axis_u, axis_v })
         };
-        let around = [at(0.02 * (1.0 - 1e-5), share), at(0.02 * (1.0 + 1e-5), share)];
-        let error = |cases: &[Ellipse], scale: f64| {
-            let found = engine.ellipses(ShapeFunction::Ellipse, DIFFERENCE, cases);
-            let errors: Vec<_> = found.iter().zip(cases).map(|(f, e)| f - form_factor(e).abs()).collect();
-            (errors[1] - errors[0]).abs() / scale
-        };
-        by_size = by_size.max(error(&around, 1.0));
+        cases.extend([at(0.02 * (1.0 - 1e-5), share), at(0.02 * (1.0 + 1e-5), share)]);
         // -cos(1) of the rise, for an ellipse of 1e-4: relative to what it sends when wholly above
-        let around = [at(1e-4, -1.0_f64.cos() - 1e-5), at(1e-4, -1.0_f64.cos() + 1e-5)];
-        by_arc = by_arc.max(error(&around, 1e-12 * thin));
+        cases.extend([at(1e-4, -1.0_f64.cos() - 1e-5), at(1e-4, -1.0_f64.cos() + 1e-5)]);
+        scales.extend([1.0, 1e-12 * thin]);
     }
+    let found = engine.ellipses(ShapeFunction::Ellipse, DIFFERENCE, &cases);
+    let errors: Vec<_> = found.iter().zip(&cases).map(|(f, e)| f - form_factor(e).abs()).collect();
+    let jumps: Vec<_> =
+        errors.chunks_exact(2).zip(&scales).map(|(pair, scale)| (pair[1] - pair[0]).abs() / scale).collect();
+    let largest = |first: usize| jumps.iter().skip(first).step_by(2).fold(0.0_f64, |a, b| a.max(*b));
+    let (by_size, by_arc) = (largest(0), largest(1));
     println!("by size {by_size:.1e}, by arc {by_arc:.1e}");
     // The small form's 2 (1 / 50)^2 of the ellipse's 1e-5, with the clipped form's rounding
     assert!(by_size < 4e-8, "{by_size:e}");

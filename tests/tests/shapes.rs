@@ -25,13 +25,17 @@ fn cases(family: &Family) -> Vec<Ellipse> {
 #[test]
 fn hard_ellipses_are_as_good_as_their_rounding() {
     let Some(engine) = TestEngine::new() else { return };
+    // All families in one dispatch: a software driver compiles each pipeline for a second
+    let all: Vec<_> = FAMILIES.iter().flat_map(cases).collect();
     for rung in [EXACT, FAST, EXACT | DIFFERENCE, FAST | DIFFERENCE] {
-        for family in FAMILIES {
-            let cases = cases(family);
+        let found = engine.ellipses(ShapeFunction::Ellipse, rung, &all);
+        for (family, (cases, found)) in
+            FAMILIES.iter().zip(all.chunks_exact(SAMPLES as usize).zip(found.chunks_exact(SAMPLES as usize)))
+        {
             let mut comparison = Comparison::new(format!("{}, rung {rung}", family.name));
             let mut twin = Comparison::new("a result off by twice the bound");
             let bound = backward_bound(rung);
-            for (case, found) in cases.iter().zip(engine.ellipses(ShapeFunction::Ellipse, rung, &cases)) {
+            for (case, &found) in cases.iter().zip(found) {
                 let error = nearby::distance(case, found, 1e-7);
                 comparison.add(error, 0.0, bound, || format!("{case:?}"));
                 // In contact with the rim every value may be near by; elsewhere few are
@@ -52,15 +56,16 @@ fn hard_ellipses_are_as_good_as_their_rounding() {
 #[test]
 fn the_published_disk_breaks() {
     let Some(engine) = TestEngine::new() else { return };
-    for family in FAMILIES {
-        let cases = cases(family);
-        let arguments: Vec<_> = cases.iter().map(ellipse_arguments).collect();
-        let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
+    let all: Vec<_> = FAMILIES.iter().flat_map(cases).collect();
+    let arguments: Vec<_> = all.iter().map(ellipse_arguments).collect();
+    let found = engine.shapes(ShapeFunction::Published, 1, &arguments);
+    let families = all.chunks_exact(SAMPLES as usize).zip(found.chunks_exact(SAMPLES as usize));
+    for (family, (cases, found)) in FAMILIES.iter().zip(families) {
         let not_finite = found.iter().filter(|found| !found[0].is_finite()).count();
         let error = |index: usize| {
             let errors = found
                 .iter()
-                .zip(&cases)
+                .zip(cases)
                 .map(|(found, case)| (f64::from(found[index]) - form_factor(case).abs()).abs());
             errors.filter(|error| error.is_finite()).fold(0.0, f64::max)
         };

@@ -267,7 +267,7 @@ fn tubes_are_cut_by_the_surface_too() {
                     let outline = polygon::above_horizon(&tube.outline(count));
                     polygon::transformed_form_factor(lobe, &outline).abs()
                 };
-                let (coarse, fine) = (at(500), at(1000));
+                let (coarse, fine) = (at(250), at(500));
                 let truth = fine + (fine - coarse) / 3.0;
                 // The outline's rounding, and where an arc of the polygon is cut, its third order
                 comparison.add(both[i].into(), truth, 3e-6, || format!("{tube:?}, {lobe:?}"));

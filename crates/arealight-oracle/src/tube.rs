@@ -160,7 +160,7 @@ pub fn form_factor(tube: &Tube) -> f64 {
 /// The integral of a linearly transformed cosine over a tube, in [0, 1]. `inverse` takes directions of the surface frame
 /// into cosine space, of which only the horizon is clipped.
 pub fn transformed_form_factor(inverse: &DMat3, tube: &Tube) -> f64 {
-    const SEGMENTS: usize = 150;
+    const SEGMENTS: usize = 100;
     match tube.silhouette() {
         Silhouette::Nothing => 0.0,
         Silhouette::Disk(disk) => ellipse::form_factor(&disk.transformed(inverse)).abs(),
