@@ -56,7 +56,8 @@ float lobe_of(ShapeArguments given, bool sphere) {
     vec3 third = given.d.w * arealight_normalize_or(cross(first, given.d.xyz), vec3(0.0, 0.0, 1.0));
     ArealightCosineSpace space = arealight_cosine_space(transpose(mat3(first, given.d.xyz, third)));
     ArealightLobe lobe = ArealightLobe(space, vec3(1.0), 1.0);
-    ArealightQuality quality = ArealightQuality(RUNG, CHOICE, AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE);
+    ArealightQuality quality = ArealightQuality(RUNG, CHOICE, AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
+                                                AREALIGHT_FOOTPRINT_ROUND);
     float radius = sphere ? given.b.x : length(given.b.xyz) + length(given.c.xyz);
     ArealightShape shape = ArealightShape(sphere ? AREALIGHT_SHAPE_SPHERE : AREALIGHT_SHAPE_ELLIPSE, vec3(1.0),
                                           given.a.xyz, given.b.xyz, given.c.xyz, radius, AREALIGHT_TUBE_OPEN, true);

@@ -2,7 +2,7 @@
 
 use crate::TestEngine;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
-use arealight_vk::{ComputePass, Resource};
+use arealight_vk::Resource;
 use bytemuck::Pod;
 
 const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
@@ -75,15 +75,12 @@ impl TestEngine {
         let unwritten = vec![u32::MAX; count * size_of::<R>() / 4];
         let results = host.storage_buffer("results", &unwritten).expect("memory");
         let resources = [inputs, &[Resource::buffer(results.handle())]].concat();
-        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        let pass = self.passes().pass(kernel, specialization).expect("a pipeline");
+        // SAFETY: Host::submit waits, and the resources live until then.
         unsafe {
-            let pass = ComputePass::new(self.context(), kernel, specialization).expect("a pipeline");
-            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");
-            let set = pool.allocate(pass.set_layout()).expect("a set");
-            pass.write_set(set, &resources).expect("the resources fit");
-            let (constants, groups) = (count as u32, kernel.groups_for([count as u32, 1, 1]));
-            let bytes = bytemuck::bytes_of(&constants);
-            host.submit(|commands| pass.record(commands, set, bytes, groups).expect("it records"))
+            let set = self.passes().bind(&pass, &resources).expect("the resources fit");
+            let items = [count as u32, 1, 1];
+            host.submit(|commands| set.record(&pass, commands, &(count as u32), items).expect("it records"))
                 .expect("it runs");
         }
         results.download().expect("the results come back")

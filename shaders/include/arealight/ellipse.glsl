@@ -161,7 +161,7 @@ float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
 }
 
 // A form factor as the library returns it: in [0, 1], and 0 where it is negative or NaN, or where `square` is not
-// finite. It works on the bits, see arealight_form_factor_from_arcs.
+// finite. It works on the bits, see arealight_form_factor.
 float arealight_guarded_form_factor(float form_factor, float square) {
     uint bits = floatBitsToUint(form_factor);
     bool finite = bits < 0x7f800000u && floatBitsToUint(square) < 0x7f800000u;

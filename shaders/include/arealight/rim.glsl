@@ -125,7 +125,7 @@ void arealight_walk_rim(inout ArealightWalk walk, ArealightAnchor anchor, Areali
     if (dip) {
         integral -= arealight_elliptic_arc(cone, ArealightArcSpan(-top, vec2(-cosine, sine)), rung);
     }
-    walk.sum += (forward ? 1.0 : -1.0) * dot(arc.up, integral);
+    walk.sum += (forward ? 1.0 : -1.0) * (cone.frame * integral);
     // The crossings close the outline
     if (!first_above || dip) {
         ArealightVertex up = arealight_cone_vertex(cone, rise, 0.0);
@@ -172,7 +172,7 @@ float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec
     arealight_walk_rim(walk, anchor, arc, begin, end, 1.0, rung);
     bool grows = arc.way > 0.0;
     arealight_walk_edge(walk, anchor, arealight_select(grows, end, begin), arealight_select(grows, begin, end), rung);
-    return arealight_walk_form_factor(walk, anchor, true, rung);
+    return arealight_form_factor(arealight_walk_end(walk, anchor, rung), true);
 }
 
 #endif

@@ -80,7 +80,7 @@ float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape
         bool whole = quality.horizon != AREALIGHT_HORIZON_BOTH || dot(normal, seen.center) > seen.radius;
         if (whole && arealight_is_far(center, extent)) {
             float facing = -AREALIGHT_PI * dot(cross(seen.axis_u, seen.axis_v), seen.center) * lobe.space.determinant;
-            return arealight_one_point_form_factor(center, facing, two_sided);
+            return arealight_form_factor(arealight_one_point(center, facing), two_sided);
         }
     }
     if (quality.horizon == AREALIGHT_HORIZON_BARE) {

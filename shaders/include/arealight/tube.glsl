@@ -109,7 +109,7 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
     }
     arealight_walk_edge(walk, anchor, ends[1], ends[3], rung);
     arealight_walk_edge(walk, anchor, ends[2], ends[0], rung);
-    return arealight_walk_form_factor(walk, anchor, true, rung);
+    return arealight_form_factor(arealight_walk_end(walk, anchor, rung), true);
 }
 
 #endif

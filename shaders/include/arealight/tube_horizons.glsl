@@ -128,7 +128,7 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
         return 0.0;
     }
     arealight_walk_edge(outline.walk, anchor, outline.last, outline.first, rung);
-    return arealight_walk_form_factor(outline.walk, anchor, true, rung);
+    return arealight_form_factor(arealight_walk_end(outline.walk, anchor, rung), true);
 }
 
 #endif
