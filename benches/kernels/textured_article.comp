@@ -22,6 +22,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define LIGHT_TEXTURES_BINDING 5
 #include "table_image.glsl"
 #include "lights.glsl"
+#define CASES_BINDING 3
 #include "cases.glsl"
 
 vec3 article_lobe(ArealightLobe lobe, vec3 normal, ArealightSeenLight seen, ArealightPolygonLight light,

@@ -1,7 +1,8 @@
 #ifndef CASES_GLSL
 #define CASES_GLSL
 
-// A list of shading points, and where their radiance goes. Their lights' centers are relative to them.
+// A list of shading points, and where their radiance goes. Their lights' centers are relative to them. The including kernel
+// defines CASES_BINDING; the results are at the binding after it.
 
 #include "arealight/surface.glsl"
 
@@ -16,10 +17,10 @@ struct ArealightGpuCase {
     uint reserved0;
 };
 
-layout(set = 0, binding = 3, std430) readonly buffer Cases {
+layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
     ArealightGpuCase cases[];
 };
-layout(set = 0, binding = 4, std430) writeonly buffer Results {
+layout(set = 0, binding = CASES_BINDING + 1, std430) writeonly buffer Results {
     vec4 results[];
 };
 

@@ -15,6 +15,7 @@ layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 
 #define LIGHTS_BINDING 1
+#define CASES_BINDING 3
 #define LIGHT_TEXTURES_BINDING 5
 #include "table_image.glsl"
 #include "lights.glsl"

@@ -5,7 +5,7 @@ use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
 use arealight::plan::{Output, PositionSource};
 use arealight::pyramid::LevelKernel;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TubeEnds};
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
 use std::collections::BTreeMap;
@@ -234,6 +234,7 @@ fn every_structure_has_the_same_offsets() {
     let eval = module(&kernels::EVAL);
     let reference = module(&kernels::REFERENCE);
     let visibility = module(&kernels::VISIBILITY);
+    let shapes = module(&kernels::EVAL_SHAPES);
     let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
                         texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
                         texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
@@ -244,6 +245,12 @@ fn every_structure_has_the_same_offsets() {
         (&eval, "ArealightGpuLight", light),
         (&shade, "ShadeConstants", layout!(gpu::ShadeConstants, position_from_clip, camera, light_count)),
         (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
+        (&shapes, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
+        (
+            &shapes,
+            "ArealightGpuShape",
+            layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, ends, axis_v, flags),
+        ),
         (
             &eval,
             "ArealightGpuCase",
@@ -355,6 +362,8 @@ fn array_strides_are_the_sizes_in_rust() {
     for (kernel, buffer, size) in [
         (&kernels::SHADE, "lights", size_of::<gpu::GpuLight>()),
         (&kernels::EVAL, "cases", size_of::<gpu::GpuCase>()),
+        (&kernels::EVAL_SHAPES, "cases", size_of::<gpu::GpuCase>()),
+        (&kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
         (&kernels::REFERENCE, "light_sampling", size_of::<gpu::GpuLightSampling>()),
         (&kernels::REFERENCE, "light_triangles", size_of::<gpu::GpuLightTriangle>()),
         (&kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
@@ -424,6 +433,9 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
 const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
 const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
+const SHAPES_GLSL: &str = include_str!("../../shaders/include/arealight/shapes.glsl");
+const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/tube_outline.glsl");
+const SHAPE_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/shape_buffer.glsl");
 const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
 const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
 const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
@@ -488,6 +500,23 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
     assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
+    let shapes = [
+        ("ELLIPSE", number(ShapeKind::Ellipse as u32)),
+        ("SPHERE", number(ShapeKind::Sphere as u32)),
+        ("TUBE", number(ShapeKind::Tube as u32)),
+    ];
+    assert_constants(SHAPES_GLSL, "AREALIGHT_SHAPE_", &shapes);
+    assert_constants(
+        SHAPE_BUFFER_GLSL,
+        "SHAPE_",
+        &[("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)), ("ANY", number(ShapeKind::Any as u32))],
+    );
+    let ends = [
+        ("OPEN", number(TubeEnds::Open as u32)),
+        ("FLAT", number(TubeEnds::Flat as u32)),
+        ("ROUND", number(TubeEnds::Round as u32)),
+    ];
+    assert_constants(TUBE_OUTLINE_GLSL, "AREALIGHT_TUBE_", &ends);
     let [width, height] = arealight::plan::BLUR_BLOCK.map(number);
     assert_constants(TEXTURE_BLUR_COMP, "BLOCK_", &[("WIDTH", width), ("HEIGHT", height)]);
     let called_for = [

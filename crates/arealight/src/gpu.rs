@@ -50,6 +50,34 @@ impl GpuLight {
     pub const NO_TEXTURE: u32 = u32::MAX;
 }
 
+/// A disk, sphere or tube as a light, packed by [`crate::ShapeLight::pack`]: `ArealightGpuShape` in
+/// `shaders/kernels/shape_buffer.glsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuShape {
+    /// Radiance of the front or outside, W/(m² sr).
+    pub radiance: [f32; 3],
+    /// [`crate::ShapeKind`], but not `Any`.
+    pub kind: u32,
+    /// The middle, relative to the origin.
+    pub center: [f32; 3],
+    /// Of a sphere or tube; of an ellipse the longer half axis, or a little more.
+    pub radius: f32,
+    /// A half axis of an ellipse; of a tube, from the center to one end. Else zero.
+    pub axis_u: [f32; 3],
+    /// [`crate::TubeEnds`] of a tube, else zero.
+    pub ends: u32,
+    /// The other half axis of an ellipse, else zero.
+    pub axis_v: [f32; 3],
+    /// [`GpuShape::TWO_SIDED`] or zero.
+    pub flags: u32,
+}
+
+impl GpuShape {
+    /// The back of an ellipse, or the inside of a sphere, emits too.
+    pub const TWO_SIDED: u32 = 1;
+}
+
 /// Push constants of the shade kernel.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -130,7 +158,7 @@ pub struct GpuCase {
     pub reserved: u32,
 }
 
-/// Push constants of the eval kernel.
+/// Push constants of the eval kernel, and of its twin for shapes.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct EvalConstants {

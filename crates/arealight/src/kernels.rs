@@ -96,6 +96,8 @@ pub mod constant {
     pub const RADIUS: u32 = 8;
     /// [`crate::gpu::TextureLoadConstants::called_for`].
     pub const CALLED_FOR: u32 = 9;
+    /// [`crate::ShapeKind`].
+    pub const SHAPE: u32 = 10;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -202,6 +204,28 @@ pub static EVAL: Kernel = Kernel {
     ],
 };
 
+/// As [`EVAL`], of disks, spheres and tubes. Push constants: [`crate::gpu::EvalConstants`].
+pub static EVAL_SHAPES: Kernel = Kernel {
+    name: "eval_shapes",
+    spirv: include_bytes!("../spirv/eval_shapes.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: size_of::<crate::gpu::EvalConstants>() as u32,
+    bindings: &[
+        TABLE,
+        read("shapes", BindingKind::StorageBuffer, "GpuShape[]"),
+        read("cases", BindingKind::StorageBuffer, "GpuCase[], whose light is a shape's index"),
+        write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::FORM_FACTOR,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::SHAPE,
+    ],
+};
+
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:
 /// [`crate::gpu::ReferenceConstants`].
 pub static REFERENCE: Kernel = Kernel {
@@ -294,7 +318,8 @@ pub static VISIBILITY: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 6] = [&SHADE, &EVAL, &REFERENCE, &TEXTURE_LOAD, &TEXTURE_BLUR, &VISIBILITY];
+pub static ALL: [&Kernel; 7] =
+    [&SHADE, &EVAL, &EVAL_SHAPES, &REFERENCE, &TEXTURE_LOAD, &TEXTURE_BLUR, &VISIBILITY];
 
 #[cfg(test)]
 mod tests {

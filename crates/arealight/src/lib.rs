@@ -18,6 +18,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
+//! | [`shape`] | disks, spheres, cylinders and capsules as lights |
 //! | [`light_texture`] | what a light shows |
 //! | [`texture_part`] | which part of an image becomes one |
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
@@ -40,6 +41,7 @@ pub mod material;
 pub mod plan;
 pub mod pyramid;
 pub mod quality;
+pub mod shape;
 pub mod table;
 pub mod texture_part;
 
@@ -50,6 +52,7 @@ pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+pub use shape::{Shape, ShapeError, ShapeKind, ShapeLight, TubeEnds};
 pub use table::{GrazingDip, LightTable, TableDescription, TableError, TableSample};
 pub use texture_part::{TexturePart, TexturePartError, Wrap};
 

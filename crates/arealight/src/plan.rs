@@ -4,7 +4,7 @@
 use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality};
+use crate::{Effects, Quality, ShapeKind};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -101,6 +101,22 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
             (kernels::constant::FOOTPRINT, quality.footprint as u32),
         ],
         groups: kernels::EVAL.groups_for([case_count, 1, 1]),
+    }
+}
+
+/// As [`eval`], of shapes that are all of one kind, or of [`ShapeKind::Any`].
+pub fn eval_shapes(effects: Effects, quality: Quality, kind: ShapeKind, case_count: u32) -> Dispatch {
+    Dispatch {
+        kernel: &kernels::EVAL_SHAPES,
+        specialization: vec![
+            (kernels::constant::EFFECTS, effects.bits()),
+            (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
+            (kernels::constant::HORIZON, quality.horizon as u32),
+            (kernels::constant::FRESNEL, quality.fresnel as u32),
+            (kernels::constant::LOBES, quality.lobes as u32),
+            (kernels::constant::SHAPE, kind as u32),
+        ],
+        groups: kernels::EVAL_SHAPES.groups_for([case_count, 1, 1]),
     }
 }
 

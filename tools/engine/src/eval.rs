@@ -71,14 +71,11 @@ impl Engine {
             lights.append(packed)?;
         }
 
-        // Each dispatch takes as many cases as the device has groups for
-        let limit = self.host().properties().limits.max_compute_work_group_count[0];
-        let chunk = (limit.min(1 << 16) * kernel.local_size[0]) as usize;
         let light_buffer = self.storage("lights", &lights.lights)?;
         let vertex_buffer = self.storage("light vertices", &lights.vertices)?;
         let pass = self.passes.pass(kernel, specialization)?;
         let mut radiance = Vec::with_capacity(points.len());
-        for cases in cases.chunks(chunk) {
+        for cases in cases.chunks(self.cases_per_dispatch(kernel)) {
             let case_buffer = self.storage("cases", cases)?;
             let results = self.storage("results", &vec![[0.0_f32; 4]; cases.len()])?;
             let resources = [
@@ -101,15 +98,25 @@ impl Engine {
         }
         Ok(radiance)
     }
+
+    /// Each dispatch takes as many cases as the device has groups for.
+    pub(crate) fn cases_per_dispatch(&self, kernel: &Kernel) -> usize {
+        let limit = self.host().properties().limits.max_compute_work_group_count[0];
+        (limit.min(1 << 16) * kernel.local_size[0]) as usize
+    }
 }
 
 /// A point as the eval kernel reads it, `light` being the index of its light.
 pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
-    let surface = &point.surface;
+    surface_case(&point.surface, point.normal, point.view, light)
+}
+
+/// A surface as the eval kernels read it.
+pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light: u32) -> GpuCase {
     GpuCase {
-        normal: rounded(point.normal),
+        normal: rounded(normal),
         roughness: surface.alpha.sqrt() as f32,
-        view: rounded(point.view),
+        view: rounded(view),
         f90: surface.f90 as f32,
         diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
         light,

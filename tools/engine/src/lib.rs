@@ -1,10 +1,12 @@
 //! The small engine that the tools, tests and benchmarks embed Arealight in: the first host of
 //! [`arealight_vk`], and an example of one.
 //!
-//! [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points;
+//! [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`]
+//! one under disks, spheres and tubes;
 //! [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte Carlo.
 
 mod eval;
+mod eval_shapes;
 mod g_buffer;
 mod kept;
 mod memory;
@@ -17,6 +19,7 @@ mod textures;
 
 pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
+pub use eval_shapes::ShapePoint;
 pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
@@ -45,6 +48,9 @@ pub enum EngineError {
     /// The scene does not fit the device's buffers.
     #[error(transparent)]
     Scene(#[from] arealight_scene::BufferError),
+    /// A shape cannot be used as a light.
+    #[error(transparent)]
+    Shape(#[from] arealight::ShapeError),
     /// A buffer is larger than the device binds.
     #[error("{name}: {bytes} bytes, but the device binds at most {limit} to a shader: use a smaller scene")]
     BufferTooLarge {

@@ -1,0 +1,35 @@
+#ifndef SHAPE_BUFFER_GLSL
+#define SHAPE_BUFFER_GLSL
+
+// The list of shapes at binding 1, as the library sees them.
+
+#include "arealight/shapes.glsl"
+
+// The CPU writes it: crates/arealight/src/gpu.rs has the same, and a test compares the offsets.
+struct ArealightGpuShape {
+    vec3 radiance;
+    uint kind;
+    vec3 center;
+    float radius;
+    vec3 axis_u;
+    uint ends;
+    vec3 axis_v;
+    uint flags;
+};
+
+const uint SHAPE_TWO_SIDED = 1u;
+// Each shape is what its record says
+const int SHAPE_ANY = 3;
+
+layout(set = 0, binding = 1, std430) readonly buffer Shapes {
+    ArealightGpuShape shapes[];
+};
+
+// `kind`: what all shapes are, as a specialisation constant, or SHAPE_ANY.
+ArealightShape load_shape(uint index, int kind) {
+    ArealightGpuShape record = shapes[index];
+    return ArealightShape(kind == SHAPE_ANY ? int(record.kind) : kind, record.radiance, record.center, record.axis_u,
+                          record.axis_v, record.radius, int(record.ends), (record.flags & SHAPE_TWO_SIDED) != 0u);
+}
+
+#endif

@@ -1,0 +1,91 @@
+//! Shading points one by one under disks, spheres and tubes.
+
+use crate::eval::surface_case;
+use crate::{Engine, EngineError};
+use arealight::gpu::{EvalConstants, GpuCase, GpuShape};
+use arealight::{Effects, Quality, ShapeKind, ShapeLight, Surface, plan};
+use arealight_vk::Resource;
+use glam::{DVec3, Vec3};
+
+/// A shading point with its one light, which is no polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapePoint {
+    /// The surface's lobes.
+    pub surface: Surface,
+    /// World position.
+    pub position: DVec3,
+    /// Normal, of any length.
+    pub normal: DVec3,
+    /// Direction to the viewer, of any length.
+    pub view: DVec3,
+    /// The light, in world positions.
+    pub light: ShapeLight,
+}
+
+impl Engine {
+    /// The radiance that each point sends to its viewer, W/(m² sr), by the GLSL library.
+    ///
+    /// # Errors
+    /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
+    pub fn eval_shapes(&self, points: &[ShapePoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
+        // A pipeline for each kind: what a driver compiles, and what lights cost, is of one kind only
+        let mut radiance = vec![Vec3::ZERO; points.len()];
+        for kind in [ShapeKind::Ellipse, ShapeKind::Sphere, ShapeKind::Tube] {
+            let indices: Vec<usize> =
+                (0..points.len()).filter(|&index| points[index].light.shape.kind() == kind).collect();
+            let subset: Vec<&ShapePoint> = indices.iter().map(|&index| &points[index]).collect();
+            for (&index, answer) in indices.iter().zip(self.eval_shapes_as(kind, &subset, quality)?) {
+                radiance[index] = answer;
+            }
+        }
+        Ok(radiance)
+    }
+
+    /// As [`Engine::eval_shapes`], by one pipeline, which takes shapes of that kind or of [`ShapeKind::Any`].
+    ///
+    /// # Errors
+    /// As [`Engine::eval_shapes`].
+    pub fn eval_shapes_as(
+        &self,
+        kind: ShapeKind,
+        points: &[&ShapePoint],
+        quality: Quality,
+    ) -> Result<Vec<Vec3>, EngineError> {
+        // Pack each light relative to its own point, so that no precision is lost far from the origin
+        let mut shapes: Vec<GpuShape> = Vec::with_capacity(points.len());
+        let mut cases: Vec<GpuCase> = Vec::with_capacity(points.len());
+        for (index, point) in points.iter().enumerate() {
+            shapes.push(point.light.pack(point.position)?);
+            cases.push(surface_case(&point.surface, point.normal, point.view, index as u32));
+        }
+        if cases.is_empty() {
+            return Ok(Vec::new());
+        }
+
+        let effects = Effects::all() - (Effects::POLYGON | Effects::TEXTURED);
+        let dispatch = plan::eval_shapes(effects, quality, kind, 0);
+        let pass = self.passes.pass(dispatch.kernel, &dispatch.specialization)?;
+        let shape_buffer = self.storage("shapes", &shapes)?;
+        let mut radiance = Vec::with_capacity(points.len());
+        for cases in cases.chunks(self.cases_per_dispatch(dispatch.kernel)) {
+            let case_buffer = self.storage("cases", cases)?;
+            let results = self.storage("results", &vec![[0.0_f32; 4]; cases.len()])?;
+            let resources = [
+                self.table(),
+                Resource::buffer(shape_buffer.handle()),
+                Resource::buffer(case_buffer.handle()),
+                Resource::buffer(results.handle()),
+            ];
+            let case_count = cases.len() as u32;
+            // SAFETY: The resources live until the submission was waited for.
+            let set = unsafe { self.passes.bind(&pass, &resources) }?;
+            self.host().try_submit(|commands| {
+                // SAFETY: `commands` is being recorded, outside a render pass.
+                unsafe { set.record(&pass, commands, &EvalConstants { case_count }, [case_count, 1, 1]) }
+            })?;
+            let answers: Vec<[f32; 4]> = results.download()?;
+            radiance.extend(answers.iter().map(|a| Vec3::new(a[0], a[1], a[2])));
+        }
+        Ok(radiance)
+    }
+}
