@@ -8,7 +8,9 @@ mod fields;
 
 use crate::shading::{RelativeLight, ShownImage};
 use crate::texture::Texture;
-use arealight::{LightTexture, MIN_ALPHA, PolygonLight, Surface, TextureError, TextureMap};
+use arealight::{
+    LightTexture, MIN_ALPHA, PolygonLight, Shape, ShapeLight, Surface, TextureError, TextureMap, TubeEnds,
+};
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
@@ -134,6 +136,18 @@ pub enum CaseShape {
     },
 }
 
+impl CaseShape {
+    /// Its `type` in the file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Polygon { .. } => "polygon",
+            Self::Disk { .. } => "disk",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+        }
+    }
+}
+
 /// The texture of a polygon light.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CaseTexture {
@@ -143,7 +157,7 @@ pub struct CaseTexture {
     pub uv: Vec<DVec2>,
 }
 
-/// A case that can be answered: the inputs of [`crate::shading`] and of the GPU's eval kernel.
+/// A case of a polygon light that can be answered: the inputs of [`crate::shading`] and of the GPU's eval kernel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupportedCase {
     /// The case's name.
@@ -158,6 +172,21 @@ pub struct SupportedCase {
     pub light: RelativeLight,
     /// Where that image is from, and its coordinates.
     pub texture: Option<CaseTexture>,
+}
+
+/// As [`SupportedCase`], with a light that is no polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeCase {
+    /// The case's name.
+    pub name: String,
+    /// The two lobes.
+    pub surface: Surface,
+    /// Surface normal, not zero, of any length.
+    pub normal: DVec3,
+    /// Direction to the viewer, not zero, of any length.
+    pub view: DVec3,
+    /// The light, relative to the shading point.
+    pub light: ShapeLight,
 }
 
 /// A case is well-formed, but asks for what is not there yet.
@@ -292,8 +321,10 @@ fn vertex_off_plane(vertices: &[DVec3]) -> Option<(usize, f64)> {
     distances.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance > 1e-3 * size)
 }
 
+/// Lights, lobes and fields that can be answered.
 impl Case {
-    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under polygons.
+    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under polygons. See
+    /// [`Case::supported_shape`] for other lights.
     ///
     /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called for every
     /// case that has one, so it should keep what it has loaded.
@@ -305,41 +336,12 @@ impl Case {
         mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<SupportedCase, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
-        if let Some(field) = self.unknown_fields.first() {
-            return unsupported(format!("the field \"{field}\" is not known"));
-        }
-        // The light
+        self.check_fields()?;
         let (vertices, texture) = match &self.light.shape {
             CaseShape::Polygon { vertices, texture } => (vertices, texture),
-            CaseShape::Disk { .. } => return unsupported("light.type \"disk\" is not supported yet".into()),
-            CaseShape::Sphere { .. } => {
-                return unsupported("light.type \"sphere\" is not supported yet".into());
-            }
-            CaseShape::Cylinder { .. } => {
-                return unsupported("light.type \"cylinder\" is not supported yet".into());
-            }
+            shape => return unsupported(format!("light.type \"{}\" is no polygon", shape.name())),
         };
-        // The surface
-        let surface = match &self.material {
-            CaseMaterial::Diffuse { albedo } => {
-                Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 }
-            }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
-                return unsupported("anisotropic GGX is not supported yet".into());
-            }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
-                return unsupported(format!(
-                    "alpha {} is below {MIN_ALPHA}, the smallest that is shaded",
-                    alpha.x
-                ));
-            }
-            CaseMaterial::Ggx { alpha, f0, albedo } => Surface {
-                diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
-                f0: f0.unwrap_or(DVec3::ONE),
-                f90: 1.0,
-                alpha: alpha.x,
-            },
-        };
+        let surface = self.surface()?;
         let mut light = RelativeLight {
             vertices: vertices.iter().map(|v| *v - self.position).collect(),
             radiance: self.light.radiance,
@@ -364,6 +366,84 @@ impl Case {
             light,
             texture: texture.clone(),
         })
+    }
+
+    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder.
+    ///
+    /// # Errors
+    /// [`Unsupported`] with the reason, in words.
+    pub fn supported_shape(&self) -> Result<ShapeCase, Unsupported> {
+        self.check_fields()?;
+        let shape = match self.light.shape {
+            CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
+            CaseShape::Disk { center, axis_u, axis_v } => {
+                Shape::Ellipse { center: center - self.position, axis_u, axis_v }
+            }
+            CaseShape::Sphere { center, radius } => Shape::Sphere { center: center - self.position, radius },
+            CaseShape::Cylinder { p0, p1, radius, caps } => {
+                let (p0, p1) = (p0 - self.position, p1 - self.position);
+                Shape::Tube { p0, p1, radius, ends: self.tube_ends(p0, p1, radius, caps)? }
+            }
+        };
+        let light = ShapeLight {
+            name: self.name.clone(),
+            radiance: self.light.radiance.as_vec3(),
+            two_sided: self.light.two_sided,
+            shape,
+        };
+        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
+        Ok(ShapeCase {
+            name: self.name.clone(),
+            surface: self.surface()?,
+            normal: self.normal,
+            view: self.view,
+            light,
+        })
+    }
+
+    /// What is seen at the ends of a cylinder, which is relative to the shading point.
+    fn tube_ends(&self, p0: DVec3, p1: DVec3, radius: f64, caps: bool) -> Result<TubeEnds, Unsupported> {
+        let axis = (p1 - p0).normalize_or_zero();
+        let (first, last) = (p0.dot(axis), p1.dot(axis));
+        let inside = first <= 0.0 && last >= 0.0 && (p0 - axis * first).length() <= radius;
+        if self.light.two_sided && inside {
+            let reason = "a point inside a two-sided cylinder is not supported yet";
+            return Err(Unsupported { reason: reason.into() });
+        }
+        // From outside, whoever looks into an open end of a two-sided cylinder sees it shine
+        Ok(if caps || self.light.two_sided { TubeEnds::Flat } else { TubeEnds::Open })
+    }
+
+    fn check_fields(&self) -> Result<(), Unsupported> {
+        match self.unknown_fields.first() {
+            Some(field) => Err(Unsupported { reason: format!("the field \"{field}\" is not known") }),
+            None => Ok(()),
+        }
+    }
+
+    /// The two lobes.
+    fn surface(&self) -> Result<Surface, Unsupported> {
+        let unsupported = |reason: String| Err(Unsupported { reason });
+        match &self.material {
+            CaseMaterial::Diffuse { albedo } => {
+                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 })
+            }
+            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
+                return unsupported("anisotropic GGX is not supported yet".into());
+            }
+            CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
+                return unsupported(format!(
+                    "alpha {} is below {MIN_ALPHA}, the smallest that is shaded",
+                    alpha.x
+                ));
+            }
+            CaseMaterial::Ggx { alpha, f0, albedo } => Ok(Surface {
+                diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
+                f0: f0.unwrap_or(DVec3::ONE),
+                f90: 1.0,
+                alpha: alpha.x,
+            }),
+        }
     }
 }
 

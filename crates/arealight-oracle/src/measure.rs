@@ -19,12 +19,8 @@ pub struct Family {
 impl Family {
     /// The family of a case.
     pub fn of(case: &Case) -> Self {
-        let (shape, textured) = match &case.light.shape {
-            CaseShape::Polygon { texture, .. } => ("polygon", texture.is_some()),
-            CaseShape::Disk { .. } => ("disk", false),
-            CaseShape::Sphere { .. } => ("sphere", false),
-            CaseShape::Cylinder { .. } => ("cylinder", false),
-        };
+        let shape = case.light.shape.name();
+        let textured = matches!(&case.light.shape, CaseShape::Polygon { texture: Some(_), .. });
         let material = match &case.material {
             CaseMaterial::Diffuse { .. } => "diffuse",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {

@@ -3,9 +3,11 @@
 
 pub mod footprint;
 pub mod poses;
+mod shapes;
 mod shown;
 mod textured;
 
+pub use shapes::shape_ltc_on;
 pub use shown::ShownImage;
 pub use textured::transformed_image_integral;
 
@@ -221,11 +223,6 @@ pub fn ltc_on(
 ) -> DVec3 {
     let frame = SurfaceFrame::new(normal, view);
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
-    let roughness = surface.alpha.sqrt();
-    let sample = match quality.lobes {
-        Lobes::Table => table.lookup(roughness, frame.cos_view()),
-        Lobes::Formula => ggx_formula(roughness, frame.cos_view()),
-    };
     // Integrate the transformed cosine
     let both_horizons = quality.horizon == Horizon::Both;
     let visible = if both_horizons { above_horizon(&vertices) } else { vertices.clone() };
@@ -244,19 +241,7 @@ pub fn ltc_on(
             }
         }
     };
-    let f0_part = surface.f0 * sample.albedo;
-    let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
-    let glossy = match quality.fresnel {
-        _ if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 => DVec3::ZERO,
-        Fresnel::Split => {
-            let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
-            parts.max(DVec3::ZERO)
-        }
-        Fresnel::ByF0 => {
-            let mean = surface.f0.element_sum() / 3.0;
-            (f0_part + schlick_part) * lobe(&sample.inverse_by_f0(mean, surface.f90))
-        }
-    };
+    let glossy = glossy_part(quality, table, surface, &frame, lobe);
     // Integrate the cosine
     let shown = match &image {
         _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
@@ -268,4 +253,32 @@ pub fn ltc_on(
     };
     let diffuse = surface.diffuse_albedo * shown;
     light.radiance * (diffuse + glossy)
+}
+
+/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel.
+fn glossy_part(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+    lobe: impl Fn(&DMat3) -> DVec3,
+) -> DVec3 {
+    let roughness = surface.alpha.sqrt();
+    let sample = match quality.lobes {
+        Lobes::Table => table.lookup(roughness, frame.cos_view()),
+        Lobes::Formula => ggx_formula(roughness, frame.cos_view()),
+    };
+    let f0_part = surface.f0 * sample.albedo;
+    let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
+    match quality.fresnel {
+        _ if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 => DVec3::ZERO,
+        Fresnel::Split => {
+            let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
+            parts.max(DVec3::ZERO)
+        }
+        Fresnel::ByF0 => {
+            let mean = surface.f0.element_sum() / 3.0;
+            (f0_part + schlick_part) * lobe(&sample.inverse_by_f0(mean, surface.f90))
+        }
+    }
 }

@@ -67,11 +67,11 @@ fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
         panic!("a two-sided disk")
     };
     assert_eq!(axis_v, DVec3::new(0.0, 2.0, 0.0));
-    assert_eq!(reason(GGX, disk), "light.type \"disk\" is not supported yet");
+    assert_eq!(reason(GGX, disk), "light.type \"disk\" is no polygon");
     let sphere = r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#;
-    assert_eq!(reason(GGX, sphere), "light.type \"sphere\" is not supported yet");
+    assert_eq!(reason(GGX, sphere), "light.type \"sphere\" is no polygon");
     let cylinder = r#""type": "cylinder", "p0": [0, 0, 5], "p1": [1, 0, 5], "radius": 0.5, "caps": true"#;
-    assert_eq!(reason(GGX, cylinder), "light.type \"cylinder\" is not supported yet");
+    assert_eq!(reason(GGX, cylinder), "light.type \"cylinder\" is no polygon");
     let textured = format!(r#"{QUAD}, "texture": "light.exr", "uv": [[0, 0], [1, 0], [1, 1], [0, 1]]"#);
     assert_eq!(reason(GGX, &textured), "light.texture: light.exr: asked for light.exr");
     assert_eq!(reason(r#""alpha_x": 0.5, "alpha_y": 0.1"#, QUAD), "anisotropic GGX is not supported yet");
@@ -80,6 +80,38 @@ fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
         reason(r#""alpha": 1e-9"#, QUAD),
         "alpha 0.000000001 is below 0.0001, the smallest that is shaded"
     );
+}
+
+#[test]
+fn other_lights_become_shapes_relative_to_the_point() {
+    let shape = |light: &str| read_one(&case(GGX, light)).unwrap().supported_shape();
+    let shape_reason = |light: &str| shape(light).unwrap_err().to_string();
+    let disk =
+        shape(r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#).unwrap();
+    let (center, axis_u, axis_v) = (DVec3::new(-1.0, -2.0, 2.0), DVec3::X, DVec3::Y * 2.0);
+    assert_eq!(disk.light.shape, Shape::Ellipse { center, axis_u, axis_v });
+    assert_eq!((disk.surface.alpha, disk.light.two_sided), (0.25, false));
+    let sphere = shape(r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#).unwrap();
+    assert_eq!(sphere.light.shape, Shape::Sphere { center, radius: 0.5 });
+    // Around the point, beside it, and what its ends are
+    let cylinder = |more: &str, radius: f64| {
+        format!(r#""type": "cylinder", "p0": [1, 2, 2], "p1": [1, 2, 5], "radius": {radius} {more}"#)
+    };
+    let ends = |more: &str| match shape(&cylinder(more, 0.5)).map(|case| case.light.shape) {
+        Ok(Shape::Tube { ends, .. }) => ends,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((ends(""), ends(r#", "caps": true"#)), (TubeEnds::Open, TubeEnds::Flat));
+    assert_eq!(
+        shape_reason(&cylinder(r#", "two_sided": true"#, 0.5)),
+        "a point inside a two-sided cylinder is not supported yet"
+    );
+    let beside = cylinder(r#", "two_sided": true"#, 0.5).replace("1, 2, ", "3, 2, ");
+    assert!(matches!(shape(&beside).unwrap().light.shape, Shape::Tube { ends: TubeEnds::Flat, .. }));
+    // What is wrong
+    assert_eq!(shape_reason(QUAD), "the light is a polygon");
+    let flat = r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [2, 0, 0]"#;
+    assert!(shape_reason(flat).starts_with("light 'a case': axis_u and axis_v: "));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The commands' way to a device.
 
 pub mod eval;
+pub mod eval_shapes;
 
 use crate::failure::Failure;
 use arealight::LightTable;
@@ -20,6 +21,7 @@ pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failur
 pub fn failure(error: EngineError, input: &Path) -> Failure {
     match error {
         EngineError::Recorder(arealight_vk::Error::Light(error)) => Failure::input(input, error),
+        EngineError::Shape(error) => Failure::input(input, error),
         error @ (EngineError::BufferTooLarge { .. } | EngineError::Scene(_)) => Failure::input(input, error),
         error => Failure::Device(error.to_string()),
     }

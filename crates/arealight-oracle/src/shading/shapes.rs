@@ -1,0 +1,125 @@
+//! Disks, spheres and tubes on a surface, by the fitted table in float64.
+
+use super::glossy_part;
+use crate::ellipse::{self, Ellipse};
+use crate::frame::SurfaceFrame;
+use crate::polygon;
+use crate::polygon::{above_horizon, emitted};
+use crate::sphere::{self, Sphere};
+use crate::tube::{self, Ends, Tube};
+use arealight::table::share_above_surface;
+use arealight::{Horizon, LightTable, Quality, Shape, ShapeLight, Surface, TubeEnds};
+use glam::{DMat3, DVec3};
+use std::f64::consts::TAU;
+
+/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_shape_radiance`, as
+/// [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With [`Horizon::Both`] outlines are polygons of
+/// many sides, which are off by 1e-6.
+///
+/// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
+pub fn shape_ltc_on(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    normal: DVec3,
+    view: DVec3,
+    light: &ShapeLight,
+) -> DVec3 {
+    let frame = SurfaceFrame::new(normal, view);
+    let seen = SeenShape::new(light, &frame);
+    let both_horizons = quality.horizon == Horizon::Both;
+    // Integrate the transformed cosine
+    let lobe = |inverse: &DMat3| {
+        let form_factor = if both_horizons {
+            // What is clipped at the surface's horizon is made up for, so that the albedo stays
+            seen.cut_form_factor(inverse) / share_above_surface(inverse)
+        } else {
+            seen.form_factor(inverse)
+        };
+        DVec3::splat(form_factor.min(1.0))
+    };
+    let glossy = glossy_part(quality, table, surface, &frame, lobe);
+    light.radiance.as_dvec3() * (surface.diffuse_albedo * seen.lambert_form_factor() + glossy)
+}
+
+/// A shape in the surface's frame.
+enum SeenShape {
+    Ellipse { ellipse: Ellipse, two_sided: bool },
+    Sphere { sphere: Sphere, two_sided: bool },
+    Tube(Tube),
+}
+
+impl SeenShape {
+    fn new(light: &ShapeLight, frame: &SurfaceFrame) -> Self {
+        let two_sided = light.two_sided;
+        match light.shape {
+            Shape::Ellipse { center, axis_u, axis_v } => {
+                let [center, axis_u, axis_v] = [center, axis_u, axis_v].map(|v| frame.to_surface(v));
+                Self::Ellipse { ellipse: Ellipse { center, axis_u, axis_v }, two_sided }
+            }
+            Shape::Sphere { center, radius } => {
+                Self::Sphere { sphere: Sphere { center: frame.to_surface(center), radius }, two_sided }
+            }
+            Shape::Tube { p0, p1, radius, ends } => {
+                let ends = match ends {
+                    TubeEnds::Open => Ends::Open,
+                    TubeEnds::Flat => Ends::Flat,
+                    TubeEnds::Round => Ends::Round,
+                };
+                let [start, end] = [p0, p1].map(|v| frame.to_surface(v));
+                Self::Tube(Tube { start, end, radius, ends })
+            }
+        }
+    }
+
+    /// The form factor in the Lambert lobe's space.
+    fn lambert_form_factor(&self) -> f64 {
+        match self {
+            Self::Sphere { sphere, .. } if !sphere.is_inside() => sphere::form_factor(sphere),
+            _ => self.form_factor(&DMat3::IDENTITY),
+        }
+    }
+
+    /// The form factor in a lobe's cosine space, whose horizon alone clips.
+    fn form_factor(&self, inverse: &DMat3) -> f64 {
+        match self {
+            Self::Ellipse { ellipse, two_sided } => {
+                // A transform that mirrors turns front to back
+                let signed = ellipse::form_factor(&ellipse.transformed(inverse));
+                emitted(signed * inverse.determinant().signum(), *two_sided)
+            }
+            Self::Sphere { sphere, two_sided } if sphere.is_inside() => f64::from(u8::from(*two_sided)),
+            Self::Sphere { sphere, .. } => sphere::transformed_form_factor(inverse, sphere),
+            Self::Tube(tube) => tube::transformed_form_factor(inverse, tube),
+        }
+    }
+
+    /// The form factor of what is above the surface, in a lobe's cosine space.
+    fn cut_form_factor(&self, inverse: &DMat3) -> f64 {
+        let cut =
+            |outline: &[DVec3]| polygon::transformed_form_factor(inverse, &above_horizon(outline)).abs();
+        match self {
+            Self::Ellipse { ellipse, two_sided } if *two_sided || ellipse.shows_front() => {
+                cut(&outline_of_its_area(ellipse))
+            }
+            Self::Ellipse { .. } => 0.0,
+            Self::Sphere { sphere, .. } => match sphere.silhouette() {
+                Some(disk) => cut(&outline_of_its_area(&disk)),
+                None => self.form_factor(inverse),
+            },
+            Self::Tube(tube) => {
+                let (coarse, fine) = (cut(&tube.outline(250)), cut(&tube.outline(500)));
+                fine + (fine - coarse) / 3.0
+            }
+        }
+    }
+}
+
+/// A polygon of many sides that has the area of an ellipse.
+fn outline_of_its_area(ellipse: &Ellipse) -> Vec<DVec3> {
+    const COUNT: usize = 1024;
+    let angle = TAU / COUNT as f64;
+    let growth = (angle / angle.sin()).sqrt();
+    let grown = Ellipse { axis_u: ellipse.axis_u * growth, axis_v: ellipse.axis_v * growth, ..*ellipse };
+    grown.polygon(COUNT)
+}
