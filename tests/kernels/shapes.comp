@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int RUNG = 0;
-// How tubes end, and with 4 more that they are cut by the surface whose normal is z too; or a lobe's horizon
+// 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
 
 const int FUNCTION_ELLIPSE = 0;
@@ -34,7 +34,11 @@ struct ShapeArguments {
 layout(set = 0, binding = 0, std430) readonly buffer Arguments {
     ShapeArguments arguments[];
 };
-layout(set = 0, binding = 1, std430) writeonly buffer Results {
+// How tubes end
+layout(set = 0, binding = 1, std430) readonly buffer Ends {
+    int ends[];
+};
+layout(set = 0, binding = 2, std430) writeonly buffer Results {
     vec4 results[];
 };
 
@@ -87,11 +91,11 @@ void main() {
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
         result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
     } else if (FUNCTION == FUNCTION_TUBE) {
-        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, CHOICE & 3);
+        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, ends[index]);
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
-        result.x = CHOICE < 4
+        result.x = CHOICE == 0
                  ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG)
                  : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH, RUNG);
     } else if (FUNCTION == FUNCTION_LOBE) {

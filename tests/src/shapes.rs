@@ -19,6 +19,7 @@ pub static SHAPES: Kernel = Kernel {
     push_constant_size: 4,
     bindings: &[
         storage("arguments", Access::Read, "vec4[4] a call"),
+        storage("ends", Access::Read, "int a call: arealight::TubeEnds"),
         storage("results", Access::Write, "vec4 a call"),
     ],
     constants: &[0, 1, 2],
@@ -105,34 +106,26 @@ impl TestEngine {
     /// # Panics
     /// Where the device fails.
     pub fn lobes(&self, horizon: u32, rung: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 2]> {
-        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
-        let inputs = [Resource::buffer(given.handle())];
         let constants = [(0, ShapeFunction::Lobe as u32), (1, rung), (2, horizon)];
-        let found = self.dispatch::<[f32; 4]>(&SHAPES, &constants, &inputs, arguments.len());
+        let found = self.call(&constants, arguments, &vec![0; arguments.len()]);
         found.iter().map(|r| [r[0], r[1]]).collect()
     }
 
-    /// Form factors of tubes, as bits; all of the same ends.
+    /// Form factors of tubes with their ends; cut by a surface whose normal is z where asked for.
     ///
     /// # Panics
     /// Where the device fails.
-    pub fn tubes(&self, ends: Ends, rung: u32, arguments: &[ShapeArguments]) -> Vec<f32> {
-        self.tubes_above(ends, false, rung, arguments)
+    pub fn tubes(&self, cut: bool, rung: u32, arguments: &[ShapeArguments], ends: &[Ends]) -> Vec<f32> {
+        let constants = [(0, ShapeFunction::Tube as u32), (1, rung), (2, u32::from(cut))];
+        let ends: Vec<u32> = ends.iter().map(|ends| *ends as u32).collect();
+        self.call(&constants, arguments, &ends).iter().map(|r| r[0]).collect()
     }
 
-    /// As [`TestEngine::tubes`], cut by a surface whose normal is z where asked for.
-    ///
-    /// # Panics
-    /// Where the device fails.
-    pub fn tubes_above(&self, ends: Ends, cut: bool, rung: u32, arguments: &[ShapeArguments]) -> Vec<f32> {
+    fn call(&self, constants: &[(u32, u32)], arguments: &[ShapeArguments], ends: &[u32]) -> Vec<[f32; 4]> {
         let given = self.host().storage_buffer("arguments", arguments).expect("memory");
-        let inputs = [Resource::buffer(given.handle())];
-        let constants =
-            [(0, ShapeFunction::Tube as u32), (1, rung), (2, ends as u32 + if cut { 4 } else { 0 })];
-        self.dispatch::<[f32; 4]>(&SHAPES, &constants, &inputs, arguments.len())
-            .iter()
-            .map(|r| r[0])
-            .collect()
+        let ends = self.host().storage_buffer("ends", ends).expect("memory");
+        let inputs = [Resource::buffer(given.handle()), Resource::buffer(ends.handle())];
+        self.dispatch(&SHAPES, constants, &inputs, arguments.len())
     }
 
     /// Calls a function on shapes, by form factor bits.
@@ -140,9 +133,7 @@ impl TestEngine {
     /// # Panics
     /// Where the device fails.
     pub fn shapes(&self, function: ShapeFunction, rung: u32, arguments: &[ShapeArguments]) -> Vec<[f32; 4]> {
-        let given = self.host().storage_buffer("arguments", arguments).expect("memory");
-        let inputs = [Resource::buffer(given.handle())];
-        self.dispatch(&SHAPES, &[(0, function as u32), (1, rung), (2, 0)], &inputs, arguments.len())
+        self.call(&[(0, function as u32), (1, rung), (2, 0)], arguments, &vec![0; arguments.len()])
     }
 
     /// Form factors of ellipses, of both sides.

@@ -12,6 +12,9 @@ const COSINE: u32 = 0;
 const BOTH: u32 = 1;
 const BARE: u32 = 2;
 const ONE_POINT: u32 = 4;
+/// Rungs that wild bits go through. A software driver takes seconds to compile each, so debug builds have some in which each
+/// bit is set and not set; release builds have all.
+const RUNGS: &[u32] = if cfg!(debug_assertions) { &[0, 3, 6] } else { &[0, 1, 2, 3, 4, 5, 6, 7] };
 
 /// A disk, with two rows of a lobe's matrix and the length of the third.
 struct Case {
@@ -167,7 +170,7 @@ fn any_bits_give_a_form_factor() {
         arguments.push(given);
     }
     for horizon in [COSINE, BOTH, BARE] {
-        for rung in 0..8 {
+        for &rung in RUNGS {
             let found = engine.lobes(horizon, rung, &arguments);
             let wrong: Vec<_> = found
                 .iter()

@@ -9,7 +9,8 @@ use glam::{DMat3, DVec3};
 
 const EXACT: u32 = 0;
 const DIFFERENCE: u32 = 2;
-const RUNGS: [u32; 4] = [0, 1, 2, 3];
+/// A software driver takes a second to compile each: debug builds have some in which each bit is set and not set.
+const RUNGS: &[u32] = if cfg!(debug_assertions) { &[0, 3] } else { &[0, 1, 2, 3] };
 
 fn generic(count: u64) -> Vec<Ellipse> {
     let families = ["generic", "crossing"].map(|name| Family::find(name).unwrap());
@@ -277,7 +278,7 @@ fn any_bits_give_a_form_factor() {
     }
     let bad_input = |given: &ShapeArguments| given[..3].iter().any(|v| v[..3].iter().any(|c| !c.is_finite()));
     for function in [Ellipse, EllipseBare, Sphere, Silhouette] {
-        for rung in RUNGS {
+        for &rung in RUNGS {
             let found = engine.shapes(function, rung, &arguments);
             let (mut wrong, mut partial) = (Vec::new(), 0);
             for (given, found) in arguments.iter().zip(&found) {

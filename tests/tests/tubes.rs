@@ -78,9 +78,13 @@ fn lobe(random: &mut Random) -> DMat3 {
     (DMat3::from_diagonal(DVec3::new(1.0, 0.8, alpha)) * rotation).as_mat3().as_dmat3()
 }
 
+fn ends_of(tubes: &[Tube]) -> Vec<Ends> {
+    tubes.iter().map(|tube| tube.ends).collect()
+}
+
 fn found(engine: &TestEngine, rung: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
     let arguments: Vec<_> = tubes.iter().zip(matrices).map(|(t, m)| tube_arguments(t, m)).collect();
-    let found = engine.tubes(tubes[0].ends, rung, &arguments);
+    let found = engine.tubes(false, rung, &arguments, &ends_of(tubes));
     let bits = found.iter().all(|factor| factor.to_bits() <= 1.0_f32.to_bits());
     assert!(bits, "{found:?}");
     found.into_iter().map(f64::from).collect()
@@ -260,7 +264,7 @@ fn tubes_are_cut_by_the_surface_too() {
             let lobes: Vec<_> = (0..COUNT).map(|_| lobe(&mut random)).collect();
             let arguments: Vec<_> = tubes.iter().zip(&lobes).map(|(t, m)| tube_arguments(t, m)).collect();
             let one = found(&engine, EXACT, &tubes, &lobes);
-            let both = engine.tubes_above(ends, true, EXACT, &arguments);
+            let both = engine.tubes(true, EXACT, &arguments, &ends_of(&tubes));
             let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, both horizons"));
             for (i, (tube, lobe)) in tubes.iter().zip(&lobes).enumerate() {
                 let at = |count| {
@@ -302,9 +306,12 @@ fn any_bits_give_a_form_factor() {
         }
         arguments.push(given);
     }
-    for ends in ENDS {
-        for (cut, rung) in [(false, 0), (false, 1), (false, 2), (false, 3), (true, 0), (true, 1)] {
-            let found = engine.tubes_above(ends, cut, rung, &arguments);
+    // Each with every kind of end
+    let ends = [0, 1, 2].map(|kind| vec![ENDS[kind]; arguments.len()]).concat();
+    let thrice = arguments.repeat(3);
+    for (cut, rung) in [(false, 0), (false, 1), (false, 2), (false, 3), (true, 0), (true, 1)] {
+        let found = engine.tubes(cut, rung, &thrice, &ends);
+        for (ends, found) in ENDS.iter().zip(found.chunks_exact(arguments.len())) {
             let wrong = found.iter().filter(|factor| factor.to_bits() > 1.0_f32.to_bits()).count();
             let partial = found.iter().filter(|factor| **factor > 0.0 && **factor < 1.0).count();
             println!("{ends:?}, rung {rung}: {partial} between 0 and 1");
