@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 const CASES: &str = include_str!("../data/reference/cases.json");
-/// What tube.glsl and tube_horizons.glsl allow, which is more than the others do.
+/// What `tube.glsl` and `tube_horizons.glsl` allow, which is more than the others do.
 const ROUNDING: f64 = 3e-6;
 
 const TRUTH: &str = include_str!("../data/reference/truth.json");

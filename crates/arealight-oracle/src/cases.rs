@@ -429,13 +429,10 @@ impl Case {
                 Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 })
             }
             CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
-                return unsupported("anisotropic GGX is not supported yet".into());
+                unsupported("anisotropic GGX is not supported yet".into())
             }
             CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
-                return unsupported(format!(
-                    "alpha {} is below {MIN_ALPHA}, the smallest that is shaded",
-                    alpha.x
-                ));
+                unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
             }
             CaseMaterial::Ggx { alpha, f0, albedo } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),

