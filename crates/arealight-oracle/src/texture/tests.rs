@@ -75,7 +75,8 @@ fn a_blur_is_the_integral_of_the_gaussian() {
             for j in 0..steps {
                 let (x, y) = (place(i), place(j));
                 let gaussian = (-0.5 * (x * x + y * y)).exp();
-                sum += texture.sample(DVec2::new(u + sigma * x, v + sigma * y)) * gaussian;
+                let place = DVec2::new(u + sigma * x, v + sigma * y);
+                sum += texture.sample(place.map(mirrored_at_the_edges)) * gaussian;
                 weight += gaussian;
             }
         }
@@ -88,6 +89,12 @@ fn a_blur_is_the_integral_of_the_gaussian() {
     }
     let sharp = texture.blurred(DVec2::new(0.3, 0.6), DVec2::ZERO);
     assert!((sharp - texture.sample(DVec2::new(0.3, 0.6))).abs().max_element() < 1e-14);
+}
+
+/// A coordinate where those beyond 0 to 1 are mirrored, without end.
+fn mirrored_at_the_edges(coordinate: f64) -> f64 {
+    let within = coordinate.rem_euclid(2.0);
+    within.min(2.0 - within)
 }
 
 #[test]
