@@ -190,7 +190,11 @@ vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
 vec3 arealight_footprint_of_part(ArealightSeenImage image, vec3 sum, vec2 low, vec2 high, float parts) {
     ArealightSeenPoint point = arealight_seen_point(image, sum);
     vec2 box = arealight_clamp_coordinate(point.box, low, high);
-    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 2.0, 10.0 * parts * parts);
+    // Near to the light a part sees no more than itself. From afar all see all of it, and their blurs must add up to an even
+    // one: those of half a part's width do
+    float distance = point.square / (sqrt(dot(image.normal, image.normal)) + AREALIGHT_TINY);
+    float end = 4.0 + 6.0 / (1.0 + 0.0625 * distance * distance);
+    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 2.0, end * parts * parts);
     float variance = min(ellipse.major, max(ellipse.minor, 0.5625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = arealight_image_blurred(image, arealight_mirror_coordinate(box + step, low, high), variance)

@@ -79,6 +79,9 @@ const WHOLE: Shape = Shape { bump: 1.5, end: 6.0, overlap: 1.15 };
 /// Of one of the parts, which mostly see a slope of the bump.
 const SPLIT: Shape = Shape { bump: 2.0, end: 10.0, overlap: 1.5 };
 
+/// The end of parts far away: Gaussians of half their distance add up to an even blur to a hundredth.
+const SPLIT_AFAR: f64 = 4.0;
+
 /// A part of a light in box coordinates, one of `parts` a side.
 struct Part {
     low: DVec2,
@@ -135,7 +138,10 @@ impl SeenLight {
         let stretch = (self.texels.x / self.texels.y).sqrt();
         let (u, v) = (self.map.axis_u / stretch, self.map.axis_v * stretch);
         let bump = shape.bump / hit.length_squared().max(f64::MIN_POSITIVE);
-        let end = shape.end * part.parts * part.parts;
+        // Parts that are seen from afar must add up to an even blur
+        let distance = hit.length_squared() / self.normal().length();
+        let far = if part.parts > 1.0 { 1.0 - 1.0 / (1.0 + distance * distance / 16.0) } else { 0.0 };
+        let end = (shape.end + far * (SPLIT_AFAR - shape.end)) * part.parts * part.parts;
         let (xx, yy) =
             (bump * u.dot(u) + end / (stretch * stretch), bump * v.dot(v) + end * stretch * stretch);
         let xy = bump * u.dot(v);
