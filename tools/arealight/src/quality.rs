@@ -22,9 +22,9 @@ pub struct QualityArguments {
     /// Take far lights from their centre alone where that is within 1e-4, relative
     #[arg(long)]
     one_point: bool,
-    /// How light textures are looked up
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Lookup::Round)]
-    footprint: Lookup,
+    /// How light textures are looked up [default: round for render, split-four for eval]
+    #[arg(long, value_enum, value_name = "HOW")]
+    footprint: Option<Lookup>,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
@@ -91,7 +91,7 @@ impl Default for QualityArguments {
             fresnel: None,
             lobes: Source::Table,
             one_point: false,
-            footprint: Lookup::Round,
+            footprint: None,
             table: None,
         }
     }
@@ -121,10 +121,11 @@ impl QualityArguments {
             Source::Formula => Lobes::Formula,
         };
         let footprint = match self.footprint {
-            Lookup::Round => Footprint::Round,
-            Lookup::Ellipse => Footprint::Ellipse,
-            Lookup::SplitTwo => Footprint::SplitTwo,
-            Lookup::SplitFour => Footprint::SplitFour,
+            None => default.footprint,
+            Some(Lookup::Round) => Footprint::Round,
+            Some(Lookup::Ellipse) => Footprint::Ellipse,
+            Some(Lookup::SplitTwo) => Footprint::SplitTwo,
+            Some(Lookup::SplitFour) => Footprint::SplitFour,
         };
         Quality { form_factor, horizon, fresnel, lobes, one_point: self.one_point, footprint }
     }

@@ -7,7 +7,7 @@ use crate::images::Images;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
-use arealight::{FormFactor, Fresnel, LightTable, Quality};
+use arealight::{Footprint, FormFactor, Fresnel, LightTable, Quality};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
@@ -161,8 +161,12 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let supported: Vec<_> = cases.iter().map(|case| case.supported(|path| images.load(path))).collect();
     let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
     // The most precise rungs, unless others are to be seen
-    let precise =
-        Quality { form_factor: FormFactor::ExactDifference, fresnel: Fresnel::Split, ..Quality::default() };
+    let precise = Quality {
+        form_factor: FormFactor::ExactDifference,
+        fresnel: Fresnel::Split,
+        footprint: Footprint::SplitFour,
+        ..Quality::default()
+    };
     let quality = arguments.quality.quality_or(precise);
     let answered = match arguments.on {
         Method::Gpu => {
