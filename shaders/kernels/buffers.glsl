@@ -25,6 +25,5 @@ struct ArealightGpuLight {
 };
 
 const uint LIGHT_TWO_SIDED = 1u;
-const uint LIGHT_NO_TEXTURE = 0xffffffffu;
 
 #endif

@@ -432,6 +432,7 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
 
 const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
+const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/footprint.glsl");
 const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
 const SHAPES_GLSL: &str = include_str!("../../shaders/include/arealight/shapes.glsl");
 const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/tube_outline.glsl");
@@ -452,11 +453,8 @@ fn effects_have_the_same_bits_in_glsl() {
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
     use gpu::{GpuLight, GpuMaterial, GpuTexture};
-    assert_constants(
-        BUFFERS_GLSL,
-        "LIGHT_",
-        &[("TWO_SIDED", GpuLight::TWO_SIDED.into()), ("NO_TEXTURE", GpuLight::NO_TEXTURE.into())],
-    );
+    assert_constants(BUFFERS_GLSL, "LIGHT_", &[("TWO_SIDED", GpuLight::TWO_SIDED.into())]);
+    assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
     assert_constants(SCENE_GLSL, "MATERIAL_", &material);

@@ -10,14 +10,14 @@ use arealight::{PackedLights, PolygonLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
 
-/// The host's resources of one run. Images are read and written by texel, no sampler is needed.
+/// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
     pub table: Resource,
-    /// [`PackedLights::lights`]. With no lights, bind any buffer of 64 bytes or more.
+    /// [`PackedLights::lights`]. With no lights, bind any buffer of 128 bytes or more.
     pub lights: Resource,
     /// [`PackedLights::vertices`].
     pub light_vertices: Resource,
@@ -31,8 +31,8 @@ pub struct ShadeResources {
     pub specular: Resource,
     /// Where radiance goes (rgba32f).
     pub radiance: Resource,
-    /// The lights' textures, read only with [`arealight::Effects::TEXTURED`]: else any 2D array image, the table's for
-    /// instance.
+    /// The lights' textures ([`crate::LightTextures`]); the host sees to it that every light's layer is there. Read only with
+    /// [`arealight::Effects::TEXTURED`]: without it any 2D array image, the table's for instance.
     pub light_textures: Resource,
 }
 
@@ -61,7 +61,7 @@ pub struct ResourceAccess {
     /// What it does there.
     pub access: vk::AccessFlags,
     /// The layout that an image must have; `UNDEFINED` for a buffer, and for a sampled image, whose layout
-    /// the host states in [`Resource::SampledImage`].
+    /// the host states in its [`Resource`].
     pub layout: vk::ImageLayout,
 }
 

@@ -13,15 +13,16 @@
 //!   frame would be a fifth too bright, and a far light must show the image's mean. It also needs no margin, which would
 //!   take half as many texels again.
 //! - The last three levels are 2.29 times apart instead, so that the last, which is four texels a side, has
-//!   [`WIDEST_BLUR`]: no footprint is wider. A level of two texels cannot show a gradient.
+//!   [`WIDEST_BLUR`]: a level of two texels could not show a gradient. Footprints of far lights are a little wider, and are
+//!   given this one.
 //! - Level 0 is sharp: a mirror shows the image, and updating it costs one copy.
 //! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a Gaussian than
 //!   mixing by the logarithm of the blur.
 //!
 //! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/pyramid.rs`).
 
-/// The standard deviation of the last level, in texture coordinates: the blur of a light seen from far away, that of
-/// a cap of all footprints at `sqrt(1/8)`.
+/// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask for more get
+/// this.
 pub const WIDEST_BLUR: f64 = 0.353_553_390_593_273_8;
 
 /// The variance of a level's blur, in squares of its own texels, but for the last three.
@@ -113,7 +114,7 @@ impl PyramidSize {
 
     /// Width and height of a level, in texels.
     pub fn extent(self, level: u32) -> [u32; 2] {
-        [self.width, self.height].map(|side| side >> level)
+        [self.width, self.height].map(|side| (side.checked_shr(level).unwrap_or(0)).max(1))
     }
 
     /// Texels of all levels of a layer: 1.34 times the image's.
@@ -142,7 +143,7 @@ impl PyramidSize {
     /// How `level`, from 1 on, is made from the level before.
     pub fn kernel(self, level: u32) -> LevelKernel {
         // The variance to add, in squares of the finer level's texels
-        let added = 4.0 * self.variance(level) - self.variance(level - 1);
+        let added = 4.0 * self.variance(level) - self.variance(level.saturating_sub(1));
         // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape. Level 1, which adds
         // 2.89, would be all but a box of six: a checker's error there is 3.6 % with six taps, 1.2 % with eight
         let radius = match added {

@@ -134,14 +134,14 @@ ArealightSeenPoint arealight_seen_point(ArealightSeenImage image, vec3 sum) {
 
 // The footprint's ellipse, in units of the box's area: box coordinates that are stretched so that texels are as long in both
 // directions.
-struct ArealightEllipse {
+struct ArealightFootprintEllipse {
     vec2 axis;   // the longer one's direction, in box coordinates
     float major; // variances
     float minor;
 };
 
 // The inverse of the covariance is `bump` over the squared distance, of the lobe, and `end`, in units of the box.
-ArealightEllipse arealight_footprint_ellipse(ArealightSeenImage image, float square, float bump, float end) {
+ArealightFootprintEllipse arealight_footprint_ellipse(ArealightSeenImage image, float square, float bump, float end) {
     float stretch = sqrt(image.texels.x / image.texels.y);
     vec3 u = image.axis_u / stretch;
     vec3 v = image.axis_v * stretch;
@@ -156,7 +156,7 @@ ArealightEllipse arealight_footprint_ellipse(ArealightSeenImage image, float squ
     float largest = mean + spread;
     float smallest = max((xx * yy - xy * xy) / largest, 1e-6 * largest);
     vec2 axis = skew < 0.0 ? vec2(spread - skew, -xy) : vec2(-xy, spread + skew);
-    ArealightEllipse ellipse;
+    ArealightFootprintEllipse ellipse;
     ellipse.axis = axis * inversesqrt(dot(axis, axis) + AREALIGHT_TINY) / vec2(stretch, 1.0 / stretch);
     ellipse.major = 1.0 / smallest;
     ellipse.minor = 1.0 / largest;
@@ -173,7 +173,7 @@ vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
         return arealight_image_blurred(image, box, point.square / (1.5 * area + 6.0 * point.square));
     }
     // Four taps along the longer axis, with the variance that is missing to it between them
-    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.5, 6.0);
+    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.5, 6.0);
     float variance = min(ellipse.major, max(ellipse.minor, 0.08265625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = vec3(0.0);
@@ -194,7 +194,7 @@ vec3 arealight_footprint_of_part(ArealightSeenImage image, vec3 sum, vec2 low, v
     // one: those of half a part's width do
     float distance = point.square / (sqrt(dot(image.normal, image.normal)) + AREALIGHT_TINY);
     float end = 4.0 + 6.0 / (1.0 + 0.0625 * distance * distance);
-    ArealightEllipse ellipse = arealight_footprint_ellipse(image, point.square, 2.0, end * parts * parts);
+    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, point.square, 2.0, end * parts * parts);
     float variance = min(ellipse.major, max(ellipse.minor, 0.5625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = arealight_image_blurred(image, arealight_mirror_coordinate(box + step, low, high), variance)
@@ -204,10 +204,15 @@ vec3 arealight_footprint_of_part(ArealightSeenImage image, vec3 sum, vec2 low, v
 
 // Box coordinates of an offset from the light's center, in its plane.
 vec2 arealight_image_coordinate(ArealightImage image, vec3 offset) {
-    vec3 normal = cross(image.axis_u, image.axis_v);
-    vec3 from_corner = offset - image.corner;
+    // Scaled, so that the fourth power of a length is a number
+    float longest = max(arealight_max_component(image.axis_u), arealight_max_component(image.axis_v));
+    float scale = arealight_power_of_two_scale(longest);
+    vec3 axis_u = image.axis_u * scale;
+    vec3 axis_v = image.axis_v * scale;
+    vec3 from_corner = (offset - image.corner) * scale;
+    vec3 normal = cross(axis_u, axis_v);
     float square = max(dot(normal, normal), 1e-37);
-    return vec2(dot(cross(from_corner, image.axis_v), normal), dot(cross(image.axis_u, from_corner), normal)) / square;
+    return vec2(dot(cross(from_corner, axis_v), normal), dot(cross(axis_u, from_corner), normal)) / square;
 }
 
 // Those of a quad's vertices.

@@ -17,7 +17,7 @@ struct ArealightPolygonLight {
     uint vertex_count; // from 3 on; the outline is flat, convex and has at most 4 without AREALIGHT_EFFECT_POLYGON
     vec3 center;       // of the area, relative to the origin of ArealightSurface.position
     float radius;      // of a sphere about the center that holds every vertex; may be generous
-    vec3 area;         // area times the normal of the front, over radius^2 (one-point form alone)
+    vec3 area;         // area times the normal of the front, over radius^2 (one-point form, and split footprints of any outline)
     bool two_sided;    // the back emits too
     ArealightImage image; // multiplies the radiance (AREALIGHT_EFFECT_TEXTURED alone)
 };
@@ -188,9 +188,9 @@ vec4 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, Area
     return sum;
 }
 
-// What a lobe sees of a light that shows an image, by parts: those of a convex quad, or the triangles about the center of any
-// other outline.
-vec3 arealight_lobe_parts(ArealightLobeView view, ArealightSeenImage image, ArealightPolygonLight light,
+// What a lobe of the gain `gain` sees of a light that shows an image, by parts: those of a convex quad, or the triangles about
+// the center of any other outline. No more than the image, as the parts of a flat outline make up no more than all there is.
+vec3 arealight_lobe_parts(ArealightLobeView view, float gain, ArealightSeenImage image, ArealightPolygonLight light,
                           ArealightSeenLight seen, ArealightQuad quad, uint effects, ArealightQuality quality) {
     float parts = quality.footprint == AREALIGHT_FOOTPRINT_SPLIT_FOUR ? 4.0 : 2.0;
     ArealightPart part;
@@ -198,7 +198,7 @@ vec3 arealight_lobe_parts(ArealightLobeView view, ArealightSeenImage image, Area
         part.quad = quad;
         arealight_image_coordinates(light.image, quad, part.u, part.v);
         vec4 sum = arealight_part_color(view, image, part, parts, parts, light.two_sided, quality);
-        return sum.rgb / max(sum.a, 1.0);
+        return sum.rgb * gain / max(sum.a * gain, 1.0);
     }
     if (seen.facing <= 0.0 && !light.two_sided) {
         return vec3(0.0);
@@ -215,8 +215,7 @@ vec3 arealight_lobe_parts(ArealightLobeView view, ArealightSeenImage image, Area
         sum += dot(cross(last, next), light.area) < 0.0 ? -color : color;
         last = next;
     }
-    // The outline of a light is flat, and its parts make up no more than all there is; other bits may
-    return max(sum.rgb, vec3(0.0)) / max(sum.a, 1.0);
+    return max(sum.rgb, vec3(0.0)) * gain / max(sum.a * gain, 1.0);
 }
 
 #endif
@@ -230,8 +229,7 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight 
     bool textured = (effects & AREALIGHT_EFFECT_TEXTURED) != 0u && light.image.layer != AREALIGHT_NO_IMAGE;
     ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
     if (textured && quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO) {
-        vec3 color = arealight_lobe_parts(view, image, light, seen, quad, effects, quality);
-        return lobe.albedo * color * lobe.gain;
+        return lobe.albedo * arealight_lobe_parts(view, lobe.gain, image, light, seen, quad, effects, quality);
     }
 #endif
     ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, quad, effects, quality);
