@@ -14,7 +14,7 @@ use serde::Serialize;
 /// A method's cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cost {
-    /// The method's name, or [`UNTEXTURED`].
+    /// The method's name, or `no texture`.
     pub method: &'static str,
     /// Nanoseconds a point: the least over the rounds. Only ratios mean something on a shared machine.
     pub nanoseconds: f64,
