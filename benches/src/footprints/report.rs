@@ -7,8 +7,8 @@ use arealight_oracle::shading::poses::Family;
 use std::fmt::Write as _;
 
 /// The document before and after what is measured.
-const HEAD: &str = include_str!("head.md");
-const TAIL: &str = include_str!("tail.md");
+const HEAD: &str = include_str!("head.txt");
+const TAIL: &str = include_str!("tail.txt");
 
 /// A table: its heads, and its rows, the first cell of each being a name.
 struct Table {
