@@ -4,7 +4,7 @@
 //! the practice in the same run.
 
 use arealight::FormFactor;
-use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight::kernels::{Access, Binding, Kernel};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
 use arealight_host::{Buffer, Host};
 use arealight_vk::Resource;
@@ -19,18 +19,8 @@ pub static FORM_FACTOR_COST: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 0,
     bindings: &[
-        Binding {
-            name: "vertices",
-            kind: BindingKind::StorageBuffer,
-            access: Access::Read,
-            content: "vec4[]: four vertices a work item, 0",
-        },
-        Binding {
-            name: "results",
-            kind: BindingKind::StorageBuffer,
-            access: Access::Write,
-            content: "float[]: the mean form factor of a work item",
-        },
+        Binding::storage_buffer("vertices", Access::Read, "vec4[]: four vertices a work item, 0"),
+        Binding::storage_buffer("results", Access::Write, "float[]: the mean form factor of a work item"),
     ],
     constants: &[0, 1],
 };

@@ -1,7 +1,7 @@
 //! The kernel `form_factor`: hard cases go in, the bits of their form factors come out.
 
 use crate::method::Method;
-use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight::kernels::{Access, Binding, Kernel};
 use arealight_engine::{EngineError, Passes, SharedPass};
 use arealight_host::Host;
 use arealight_oracle::hard::HardCase;
@@ -29,10 +29,6 @@ struct FormFactorConstants {
     polygon_count: u32,
 }
 
-const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
-    Binding { name, kind: BindingKind::StorageBuffer, access, content }
-}
-
 /// The id of the specialisation constant `METHOD`.
 pub const METHOD: u32 = 0;
 
@@ -43,9 +39,9 @@ pub static FORM_FACTOR: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: size_of::<FormFactorConstants>() as u32,
     bindings: &[
-        storage("polygons", Access::Read, "GpuHardPolygon[]"),
-        storage("offsets", Access::Read, "vec4[]: offset from the polygon's anchor, 0"),
-        storage("results", Access::Write, "float[]: one form factor a polygon"),
+        Binding::storage_buffer("polygons", Access::Read, "GpuHardPolygon[]"),
+        Binding::storage_buffer("offsets", Access::Read, "vec4[]: offset from the polygon's anchor, 0"),
+        Binding::storage_buffer("results", Access::Write, "float[]: one form factor a polygon"),
     ],
     constants: &[METHOD],
 };

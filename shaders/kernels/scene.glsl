@@ -4,6 +4,8 @@
 // Triangles, materials and textures of a scene: crates/arealight/src/gpu.rs has the same structures, and a
 // test compares the offsets.
 
+#include "srgb.glsl"
+
 struct ArealightGpuBvhNode {
     vec3 min_corner;
     uint first;
@@ -97,11 +99,6 @@ struct ScenePoint {
     float dielectric_f90;
     vec3 emission;
 };
-
-vec3 linear_from_srgb(vec3 encoded) {
-    vec3 high = pow((encoded + 0.055) / 1.055, vec3(2.4));
-    return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
-}
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
 int wrap_texel(int texel, int size, bool mirrored) {

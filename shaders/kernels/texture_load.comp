@@ -8,6 +8,7 @@
 layout(local_size_x = 32, local_size_y = 2) in;
 
 #include "half.glsl"
+#include "srgb.glsl"
 
 layout(set = 0, binding = 0) uniform texture2D source;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image2DArray out_level;
@@ -30,11 +31,6 @@ const uint LOAD_CLAMP_U = 2u;
 const uint LOAD_CLAMP_V = 4u;
 const uint LOAD_MIRROR_U = 8u;
 const uint LOAD_MIRROR_V = 16u;
-
-vec3 linear_from_srgb(vec3 encoded) {
-    vec3 high = pow((encoded + 0.055) / 1.055, vec3(2.4));
-    return mix(high, encoded / 12.92, lessThanEqual(encoded, vec3(0.04045)));
-}
 
 // The texel of a row or column of `size` that stands at `texel`. In float32, which is exact to 2^21 texels: software
 // divides integers one by one.

@@ -1,13 +1,9 @@
 //! Kernels of the tests' own, compiled from `tests/kernels`.
 
 use crate::TestEngine;
-use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight::kernels::{Access, Binding, Kernel};
 use arealight_vk::Resource;
 use bytemuck::Pod;
-
-const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
-    Binding { name, kind: BindingKind::StorageBuffer, access, content }
-}
 
 /// Single functions of the library over a list of arguments.
 pub static PROBE: Kernel = Kernel {
@@ -17,8 +13,8 @@ pub static PROBE: Kernel = Kernel {
     push_constant_size: 4,
     bindings: &[
         arealight::kernels::EVAL.bindings[0],
-        storage("arguments", Access::Read, "vec4[3] a call"),
-        storage("results", Access::Write, "vec4[4] a call"),
+        Binding::storage_buffer("arguments", Access::Read, "vec4[3] a call"),
+        Binding::storage_buffer("results", Access::Write, "vec4[4] a call"),
     ],
     constants: &[0],
 };
@@ -30,8 +26,8 @@ pub static UNGUARDED: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        storage("vertices", Access::Read, "vec4[4] a quad"),
-        storage("results", Access::Write, "vec4 a quad"),
+        Binding::storage_buffer("vertices", Access::Read, "vec4[4] a quad"),
+        Binding::storage_buffer("results", Access::Write, "vec4 a quad"),
     ],
     constants: &[],
 };

@@ -1,15 +1,11 @@
 //! The kernel that evaluates shapes, and its arguments.
 
 use crate::TestEngine;
-use arealight::kernels::{Access, Binding, BindingKind, Kernel};
+use arealight::kernels::{Access, Binding, Kernel};
 use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::tube::{Ends, Tube};
 use arealight_vk::Resource;
 use glam::{DMat3, DVec3};
-
-const fn storage(name: &'static str, access: Access, content: &'static str) -> Binding {
-    Binding { name, kind: BindingKind::StorageBuffer, access, content }
-}
 
 /// Form factors of shapes over a list of arguments.
 pub static SHAPES: Kernel = Kernel {
@@ -18,9 +14,9 @@ pub static SHAPES: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        storage("arguments", Access::Read, "vec4[4] a call"),
-        storage("ends", Access::Read, "int a call: arealight::TubeEnds"),
-        storage("results", Access::Write, "vec4 a call"),
+        Binding::storage_buffer("arguments", Access::Read, "vec4[4] a call"),
+        Binding::storage_buffer("ends", Access::Read, "int a call: arealight::TubeEnds"),
+        Binding::storage_buffer("results", Access::Write, "vec4 a call"),
     ],
     constants: &[0, 1, 2],
 };

@@ -45,6 +45,13 @@ pub struct Binding {
     pub content: &'static str,
 }
 
+impl Binding {
+    /// A storage buffer.
+    pub const fn storage_buffer(name: &'static str, access: Access, content: &'static str) -> Self {
+        Self { name, kind: BindingKind::StorageBuffer, access, content }
+    }
+}
+
 /// A compute kernel.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kernel {

@@ -2,7 +2,7 @@
 
 use crate::Effects;
 use crate::gpu::GpuLight;
-use crate::light_texture::{LightTexture, TextureError};
+use crate::light_texture::{LightTexture, TextureError, TextureMap};
 use glam::{DVec3, Vec3};
 
 /// A flat polygon that emits constant radiance, or shows an image.
@@ -75,6 +75,11 @@ impl PolygonLight {
     /// # Errors
     /// [`LightError`] names the light and the field that is wrong.
     pub fn validate(&self) -> Result<(), LightError> {
+        self.mapped().map(drop)
+    }
+
+    /// Checks that the light can be shaded, and maps its texture.
+    fn mapped(&self) -> Result<Option<TextureMap>, LightError> {
         let light = || self.name.clone();
         if self.vertices.len() < 3 {
             return Err(LightError::TooFewVertices { light: light(), count: self.vertices.len() });
@@ -87,10 +92,8 @@ impl PolygonLight {
         if !self.radiance.is_finite() || self.radiance.min_element() < 0.0 {
             return Err(LightError::BadRadiance { light: light(), value: self.radiance });
         }
-        if let Some(texture) = &self.texture {
-            texture.map(self).map_err(|reason| LightError::BadTexture { light: light(), reason })?;
-        }
-        Ok(())
+        let map = self.texture.as_ref().map(|texture| texture.map(self)).transpose();
+        map.map_err(|reason| LightError::BadTexture { light: light(), reason })
     }
 
     /// Area times normal, by Newell's sum over the vertices: its direction is the front, its length the area
@@ -206,8 +209,7 @@ impl PackedLights {
         }
         let mut packed = Self::default();
         for light in lights {
-            light.validate()?;
-            packed.push(light, origin)?;
+            packed.push(light, light.mapped()?, origin)?;
         }
         Ok(packed)
     }
@@ -231,7 +233,12 @@ impl PackedLights {
         Ok(())
     }
 
-    fn push(&mut self, light: &PolygonLight, origin: DVec3) -> Result<(), LightError> {
+    fn push(
+        &mut self,
+        light: &PolygonLight,
+        map: Option<TextureMap>,
+        origin: DVec3,
+    ) -> Result<(), LightError> {
         let first_vertex = self.vertices.len() as u32;
         for (index, &value) in light.vertices.iter().enumerate() {
             if !(value - origin).as_vec3().is_finite() {
@@ -252,14 +259,6 @@ impl PackedLights {
         let radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
         let area = light.area_vector() / radius.powi(2);
         // The texture's axes keep their precision as the vertices do
-        let map = match &light.texture {
-            Some(texture) => Some(
-                texture
-                    .map(light)
-                    .map_err(|reason| LightError::BadTexture { light: light.name.clone(), reason })?,
-            ),
-            None => None,
-        };
         let corner = map.map(|map| map.corner - origin - center.as_dvec3()).unwrap_or_default();
         let map = map.unwrap_or_default();
         self.lights.push(GpuLight {

@@ -76,46 +76,40 @@ pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
 
 /// The values of the shade kernel's specialisation constants.
 pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
-    vec![
-        (kernels::constant::EFFECTS, options.effects.bits()),
-        (kernels::constant::FORM_FACTOR, options.quality.form_factor_bits()),
+    let mut values = lobe_specialization(options.effects, options.quality);
+    values.extend([
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::OUTPUT, options.output as u32),
-        (kernels::constant::HORIZON, options.quality.horizon as u32),
-        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
-        (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
+    ]);
+    values
+}
+
+/// The values of the constants that every kernel has that integrates lobes over lights.
+fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::EFFECTS, effects.bits()),
+        (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
+        (kernels::constant::HORIZON, quality.horizon as u32),
+        (kernels::constant::FRESNEL, quality.fresnel as u32),
+        (kernels::constant::LOBES, quality.lobes as u32),
     ]
 }
 
 /// The eval pass: the shade kernel's functions over a list of `case_count` shading points.
 pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
-    Dispatch {
-        kernel: &kernels::EVAL,
-        specialization: vec![
-            (kernels::constant::EFFECTS, effects.bits()),
-            (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
-            (kernels::constant::HORIZON, quality.horizon as u32),
-            (kernels::constant::FRESNEL, quality.fresnel as u32),
-            (kernels::constant::LOBES, quality.lobes as u32),
-            (kernels::constant::FOOTPRINT, quality.footprint as u32),
-        ],
-        groups: kernels::EVAL.groups_for([case_count, 1, 1]),
-    }
+    let mut specialization = lobe_specialization(effects, quality);
+    specialization.push((kernels::constant::FOOTPRINT, quality.footprint as u32));
+    Dispatch { kernel: &kernels::EVAL, specialization, groups: kernels::EVAL.groups_for([case_count, 1, 1]) }
 }
 
 /// As [`eval`], of shapes that are all of one kind, or of [`ShapeKind::Any`].
 pub fn eval_shapes(effects: Effects, quality: Quality, kind: ShapeKind, case_count: u32) -> Dispatch {
+    let mut specialization = lobe_specialization(effects, quality);
+    specialization.push((kernels::constant::SHAPE, kind as u32));
     Dispatch {
         kernel: &kernels::EVAL_SHAPES,
-        specialization: vec![
-            (kernels::constant::EFFECTS, effects.bits()),
-            (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
-            (kernels::constant::HORIZON, quality.horizon as u32),
-            (kernels::constant::FRESNEL, quality.fresnel as u32),
-            (kernels::constant::LOBES, quality.lobes as u32),
-            (kernels::constant::SHAPE, kind as u32),
-        ],
+        specialization,
         groups: kernels::EVAL_SHAPES.groups_for([case_count, 1, 1]),
     }
 }

@@ -196,16 +196,10 @@ struct ArealightArcs {
 
 // The form factor of the arcs around an outline, in [0, 1]: 0 for a light seen from its back, and where a vertex is not
 // finite.
-//
-// The guard works on the bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
-// up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
 float arealight_form_factor(ArealightArcs arcs, bool two_sided) {
     // Counter-clockwise from the front is clockwise about the direction to the light
     float form_factor = -arcs.sum.z * AREALIGHT_INVERSE_TWO_PI;
-    form_factor = two_sided ? abs(form_factor) : form_factor;
-    uint bits = floatBitsToUint(form_factor);
-    bool finite = bits < 0x7f800000u && floatBitsToUint(arcs.squares) < 0x7f800000u;
-    return finite ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+    return arealight_guarded_form_factor(two_sided ? abs(form_factor) : form_factor, arcs.squares);
 }
 
 #endif

@@ -54,4 +54,20 @@ float arealight_power_of_two_scale(float x) {
     return uintBitsToFloat((254u - exponent) << 23);
 }
 
+// A height that is a rounding of zero for a vector of the size that `width` is of, as zero.
+float arealight_settled_height(float height, float width) {
+    return abs(height) > width ? height : 0.0;
+}
+
+// A form factor as the library returns it: in [0, 1], and 0 where it is negative or NaN, or where `square`, what is squared
+// of the light's distances, is not finite.
+//
+// The guard works on the bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
+// up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
+float arealight_guarded_form_factor(float form_factor, float square) {
+    uint bits = floatBitsToUint(form_factor);
+    bool finite = bits < 0x7f800000u && floatBitsToUint(square) < 0x7f800000u;
+    return finite ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+}
+
 #endif

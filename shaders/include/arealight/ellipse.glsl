@@ -160,14 +160,6 @@ float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     return height * (area * inversesqrt((a2 + root) * (b2 + root)) / dot(axis, axis));
 }
 
-// A form factor as the library returns it: in [0, 1], and 0 where it is negative or NaN, or where `square` is not
-// finite. It works on the bits, see arealight_form_factor.
-float arealight_guarded_form_factor(float form_factor, float square) {
-    uint bits = floatBitsToUint(form_factor);
-    bool finite = bits < 0x7f800000u && floatBitsToUint(square) < 0x7f800000u;
-    return finite ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
-}
-
 // The form factor of an ellipse that lies wholly above the horizon, in [0, 1]; one-sided: 0 for one seen from its back.
 // All vectors in a space whose z axis is the normal, the center from the shading point, in any unit. For any bits the
 // result is a finite number in [0, 1].

@@ -68,8 +68,7 @@ ArealightLobeView arealight_lobe_view(ArealightCosineSpace space, vec3 normal, A
 // The height of the vertex at `offset` from the light's center above the surface's horizon. A light in the surface's
 // plane has none, whatever the last bit says.
 float arealight_vertex_height(ArealightLobeView view, vec3 offset) {
-    float height = view.normal_height + dot(view.normal, offset);
-    return abs(height) > view.height_width ? height : 0.0;
+    return arealight_settled_height(view.normal_height + dot(view.normal, offset), view.height_width);
 }
 
 // The arcs around a convex outline of up to four vertices, clipped as `quality` says; see form_factor.glsl.

@@ -63,11 +63,6 @@ ArealightSeenShape arealight_see_shape(vec3 position, ArealightShape shape) {
     return seen;
 }
 
-// A height that is a rounding of zero for a vector of this size, as zero.
-float arealight_settled_height(float height, float width) {
-    return abs(height) > width ? height : 0.0;
-}
-
 // The form factor of an ellipse, or of a sphere's silhouette, in a lobe's cosine space. `normal` is the surface's.
 float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, bool two_sided,
                              ArealightQuality quality) {

@@ -73,19 +73,29 @@ impl Engine {
 
         let light_buffer = self.storage("lights", &lights.lights)?;
         let vertex_buffer = self.storage("light vertices", &lights.vertices)?;
+        let lights = [Resource::buffer(light_buffer.handle()), Resource::buffer(vertex_buffer.handle())];
+        self.dispatch_cases(kernel, specialization, &cases, |cases, results| {
+            vec![self.table(), lights[0], lights[1], cases, results, self.light_textures()]
+        })
+    }
+
+    /// The answers of an eval kernel to `cases`, with the resources that are bound beside the cases and the results.
+    pub(crate) fn dispatch_cases(
+        &self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+        cases: &[GpuCase],
+        bound: impl Fn(Resource, Resource) -> Vec<Resource>,
+    ) -> Result<Vec<Vec3>, EngineError> {
+        // Each dispatch takes as many cases as the device has groups for
+        let limit = self.host().properties().limits.max_compute_work_group_count[0];
+        let chunk = (limit.min(1 << 16) * kernel.local_size[0]) as usize;
         let pass = self.passes.pass(kernel, specialization)?;
-        let mut radiance = Vec::with_capacity(points.len());
-        for cases in cases.chunks(self.cases_per_dispatch(kernel)) {
+        let mut radiance = Vec::with_capacity(cases.len());
+        for cases in cases.chunks(chunk) {
             let case_buffer = self.storage("cases", cases)?;
             let results = self.storage("results", &vec![[0.0_f32; 4]; cases.len()])?;
-            let resources = [
-                self.table(),
-                Resource::buffer(light_buffer.handle()),
-                Resource::buffer(vertex_buffer.handle()),
-                Resource::buffer(case_buffer.handle()),
-                Resource::buffer(results.handle()),
-                self.light_textures(),
-            ];
+            let resources = bound(Resource::buffer(case_buffer.handle()), Resource::buffer(results.handle()));
             let case_count = cases.len() as u32;
             // SAFETY: The resources live until the submission was waited for.
             let set = unsafe { self.passes.bind(&pass, &resources) }?;
@@ -97,12 +107,6 @@ impl Engine {
             radiance.extend(answers.iter().map(|a| Vec3::new(a[0], a[1], a[2])));
         }
         Ok(radiance)
-    }
-
-    /// Each dispatch takes as many cases as the device has groups for.
-    pub(crate) fn cases_per_dispatch(&self, kernel: &Kernel) -> usize {
-        let limit = self.host().properties().limits.max_compute_work_group_count[0];
-        (limit.min(1 << 16) * kernel.local_size[0]) as usize
     }
 }
 

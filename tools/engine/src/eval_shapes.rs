@@ -2,7 +2,7 @@
 
 use crate::eval::surface_case;
 use crate::{Engine, EngineError};
-use arealight::gpu::{EvalConstants, GpuCase, GpuShape};
+use arealight::gpu::{GpuCase, GpuShape};
 use arealight::{Effects, Quality, ShapeKind, ShapeLight, Surface, plan};
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
@@ -64,28 +64,10 @@ impl Engine {
 
         let effects = Effects::all() - (Effects::POLYGON | Effects::TEXTURED);
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);
-        let pass = self.passes.pass(dispatch.kernel, &dispatch.specialization)?;
         let shape_buffer = self.storage("shapes", &shapes)?;
-        let mut radiance = Vec::with_capacity(points.len());
-        for cases in cases.chunks(self.cases_per_dispatch(dispatch.kernel)) {
-            let case_buffer = self.storage("cases", cases)?;
-            let results = self.storage("results", &vec![[0.0_f32; 4]; cases.len()])?;
-            let resources = [
-                self.table(),
-                Resource::buffer(shape_buffer.handle()),
-                Resource::buffer(case_buffer.handle()),
-                Resource::buffer(results.handle()),
-            ];
-            let case_count = cases.len() as u32;
-            // SAFETY: The resources live until the submission was waited for.
-            let set = unsafe { self.passes.bind(&pass, &resources) }?;
-            self.host().try_submit(|commands| {
-                // SAFETY: `commands` is being recorded, outside a render pass.
-                unsafe { set.record(&pass, commands, &EvalConstants { case_count }, [case_count, 1, 1]) }
-            })?;
-            let answers: Vec<[f32; 4]> = results.download()?;
-            radiance.extend(answers.iter().map(|a| Vec3::new(a[0], a[1], a[2])));
-        }
-        Ok(radiance)
+        let shapes = Resource::buffer(shape_buffer.handle());
+        self.dispatch_cases(dispatch.kernel, &dispatch.specialization, &cases, |cases, results| {
+            vec![self.table(), shapes, cases, results]
+        })
     }
 }

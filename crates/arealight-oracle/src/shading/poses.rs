@@ -2,6 +2,7 @@
 //! `arealight bench textures` judge by.
 
 use super::footprint::Filter;
+use crate::hard::stream::Stream;
 use crate::polygon::transformed_form_factor;
 use arealight::{Footprint, LightTable, LightTexture, PolygonLight, Surface};
 use glam::{DMat3, DVec2, DVec3, Vec3};
@@ -81,7 +82,7 @@ impl Pose {
 /// `count` poses in which the lobe sees the light's front well enough for an error to be seen: a thousandth of its energy.
 /// Another seed gives others.
 pub fn poses(family: Family, count: usize, seed: u64, table: &LightTable) -> Vec<Pose> {
-    let mut random = Random((seed << 8) + family as u64 + 1);
+    let mut random = Stream::from_seed((seed << 8) + family as u64 + 1);
     let mut poses = Vec::with_capacity(count);
     while poses.len() < count {
         let pose = pose(&mut random, family);
@@ -95,7 +96,7 @@ pub fn poses(family: Family, count: usize, seed: u64, table: &LightTable) -> Vec
     poses
 }
 
-fn pose(random: &mut Random, family: Family) -> Pose {
+fn pose(random: &mut Stream, family: Family) -> Pose {
     let theta = random.between(0.0, 85.0_f64.to_radians());
     let roughness = match family {
         Family::Sharp => random.between(0.05, 0.2),
@@ -115,7 +116,7 @@ fn pose(random: &mut Random, family: Family) -> Pose {
     let mirror = DVec3::new(-theta.sin(), 0.0, theta.cos());
     let center = match family {
         Family::Sharp | Family::Rough => {
-            let aside = random.direction() * (0.5 * width * random.unit());
+            let aside = direction(random) * (0.5 * width * random.unit());
             mirror * distance + aside
         }
         Family::Horizon => {
@@ -124,13 +125,13 @@ fn pose(random: &mut Random, family: Family) -> Pose {
                 + DVec3::Z * (0.25 * height * random.between(-1.0, 1.0))
         }
         Family::Diffuse => {
-            let direction = random.direction();
+            let direction = direction(random);
             direction.with_z(direction.z.abs()) * distance
         }
     };
     let normal =
-        (-center.normalize_or(DVec3::Z) + 0.9 * random.direction() * random.unit()).normalize_or(DVec3::Z);
-    let tangent = normal.cross(random.direction()).normalize_or(normal.any_orthonormal_vector());
+        (-center.normalize_or(DVec3::Z) + 0.9 * direction(random) * random.unit()).normalize_or(DVec3::Z);
+    let tangent = normal.cross(direction(random)).normalize_or(normal.any_orthonormal_vector());
     let (u, v) = (tangent * (0.5 * width), normal.cross(tangent) * (0.5 * height));
     Pose {
         surface,
@@ -139,27 +140,11 @@ fn pose(random: &mut Random, family: Family) -> Pose {
     }
 }
 
-/// The generator `SplitMix64`.
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let (z, phi) = (self.between(-1.0, 1.0), self.between(0.0, std::f64::consts::TAU));
-        let r = (1.0 - z * z).sqrt();
-        DVec3::new(r * phi.cos(), r * phi.sin(), z)
-    }
+/// A unit vector, uniform on the sphere.
+fn direction(random: &mut Stream) -> DVec3 {
+    let (z, phi) = (random.between(-1.0, 1.0), random.between(0.0, std::f64::consts::TAU));
+    let r = (1.0 - z * z).sqrt();
+    DVec3::new(r * phi.cos(), r * phi.sin(), z)
 }
 
 /// The errors of one filter over poses and pictures.

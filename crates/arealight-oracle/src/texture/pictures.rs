@@ -1,6 +1,7 @@
 //! Pictures to test with, each hard in its own way.
 
 use super::Texture;
+use crate::hard::stream::Stream;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -34,15 +35,8 @@ impl Texture {
     pub fn noise(width: usize, height: usize, seed: u64) -> Self {
         // A sum of waves whose frequencies are spread evenly over the octaves has that spectrum
         const WAVES: usize = 192;
-        let mut state = seed;
-        let mut random = || {
-            // SplitMix64
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut stream = Stream::from_seed(seed);
+        let mut random = || stream.unit();
         let highest = (width.min(height) as f64 / 3.0).max(1.0);
         let waves: Vec<_> = (0..WAVES)
             .map(|i| {

@@ -4,6 +4,10 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
+use crate::output::print;
+use arealight_engine::{Host, HostOptions};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Measure what a device makes of the library: its error.
@@ -24,4 +28,44 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Bench::Stability(arguments) => stability::run(arguments),
         Bench::Textures(arguments) => textures::run(arguments),
     }
+}
+
+/// Where a benchmark runs, and where its tables go.
+#[derive(clap::Args)]
+struct Ends {
+    /// The device: a part of its name, or its number among those that `arealight devices` lists.
+    #[arg(long, value_name = "NAME|NUMBER")]
+    device: Option<String>,
+    /// Write JSON; `-` prints it instead of the tables. Numbers that are not finite are null.
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+    /// Write the tables as Markdown.
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+}
+
+impl Ends {
+    fn host(&self) -> Result<Host, Failure> {
+        let options = HostOptions { device: self.device.clone(), ..HostOptions::default() };
+        Host::new(options).map_err(|error| Failure::Device(error.to_string()))
+    }
+
+    /// Writes the tables where they were asked for, and prints them, or JSON where that goes to standard output.
+    fn report(&self, found: &impl Serialize, markdown: &str, text: &str) -> Result<(), Failure> {
+        if let Some(path) = &self.markdown {
+            write(path, markdown)?;
+        }
+        // Strings and numbers, with strings for keys, always serialise
+        let json = || serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
+        match self.json.as_deref() {
+            Some(path) if path == Path::new("-") => return print(&json()).map(drop),
+            Some(path) => write(path, &json())?,
+            None => {}
+        }
+        print(text).map(drop)
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::output(path, error))
 }

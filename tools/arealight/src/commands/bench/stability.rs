@@ -1,13 +1,11 @@
 //! `arealight bench stability`
 
+use super::Ends;
 use crate::failure::Failure;
-use crate::output::print;
 use crate::progress;
 use arealight_benches::method::{METHODS, Method};
-use arealight_benches::stability::{self, Options, Stability};
-use arealight_engine::{Host, HostOptions};
+use arealight_benches::stability::{self, Options};
 use arealight_oracle::hard::family::{FAMILIES, Family};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Hold every rung of the form factor to its promises, on families of hard cases.
@@ -21,9 +19,6 @@ use std::process::ExitCode;
 /// Exit code 1 if a rung falls short of its promises; what the yardsticks do changes nothing.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The device: a part of its name, or its number among those that `arealight devices` lists.
-    #[arg(long, value_name = "NAME|NUMBER")]
-    device: Option<String>,
     /// Polygons of each family.
     #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     samples: u64,
@@ -36,12 +31,8 @@ pub struct Arguments {
     /// Only this rung or yardstick; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = method)]
     rung: Vec<&'static Method>,
-    /// Write JSON; `-` prints it instead of the tables. Numbers that are not finite are null.
-    #[arg(long, value_name = "FILE|-")]
-    json: Option<PathBuf>,
-    /// Write the tables as Markdown.
-    #[arg(long, value_name = "FILE")]
-    markdown: Option<PathBuf>,
+    #[command(flatten)]
+    ends: Ends,
 }
 
 fn family(name: &str) -> Result<&'static Family, String> {
@@ -66,36 +57,15 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         families: chosen(&arguments.family, FAMILIES),
         methods: chosen(&arguments.rung, METHODS),
     };
-    let device = |error: &dyn std::fmt::Display| Failure::Device(error.to_string());
-    let host = Host::new(HostOptions { device: arguments.device.clone(), ..HostOptions::default() });
-    let host = host.map_err(|error| device(&error))?;
+    let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");
     let found = stability::run(&host, &arealight_table::ggx(), &options, &|count| bar.inc(count));
     bar.finish_and_clear();
-    let found = found.map_err(|error| device(&error))?;
+    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
-    if let Some(path) = &arguments.markdown {
-        write(path, &found.to_markdown())?;
-    }
-    report(&found, arguments.json.as_deref())?;
+    arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
-}
-
-/// Prints the tables, or JSON where that goes to standard output.
-fn report(found: &Stability, json: Option<&Path>) -> Result<ExitCode, Failure> {
-    // Strings and numbers, with strings for keys, always serialise
-    let text = || serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
-    match json {
-        Some(path) if path == Path::new("-") => return print(&text()),
-        Some(path) => write(path, &text())?,
-        None => {}
-    }
-    print(&found.to_text())
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| Failure::output(path, error))
 }
 
 #[cfg(test)]
