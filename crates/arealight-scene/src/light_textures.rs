@@ -10,7 +10,7 @@
 use crate::images::halved;
 use crate::load::Loader;
 use crate::shown::{Images, Key, Rectangle, Shown};
-use crate::{Scene, Texture, Wrap};
+use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{LightTexture, PolygonLight, TexturePart};
 use glam::DVec2;
@@ -54,12 +54,8 @@ pub struct LightTextureSource<'a> {
     pub texels: &'a [u32],
     /// Red, green and blue are sRGB-encoded.
     pub srgb: bool,
-    /// What there is beyond the image, in u and in v.
-    pub wrap: [Wrap; 2],
-    /// The rectangle's upper left corner, in texture coordinates.
-    pub low: DVec2,
-    /// Its width and height.
-    pub size: DVec2,
+    /// The rectangle that the layer shows, and what there is beyond the image.
+    pub part: TexturePart,
 }
 
 impl Scene {
@@ -73,9 +69,7 @@ impl Scene {
             height: image.height,
             texels: &image.texels,
             srgb: texture.srgb,
-            wrap: [texture.wrap_u, texture.wrap_v],
-            low: shown.low,
-            size: shown.size,
+            part: TexturePart { low: shown.low, size: shown.size, wrap: [texture.wrap_u, texture.wrap_v] },
         })
     }
 
@@ -86,7 +80,7 @@ impl Scene {
         let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);
         let sources = (0..self.light_textures.len()).filter_map(|layer| self.light_texture_source(layer));
         let sizes = sources.map(|source| {
-            let texels = source.size * DVec2::new(f64::from(source.width), f64::from(source.height));
+            let texels = source.part.size * DVec2::new(f64::from(source.width), f64::from(source.height));
             let [width, height] = texels.to_array().map(|side| side.ceil() as u32);
             PyramidSize::for_image(width.min(largest), height.min(largest)).extent(0)
         });
@@ -186,7 +180,7 @@ fn scale_down(scene: &mut Scene) {
     let mut known: HashMap<(u32, u32), u32> = HashMap::new();
     for layer in 0..scene.light_textures.len() {
         let Some(source) = scene.light_texture_source(layer) else { continue };
-        let (sides, size) = ([source.width, source.height], source.size.to_array());
+        let (sides, size) = ([source.width, source.height], source.part.size.to_array());
         let loads = |halvings: u32| {
             sides.iter().zip(size).all(|(side, size)| {
                 let side = (side >> halvings).max(1);

@@ -1,7 +1,6 @@
 //! The light textures of a scene.
 
 use crate::{Engine, EngineError, SourceImage, SourceTexels};
-use arealight::TexturePart;
 use arealight_scene::{LightTextureSource, Scene};
 
 impl Engine {
@@ -23,7 +22,7 @@ impl Engine {
             .map(|(source, texels)| SourceImage {
                 texels: texels.borrow(),
                 size: [source.width, source.height],
-                part: TexturePart { low: source.low, size: source.size, wrap: source.wrap },
+                part: source.part,
             })
             .collect();
         self.load_textures(size, &images)

@@ -1,8 +1,7 @@
 //! Every rung of the footprint against the integral of image times lobe, by families of poses, all in float64.
 //! `arealight bench textures` does the same on a device.
 //!
-//! `cargo test --release -p arealight-oracle --test oracle footprints -- --nocapture` prints them for a few poses,
-//! with `--ignored` for many, with ideal taps beside those in the pyramid.
+//! `cargo test --release -p arealight-oracle --test oracle footprints -- --nocapture` prints them.
 
 use arealight::{Footprint, PyramidSize};
 use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
@@ -22,17 +21,12 @@ const FILTERS: [(&str, Filter); 5] = [
     ("R4", Filter::Rung(Footprint::SplitFour)),
 ];
 
-/// Errors of each filter through the pyramid, and with ideal Gaussian taps if `ideal`.
-fn measure(
-    family: Family,
-    textures: &[Arc<Texture>],
-    count: usize,
-    ideal: bool,
-) -> Vec<(Summary, Option<Summary>)> {
+/// Errors of each filter through the pyramid, for poses of a family that show each of `textures`.
+fn measure(family: Family, textures: &[Arc<Texture>], count: usize) -> Vec<Summary> {
     let table = arealight_table::ggx();
     let size = PyramidSize::new(SIDE as u32, SIDE as u32).unwrap();
     let pyramids: Vec<Pyramid> = textures.iter().map(|texture| Pyramid::new(texture, size)).collect();
-    let mut errors: Vec<[Errors; 2]> = FILTERS.iter().map(|_| Default::default()).collect();
+    let mut errors: Vec<Errors> = FILTERS.iter().map(|_| Errors::default()).collect();
     for pose in poses(family, count, 0, &table) {
         let inverse = pose.inverse(&table);
         for (texture, pyramid) in textures.iter().zip(&pyramids) {
@@ -52,16 +46,11 @@ fn measure(
             };
             for ((_, filter), errors) in FILTERS.iter().zip(&mut errors) {
                 let found = filtered(*filter, &seen, |uv, sigma| pyramid.blurred(uv, sigma, DVec2::ONE));
-                errors[0].add(found, expected);
-                if ideal {
-                    let found =
-                        filtered(*filter, &seen, |uv, sigma| texture.blurred(uv, DVec2::splat(sigma)));
-                    errors[1].add(found, expected);
-                }
+                errors.add(found, expected);
             }
         }
     }
-    errors.iter().map(|[real, exact]| (real.summary(), ideal.then(|| exact.summary()))).collect()
+    errors.iter().map(Errors::summary).collect()
 }
 
 fn pictures() -> Vec<Arc<Texture>> {
@@ -74,8 +63,8 @@ fn pictures() -> Vec<Arc<Texture>> {
 fn every_rung_is_within_its_bar_and_the_article_is_not() {
     let mut article_is_worse = 0;
     for family in Family::ALL {
-        let rows = measure(family, &pictures(), 60, false);
-        for ((name, filter), (found, _)) in FILTERS.iter().zip(&rows) {
+        let rows = measure(family, &pictures(), 60);
+        for ((name, filter), found) in FILTERS.iter().zip(&rows) {
             println!("{family:?} {name:8} {:6.2}; {:5.2}", found.rmse, found.median);
             if let Some(bar) = Bar::of(*filter, family) {
                 assert!(bar.holds(found), "{family:?}, {name}: {found:?} over {bar:?}");
@@ -83,25 +72,7 @@ fn every_rung_is_within_its_bar_and_the_article_is_not() {
         }
         // The twin: the article's filter against the first rung's bars
         let bar = Bar::of(Filter::Rung(Footprint::Round), family);
-        article_is_worse += usize::from(bar.is_some_and(|bar| !bar.holds(&rows[0].0)));
+        article_is_worse += usize::from(bar.is_some_and(|bar| !bar.holds(&rows[0])));
     }
     assert!(article_is_worse >= 2, "the bars let the article's filter pass");
-}
-
-fn print(title: &str, textures: &[Arc<Texture>], count: usize) {
-    println!("{title}: nRMSE %; median %, through the pyramid | with ideal taps");
-    for family in Family::ALL {
-        for ((name, _), (real, ideal)) in FILTERS.iter().zip(measure(family, textures, count, true)) {
-            let ideal =
-                ideal.map_or_else(String::new, |found| format!("{:6.2}; {:5.2}", found.rmse, found.median));
-            println!("{family:?} {name:8} {:6.2}; {:5.2} | {ideal}", real.rmse, real.median);
-        }
-    }
-}
-
-#[test]
-#[ignore = "prints tables: minutes in a release build"]
-fn all_footprints() {
-    print("checker, gradient and noise", &pictures(), 100);
-    print("spot", &[Arc::new(Texture::spot(SIDE, SIDE))], 100);
 }

@@ -77,7 +77,8 @@ fn a_screen_shows_its_whole_image() {
     // What to load
     let source = scene.light_texture_source(0).unwrap();
     assert_eq!((source.width, source.height, source.srgb), (64, 32, true));
-    assert_eq!((source.low, source.size, source.wrap), (layer.low, layer.size, [Wrap::Repeat; 2]));
+    let part = TexturePart { low: layer.low, size: layer.size, wrap: [Wrap::Repeat; 2] };
+    assert_eq!(source.part, part);
     assert_eq!(source.texels[64 * 3 + 5].to_le_bytes(), [20, 24, 40, 255]);
     assert_eq!(scene.light_texture_source(1), None);
     // And what it calls for
@@ -117,7 +118,7 @@ fn repeats_are_a_rectangle_beyond_the_image() {
     let scene = scene_of(&picture(), &[screen(|uv| uv + DVec2::new(-1.5, 3.0))], &clamp);
     let layer = scene.light_textures[0];
     assert!(near(layer.low, DVec2::new(-1.5, 0.0)) && near(layer.size, DVec2::ONE), "{layer:?}");
-    assert_eq!(scene.light_texture_source(0).unwrap().wrap, [Wrap::Clamp, Wrap::Mirror]);
+    assert_eq!(scene.light_texture_source(0).unwrap().part.wrap, [Wrap::Clamp, Wrap::Mirror]);
     for (vertex, uv) in scene.lights[0].vertices.iter().zip(shown(&scene, &scene.lights[0])) {
         // v = 3.5 - y before, of which 3 to 4 is the image from its lower edge up
         assert!(near(uv, DVec2::new(vertex.x * 0.5 - 1.0, 0.5 + vertex.y)), "{vertex}: {uv}");
@@ -286,9 +287,8 @@ fn a_device_loads_every_layer() {
     assert_eq!(scene.images.len(), 4);
     for layer in 0..4 {
         let source = scene.light_texture_source(layer).unwrap();
-        let part = TexturePart { low: source.low, size: source.size, wrap: source.wrap };
         let size = scene.light_texture_size(1024).unwrap();
-        part.load_constants([source.width, source.height], size, 0, true).unwrap();
+        source.part.load_constants([source.width, source.height], size, 0, true).unwrap();
     }
     // Surfaces keep the whole image
     assert_eq!(scene.textures[scene.materials[0].emission_texture.unwrap() as usize].image, 0);

@@ -1,18 +1,16 @@
 //! `arealight eval`
 
-mod shapes;
-
 use crate::failure::Failure;
 use crate::images::Images;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
-use arealight::{Footprint, FormFactor, Fresnel, LightTable, Quality};
+use arealight::{Footprint, FormFactor, Fresnel, Quality};
 use arealight_oracle::answers::{Answer, read_answers, write_answers};
-use arealight_oracle::cases::{Case, CaseError, SupportedCase, read_cases};
+use arealight_oracle::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Measure, UnknownTruth, measure};
-use arealight_oracle::shading::{ltc_on, truth};
+use arealight_oracle::shading::{ltc_on, shape_ltc_on, truth};
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use indicatif::ParallelProgressIterator;
@@ -129,9 +127,8 @@ fn check_known(cases: &[Case], known: &[Answer], method: Method) -> Result<(), U
     let names: HashSet<&str> = known.map(|answer| answer.name.as_str()).collect();
     // Whether an image can be read is no matter here
     let image = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
-    let supported =
-        |case: &Case| case.supported(|_| Ok(Arc::clone(&image))).is_ok() || shapes::is_answered(case, method);
-    let unknown = |case: &&Case| !names.contains(case.name.as_str()) && supported(case);
+    let is_supported = |case: &Case| supported(case, method, |_| Ok(Arc::clone(&image))).is_ok();
+    let unknown = |case: &&Case| !names.contains(case.name.as_str()) && is_supported(case);
     match cases.iter().find(unknown) {
         Some(case) => Err(UnknownTruth { case: case.name.clone() }),
         None => Ok(()),
@@ -154,12 +151,46 @@ fn complaint(measures: &[Measure], tolerance: f64) -> Option<String> {
     })
 }
 
+/// A case that can be answered.
+enum Supported {
+    Polygon(SupportedCase),
+    Shape(ShapeCase),
+}
+
+impl Supported {
+    fn polygon(&self) -> Option<&SupportedCase> {
+        if let Self::Polygon(case) = self { Some(case) } else { None }
+    }
+
+    fn shape(&self) -> Option<&ShapeCase> {
+        if let Self::Shape(case) = self { Some(case) } else { None }
+    }
+}
+
+/// What a case is, or why it cannot be answered.
+fn supported(
+    case: &Case,
+    method: Method,
+    load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+) -> Result<Supported, String> {
+    if matches!(case.light.shape, CaseShape::Polygon { .. }) {
+        return case.supported(load).map(Supported::Polygon).map_err(|error| error.to_string());
+    }
+    if method == Method::Truth {
+        return Err(format!("light.type \"{}\": no cubature yet", case.light.shape.name()));
+    }
+    case.supported_shape().map(Supported::Shape).map_err(|error| error.to_string())
+}
+
 /// One answer a case, in their order: the radiance, or why there is none.
 fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Failure> {
     // Set aside what is not supported
     let mut images = Images::beside(&arguments.cases);
-    let supported: Vec<_> = cases.iter().map(|case| case.supported(|path| images.load(path))).collect();
-    let answerable: Vec<SupportedCase> = supported.iter().filter_map(|case| case.clone().ok()).collect();
+    let sorted: Vec<Result<Supported, String>> =
+        cases.iter().map(|case| supported(case, arguments.on, |path| images.load(path))).collect();
+    let known = || sorted.iter().flatten();
+    let polygons: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
+    let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
     // The most precise rungs, unless others are to be seen
     let precise = Quality {
         form_factor: FormFactor::ExactDifference,
@@ -168,31 +199,38 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
         ..Quality::default()
     };
     let quality = arguments.quality.quality_or(precise);
-    let answered = match arguments.on {
+    let (of_polygons, of_shapes) = match arguments.on {
         Method::Gpu => {
             let table = arguments.quality.table()?;
-            gpu::eval::answer(&answerable, quality, &table, arguments.device.as_deref(), &arguments.cases)?
+            let mut engine = gpu::LazyEngine::new(arguments.device.as_deref(), &table);
+            let polygons = gpu::eval::answer(&polygons, quality, &mut engine, &arguments.cases)?;
+            (polygons, gpu::eval_shapes::answer(&shapes, quality, &mut engine, &arguments.cases)?)
         }
-        Method::Oracle => answer_by_table(&answerable, quality, &arguments.quality.table()?),
-        Method::Truth => answer_in_parallel(&answerable, answer_by_cubature),
-    };
-    // Put the answers in between
-    let mut answered = answered.into_iter();
-    let mut shapes = shapes::answer_all(cases, quality, arguments)?.into_iter();
-    let answer = |(case, supported): (&Case, &Result<_, _>)| match supported {
-        Err(_) if shapes::is_shape(case) => {
-            shapes.next().unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
+        Method::Oracle => {
+            let table = arguments.quality.table()?;
+            let polygons = answer_in_parallel(&polygons, |case| {
+                let SupportedCase { name, surface, normal, view, light, .. } = case;
+                Answer::new(name, ltc_on(quality, &table, surface, *normal, *view, light))
+            });
+            let shapes = answer_in_parallel(&shapes, |case| {
+                let ShapeCase { name, surface, normal, view, light } = case;
+                Answer::new(name, shape_ltc_on(quality, &table, surface, *normal, *view, light))
+            });
+            (polygons, shapes)
         }
-        Ok(_) => answered.next().unwrap_or_else(|| Answer::none(&case.name, "no answer was given")),
-        Err(unsupported) => Answer::none(&case.name, format!("{unsupported}")),
+        Method::Truth => (answer_in_parallel(&polygons, answer_by_cubature), Vec::new()),
     };
-    Ok(cases.iter().zip(&supported).map(answer).collect())
-}
-
-fn answer_by_table(cases: &[SupportedCase], quality: Quality, table: &LightTable) -> Vec<Answer> {
-    answer_in_parallel(cases, |case| {
-        Answer::new(&case.name, ltc_on(quality, table, &case.surface, case.normal, case.view, &case.light))
-    })
+    // Put the reasons in between
+    let (mut of_polygons, mut of_shapes) = (of_polygons.into_iter(), of_shapes.into_iter());
+    let answer = |(case, sorted): (&Case, &Result<Supported, String>)| {
+        let answer = match sorted {
+            Ok(Supported::Polygon(_)) => of_polygons.next(),
+            Ok(Supported::Shape(_)) => of_shapes.next(),
+            Err(reason) => Some(Answer::none(&case.name, reason.clone())),
+        };
+        answer.unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
+    };
+    Ok(cases.iter().zip(&sorted).map(answer).collect())
 }
 
 /// Above this share of the radiance a cubature's error estimate makes it no truth. It is reached only where

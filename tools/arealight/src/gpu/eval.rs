@@ -1,8 +1,8 @@
 //! Reference cases on the GPU.
 
-use super::{engine, failure};
+use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{LightTable, LightTexture, PolygonLight, PyramidSize, Quality, TexturePart};
+use arealight::{LightTexture, PolygonLight, PyramidSize, Quality, TexturePart};
 use arealight_engine::{Engine, EngineError, EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
@@ -11,13 +11,12 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// One answer a case, by the GLSL of the shade pass with `table`. A case whose light float32 cannot hold gets the reason;
-/// the others are answered all the same. `input` is the file of the cases, for errors.
+/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason; the others are
+/// answered all the same. `input` is the file of the cases, for errors.
 pub fn answer(
     cases: &[SupportedCase],
     quality: Quality,
-    table: &LightTable,
-    device: Option<&str>,
+    engine: &mut LazyEngine<'_>,
     input: &Path,
 ) -> Result<Vec<Answer>, Failure> {
     // Set aside the lights that cannot be shaded
@@ -30,8 +29,8 @@ pub fn answer(
     let radiance = if shaded.is_empty() {
         Vec::new()
     } else {
-        let mut engine = engine(device, table)?;
-        images.load(&mut engine).map_err(|error| failure(error, input))?;
+        let engine = engine.get()?;
+        images.load(engine).map_err(|error| failure(error, input))?;
         engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between

@@ -16,6 +16,29 @@ pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failur
         .map_err(|error| Failure::Device(error.to_string()))
 }
 
+/// An engine that is made when the first case needs it: without work no device is needed.
+pub struct LazyEngine<'a> {
+    table: &'a LightTable,
+    device: Option<&'a str>,
+    engine: Option<Engine>,
+}
+
+impl<'a> LazyEngine<'a> {
+    /// Makes nothing yet.
+    pub fn new(device: Option<&'a str>, table: &'a LightTable) -> Self {
+        Self { table, device, engine: None }
+    }
+
+    /// The engine, the same each time.
+    pub fn get(&mut self) -> Result<&mut Engine, Failure> {
+        let made = match self.engine.take() {
+            Some(engine) => engine,
+            None => engine(self.device, self.table)?,
+        };
+        Ok(self.engine.insert(made))
+    }
+}
+
 /// An error of the engine as a command reports it: a light of the input that cannot be shaded is the input's
 /// fault, all else the device's.
 pub fn failure(error: EngineError, input: &Path) -> Failure {

@@ -1,0 +1,127 @@
+//! The constants of the GLSL sources, which Rust and the shaders must number alike: effects, flags, choices.
+
+use arealight::gpu;
+use arealight::plan::{Output, PositionSource};
+use arealight::pyramid::LevelKernel;
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TubeEnds};
+use std::collections::BTreeMap;
+
+/// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
+/// are none of them.
+fn glsl_constants(source: &str, prefix: &str) -> BTreeMap<String, f64> {
+    let mut found = BTreeMap::new();
+    for line in source.lines() {
+        let Some(declaration) = line.strip_prefix("const ") else { continue };
+        let (_kind, rest) = declaration.split_once(' ').expect("const TYPE NAME = VALUE;");
+        let (name, value) = rest.split_once(" = ").expect("NAME = VALUE;");
+        let value = value.split_once(';').expect("a statement").0.trim_end_matches('u');
+        if let Some(name) = name.strip_prefix(prefix) {
+            let number = match value.strip_prefix("0x") {
+                Some(digits) => f64::from(u32::from_str_radix(digits, 16).expect("hexadecimal digits")),
+                None => value.parse().expect("a literal"),
+            };
+            found.insert(name.to_owned(), number);
+        }
+    }
+    found
+}
+
+fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
+    let expected: BTreeMap<_, _> = expected.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    assert_eq!(glsl_constants(source, prefix), expected, "{prefix}*");
+}
+
+const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
+const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
+const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/footprint.glsl");
+const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
+const SHAPES_GLSL: &str = include_str!("../../shaders/include/arealight/shapes.glsl");
+const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/tube_outline.glsl");
+const SHAPE_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/shape_buffer.glsl");
+const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
+const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
+const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
+const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
+
+#[test]
+fn effects_have_the_same_bits_in_glsl() {
+    let effects: Vec<_> =
+        Effects::all().iter().map(|e| (e.names()[0].to_uppercase(), f64::from(e.bits()))).collect();
+    let effects: Vec<_> = effects.iter().map(|(name, bits)| (name.as_str(), *bits)).collect();
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_EFFECT_", &effects);
+}
+
+#[test]
+fn flags_have_the_same_bits_in_glsl() {
+    use gpu::{GpuLight, GpuMaterial, GpuTexture};
+    assert_constants(BUFFERS_GLSL, "LIGHT_", &[("TWO_SIDED", GpuLight::TWO_SIDED.into())]);
+    assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
+    let material =
+        [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
+    assert_constants(SCENE_GLSL, "MATERIAL_", &material);
+    assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
+    let texture = [
+        ("SRGB", GpuTexture::SRGB.into()),
+        ("CLAMP_U", GpuTexture::CLAMP_U.into()),
+        ("CLAMP_V", GpuTexture::CLAMP_V.into()),
+        ("MIRROR_U", GpuTexture::MIRROR_U.into()),
+        ("MIRROR_V", GpuTexture::MIRROR_V.into()),
+    ];
+    assert_constants(SCENE_GLSL, "TEXTURE_", &texture);
+    // A texture is loaded by the same bits
+    assert_constants(TEXTURE_LOAD_COMP, "LOAD_", &texture);
+}
+
+#[test]
+fn choices_have_the_same_numbers_in_glsl() {
+    let number = |value: u32| f64::from(value);
+    let one_point = Quality { one_point: true, ..Quality::default() };
+    let rungs = [
+        ("EXACT", number(FormFactor::Exact as u32)),
+        ("FAST", number(FormFactor::Fast as u32)),
+        ("DIFFERENCE", number(FormFactor::ExactDifference as u32)),
+        ("ONE_POINT", number(one_point.form_factor_bits())),
+    ];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_FORM_FACTOR_", &rungs);
+    let both = FormFactor::FastDifference as u32;
+    assert_eq!(both, FormFactor::Fast as u32 | FormFactor::ExactDifference as u32, "they are bits");
+    let horizons = [
+        ("COSINE", number(Horizon::Cosine as u32)),
+        ("BOTH", number(Horizon::Both as u32)),
+        ("BARE", number(Horizon::Bare as u32)),
+    ];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
+    let fresnel = [("BY_F0", number(Fresnel::ByF0 as u32)), ("SPLIT", number(Fresnel::Split as u32))];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_FRESNEL_", &fresnel);
+    let lobes = [("TABLE", number(Lobes::Table as u32)), ("FORMULA", number(Lobes::Formula as u32))];
+    assert_constants(EFFECTS_GLSL, "AREALIGHT_LOBES_", &lobes);
+    let depth = [("DEPTH", number(PositionSource::Depth as u32))];
+    assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
+    assert_constants(SHADE_COMP, "OUTPUT_", &[("ADD", number(Output::Add as u32))]);
+    assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
+    let shapes = [
+        ("ELLIPSE", number(ShapeKind::Ellipse as u32)),
+        ("SPHERE", number(ShapeKind::Sphere as u32)),
+        ("TUBE", number(ShapeKind::Tube as u32)),
+    ];
+    assert_constants(SHAPES_GLSL, "AREALIGHT_SHAPE_", &shapes);
+    assert_constants(
+        SHAPE_BUFFER_GLSL,
+        "SHAPE_",
+        &[("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)), ("ANY", number(ShapeKind::Any as u32))],
+    );
+    let ends = [
+        ("OPEN", number(TubeEnds::Open as u32)),
+        ("FLAT", number(TubeEnds::Flat as u32)),
+        ("ROUND", number(TubeEnds::Round as u32)),
+    ];
+    assert_constants(TUBE_OUTLINE_GLSL, "AREALIGHT_TUBE_", &ends);
+    let [width, height] = arealight::plan::BLUR_BLOCK.map(number);
+    assert_constants(TEXTURE_BLUR_COMP, "BLOCK_", &[("WIDTH", width), ("HEIGHT", height)]);
+    let called_for = [
+        ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLING)),
+        ("DECODING", number(gpu::TextureLoadConstants::DECODING)),
+    ];
+    assert_constants(TEXTURE_LOAD_COMP, "CALLED_FOR_", &called_for);
+    assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
+}
