@@ -66,6 +66,7 @@ if [[ "$mode" == test ]]; then
     need glslang-dev "a part of it" has_library libMachineIndependent.a
     need spirv-tools "another part of it, and the SPIR-V validator" has_library libSPIRV-Tools-opt.a
     need glslang-tools "a second shader compiler, for the GLSL library's check" has_program glslangValidator
+    need glslc "the first as a program, for the same" has_program glslc
 fi
 
 if [[ ${#missing[@]} -eq 0 ]]; then

@@ -90,6 +90,7 @@ if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 
 step "format" cargo fmt --all --check
 step "links of documents" check_links
+step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
 step "lints" cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
 step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests
@@ -99,6 +100,7 @@ step "examples in the documentation" cargo test --workspace --doc --locked --qui
 step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --exclude arealight-cli --no-deps --locked --quiet
 step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
 step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
+step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
 
 printf '\n== summary\n'
 printf '%s\n' "${summary[@]}"

@@ -36,6 +36,7 @@ enum Command {
     Bench(commands::bench::Arguments),
     Table(commands::table::Arguments),
     Devices(commands::devices::Arguments),
+    Export(commands::export::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -48,6 +49,7 @@ fn main() -> ExitCode {
         Some(Command::Bench(arguments)) => commands::bench::run(&arguments),
         Some(Command::Table(arguments)) => commands::table::run(&arguments),
         Some(Command::Devices(arguments)) => commands::devices::run(&arguments),
+        Some(Command::Export(arguments)) => commands::export::run(&arguments),
     };
     match result {
         Ok(code) => code,

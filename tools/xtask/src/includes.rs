@@ -38,7 +38,7 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
 
 /// The definitions that a host would give for every bridge the library declares.
 fn bridges_of_host<'a>(texts: impl Iterator<Item = &'a String>) -> String {
-    let define = |Bridge { prototype, returns }| format!("{prototype} {{ return {returns}(0); }}\n");
+    let define = |Bridge { prototype, returns, .. }| format!("{prototype} {{ return {returns}(0); }}\n");
     let definitions: std::collections::BTreeSet<String> =
         texts.flat_map(|text| bridges(text)).map(define).collect();
     definitions.into_iter().collect()

@@ -13,6 +13,8 @@ pub struct Violation {
 /// A function that the library declares and the host defines.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Bridge {
+    /// Its name.
+    pub name: String,
     /// Its declaration without the semicolon.
     pub prototype: String,
     /// The type that it returns.
@@ -60,7 +62,8 @@ pub fn bridges(text: &str) -> Vec<Bridge> {
             && (open.text.as_str(), close.text.as_str()) == ("(", ")")
         {
             let words: Vec<&str> = declaration.iter().map(|token| token.text.as_str()).collect();
-            bridges.push(Bridge { prototype: words.join(" "), returns: returns.text.clone() });
+            let (name, returns) = (name.text.clone(), returns.text.clone());
+            bridges.push(Bridge { name, prototype: words.join(" "), returns });
         }
     }
     bridges

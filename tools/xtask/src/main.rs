@@ -6,12 +6,17 @@
 //!                                                # and the benchmarks' and the host's tests' own
 //! cargo run -p xtask -- shaders --check          # are they fresh?
 //! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
+//! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
+//! cargo run -p xtask -- quotes                   # put the code that documents show into them
 //! ```
 
 mod compile;
 mod includes;
+mod library;
 mod lint;
 mod manifest;
+mod matrix;
+mod quotes;
 mod shaders;
 
 use clap::{Parser, Subcommand};
@@ -32,6 +37,8 @@ enum Task {
     Shaders(shaders::Arguments),
     /// Compile each file of the GLSL library on its own, and check the library's rules.
     Includes,
+    Matrix(matrix::Arguments),
+    Quotes(quotes::Arguments),
 }
 
 /// A task that cannot be carried out. Its text says what is wrong, where, and what to do.
@@ -47,6 +54,8 @@ pub(crate) enum TaskError {
     NoSuchKernel { name: String, available: String },
     #[error("cannot run {program}: {source}. On Debian: apt-get install {package}")]
     Program { program: &'static str, package: &'static str, source: std::io::Error },
+    #[error("arealight export failed: {message}")]
+    Export { message: String },
 }
 
 impl TaskError {
@@ -61,6 +70,8 @@ fn main() -> ExitCode {
     let outcome = match CommandLine::parse().task {
         Task::Shaders(arguments) => shaders::run(&root, &arguments),
         Task::Includes => includes::run(&root),
+        Task::Matrix(arguments) => matrix::run(&root, &arguments),
+        Task::Quotes(arguments) => quotes::run(&root, &arguments),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

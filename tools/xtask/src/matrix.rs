@@ -1,0 +1,333 @@
+//! `matrix`: the exported GLSL library through two compilers, as hosts of every kind would compile it.
+//!
+//! The kinds are stages (fragment, compute), images and samplers (apart, combined), and what the library can be asked
+//! for: each toggle, each effect and each rung alone, and all together. They are read from the library itself, so that a
+//! new one is in the matrix from its first day. Every module goes through spirv-val. Cases that must fail, and say why,
+//! show that the matrix can.
+
+use crate::TaskError;
+use crate::library::Library;
+use crate::lint::bridges;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The host that is compiled, from the checkout's root.
+const HOST: &str = "tools/xtask/matrix/host.glsl";
+/// Shaders that are shown as examples, from the checkout's root; each is compiled as it is.
+const EXAMPLES: &str = "shaders/examples";
+
+/// Compile the exported GLSL library as hosts of every kind would, with glslangValidator and with glslc.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A folder that `arealight export` wrote; without it, the library is exported for the purpose.
+    #[arg(long, value_name = "DIR")]
+    library: Option<PathBuf>,
+    /// Say what is compiled.
+    #[arg(long)]
+    verbose: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Tool {
+    Glslang,
+    Glslc,
+}
+
+/// Something to compile.
+#[derive(Debug, Clone)]
+struct Case {
+    tool: Tool,
+    compute: bool,
+    shader: PathBuf,
+    /// What differs from other cases, in words.
+    name: String,
+    macros: Vec<(String, String)>,
+    /// Compilation must fail, and name this.
+    lacks: Option<String>,
+}
+
+/// Whether every case does as it should.
+pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
+    let scratch = Scratch::new()?;
+    let folder = match &arguments.library {
+        Some(folder) => folder.clone(),
+        None => export(root, &scratch.0.join("library"))?,
+    };
+    let include = folder.join("include");
+    let library = Library::read(&include.join("arealight"))?;
+
+    let mut cases = hosts(&root.join(HOST), &library);
+    cases.extend(examples(&root.join(EXAMPLES))?);
+    let failures = run_all(&cases, |index, case| {
+        if arguments.verbose {
+            println!("{}", case.title());
+        }
+        case.run(&include, &scratch.0.join(format!("{index}.spv")))
+    })?;
+    let validator_can_fail = validator_refuses(&scratch.0.join("0.spv"))?;
+    if !validator_can_fail {
+        eprintln!("error: spirv-val accepts a module that is cut short");
+    }
+    for failure in &failures {
+        eprintln!("error: {failure}");
+    }
+    let good = failures.is_empty() && validator_can_fail;
+    println!(
+        "{} shaders compiled by glslangValidator and by glslc, {} of them with a bridge missing: {}",
+        cases.len(),
+        cases.iter().filter(|case| case.lacks.is_some()).count(),
+        if good { "good" } else { "see above" }
+    );
+    Ok(good)
+}
+
+/// The hosts of the matrix.
+fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
+    let mut cases = vec![];
+    let mut add = |tool, compute, combined, name: &str, mut macros: Vec<(String, String)>, lacks| {
+        macros.push(("COMPUTE".into(), u32::from(compute).to_string()));
+        macros.push(("COMBINED".into(), u32::from(combined).to_string()));
+        let name = format!("{name}, {}", if combined { "combined samplers" } else { "separate samplers" });
+        cases.push(Case { tool, compute, shader: shader.to_owned(), name, macros, lacks });
+    };
+    for tool in [Tool::Glslang, Tool::Glslc] {
+        for (compute, combined) in [(false, false), (false, true), (true, false), (true, true)] {
+            for (name, macros) in variants(library) {
+                add(tool, compute, combined, &name, macros, None);
+            }
+        }
+        for bridge in library.files.iter().flat_map(|(_, text)| bridges(text)) {
+            let mut macros = everything(library);
+            macros.push((format!("WITHOUT_{}", bridge.name), "1".into()));
+            add(tool, true, false, &format!("without {}", bridge.name), macros, Some(bridge.name));
+        }
+    }
+    cases
+}
+
+/// What the library can be asked for: in words, and as macros of the host.
+fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
+    let toggles = |on: &dyn Fn(&str) -> bool| -> Vec<(String, String)> {
+        library.toggles.iter().map(|name| (name.clone(), u32::from(on(name)).to_string())).collect()
+    };
+    // The host's literals: an expression of effects, and one rung that is not the first of its field
+    let literals = |effects: &str, rung: Option<&(String, String)>| -> Vec<(String, String)> {
+        let mut macros = vec![("EFFECTS".into(), effects.to_owned()), ("SHAPES".into(), "0".into())];
+        for field in &library.quality_fields {
+            let value = rung.filter(|(of, _)| of == field).map_or("0", |(_, value)| value);
+            macros.push((field.clone(), value.to_owned()));
+        }
+        macros
+    };
+    let all = "0xffffffffu";
+    let mut variants = vec![
+        ("nothing".to_owned(), [toggles(&|_| false), literals("0u", None)].concat()),
+        ("every effect, no toggle".to_owned(), [toggles(&|_| false), literals(all, None)].concat()),
+    ];
+    for name in &library.toggles {
+        variants
+            .push((format!("{name} alone"), [toggles(&|other| other == name), literals(all, None)].concat()));
+    }
+    for name in &library.effects {
+        variants.push((format!("{name} alone"), [toggles(&|_| true), literals(name, None)].concat()));
+    }
+    for rung in &library.rungs {
+        variants
+            .push((format!("{} alone", rung.1), [toggles(&|_| true), literals(all, Some(rung))].concat()));
+    }
+    variants.push(("everything".to_owned(), everything(library)));
+    variants
+}
+
+/// Every toggle on, and all effects and rungs open until the pipeline is made.
+fn everything(library: &Library) -> Vec<(String, String)> {
+    let mut macros: Vec<_> = library.toggles.iter().map(|name| (name.clone(), "1".to_owned())).collect();
+    macros.extend([("SPECIALIZED".to_owned(), "1".to_owned()), ("SHAPES".to_owned(), "1".to_owned())]);
+    macros
+}
+
+/// The example shaders, as they are.
+fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
+    let mut cases = vec![];
+    for entry in std::fs::read_dir(folder).map_err(TaskError::file(folder))? {
+        let shader = entry.map_err(TaskError::file(folder))?.path();
+        let compute = shader.extension().is_some_and(|extension| extension == "comp");
+        for tool in [Tool::Glslang, Tool::Glslc] {
+            let (shader, macros) = (shader.clone(), vec![]);
+            cases.push(Case { tool, compute, shader, name: "example".into(), macros, lacks: None });
+        }
+    }
+    Ok(cases)
+}
+
+impl Case {
+    fn title(&self) -> String {
+        let stage = if self.compute { "compute" } else { "fragment" };
+        let tool = if self.tool == Tool::Glslang { "glslangValidator" } else { "glslc" };
+        let file = self.shader.file_name().unwrap_or_default().to_string_lossy();
+        format!("{tool}, {stage}: {file}, {}", self.name)
+    }
+
+    /// Compiles and validates; `None` where all is as it should be, else what is wrong.
+    fn run(&self, include: &Path, module: &Path) -> Result<Option<String>, TaskError> {
+        let output = self.compile(include, module)?;
+        let said = said(&output);
+        let failure = |what: &str| Some(format!("{}: {what}\n{said}", self.title()));
+        if let Some(lacks) = &self.lacks {
+            let named = said.contains(&format!("{lacks}("));
+            return Ok(match (output.status.success(), named) {
+                (true, _) => failure("must not compile"),
+                (false, false) => failure("fails, as it should, but does not name what is missing"),
+                (false, true) => None,
+            });
+        }
+        if !output.status.success() || said.contains("WARNING") || said.contains("warning") {
+            return Ok(failure("does not compile without a message"));
+        }
+        let output = validate(module)?;
+        let text = crate::matrix::said(&output);
+        Ok((!output.status.success()).then(|| format!("{}: spirv-val says\n{text}", self.title())))
+    }
+
+    fn compile(&self, include: &Path, module: &Path) -> Result<Output, TaskError> {
+        let (mut command, program, package) = match self.tool {
+            Tool::Glslang => {
+                let mut command = Command::new("glslangValidator");
+                let stage = if self.compute { "comp" } else { "frag" };
+                command.args(["--target-env", "vulkan1.1", "-S", stage]);
+                command.arg(format!("-I{}", include.display()));
+                (command, "glslangValidator", "glslang-tools")
+            }
+            Tool::Glslc => {
+                let mut command = Command::new("glslc");
+                let stage = if self.compute { "compute" } else { "fragment" };
+                command.args(["--target-env=vulkan1.1", "-c", &format!("-fshader-stage={stage}"), "-I"]);
+                command.arg(include);
+                (command, "glslc", "glslc")
+            }
+        };
+        command.args(self.macros.iter().map(|(name, value)| format!("-D{name}={value}")));
+        command.arg("-o").arg(module).arg(&self.shader);
+        command.output().map_err(|source| TaskError::Program { program, package, source })
+    }
+}
+
+fn validate(module: &Path) -> Result<Output, TaskError> {
+    let output = Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(module).output();
+    output.map_err(|source| TaskError::Program { program: "spirv-val", package: "spirv-tools", source })
+}
+
+/// Whether spirv-val refuses a good module that lacks its last word.
+fn validator_refuses(module: &Path) -> Result<bool, TaskError> {
+    let bytes = std::fs::read(module).map_err(TaskError::file(module))?;
+    let cut = module.with_extension("cut");
+    std::fs::write(&cut, &bytes[..bytes.len().saturating_sub(4)]).map_err(TaskError::file(&cut))?;
+    Ok(validate(module)?.status.success() && !validate(&cut)?.status.success())
+}
+
+fn said(output: &Output) -> String {
+    (String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)).into_owned()
+}
+
+/// Runs every case, as many at a time as there are processors, and collects what fails in their order.
+fn run_all(
+    cases: &[Case],
+    run: impl Fn(usize, &Case) -> Result<Option<String>, TaskError> + Sync,
+) -> Result<Vec<String>, TaskError> {
+    let next = AtomicUsize::new(0);
+    let work = || -> Result<Vec<(usize, String)>, TaskError> {
+        let mut failures = vec![];
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(index) else { return Ok(failures) };
+            failures.extend(run(index, case)?.map(|failure| (index, failure)));
+        }
+    };
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut failures = vec![];
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        for worker in workers {
+            // A worker that panicked has said so
+            let found = worker.join().unwrap_or_else(|_| std::process::exit(1))?;
+            failures.extend(found);
+        }
+        Ok::<(), TaskError>(())
+    })?;
+    failures.sort();
+    Ok(failures.into_iter().map(|(_, failure)| failure).collect())
+}
+
+/// Lets the command line write the library to `folder`, as a user would.
+fn export(root: &Path, folder: &Path) -> Result<PathBuf, TaskError> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let output = Command::new(cargo)
+        .args(["run", "--locked", "--quiet", "-p", "arealight-cli", "--", "export"])
+        .arg(folder)
+        .current_dir(root)
+        .output()
+        .map_err(|source| TaskError::Program { program: "cargo", package: "cargo", source })?;
+    if output.status.success() {
+        Ok(folder.to_owned())
+    } else {
+        Err(TaskError::Export { message: said(&output) })
+    }
+}
+
+/// A folder that goes when it is dropped.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Result<Self, TaskError> {
+        let path = std::env::temp_dir().join(format!("arealight-matrix-{}", std::process::id()));
+        std::fs::create_dir_all(&path).map_err(TaskError::file(&path))?;
+        Ok(Self(path))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // What cannot be removed is in the system's temporary folder
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(tool: Tool, folder: &Path, text: &str, lacks: Option<&str>) -> Case {
+        let shader = folder.join("host.comp");
+        std::fs::write(&shader, text).unwrap();
+        let lacks = lacks.map(str::to_owned);
+        Case { tool, compute: true, shader, name: "test".into(), macros: vec![], lacks }
+    }
+
+    const GOOD: &str = "#version 450\nlayout(local_size_x = 1) in;\nvoid main() {}\n";
+    const LACKS: &str = "#version 450\nfloat f(float x);\nlayout(local_size_x = 1) in;\n\
+        layout(binding = 0) buffer B { float b; };\nvoid main() { b = f(b); }\n";
+
+    #[test]
+    fn a_case_fails_where_it_should() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        for tool in [Tool::Glslang, Tool::Glslc] {
+            let verdict =
+                |text, lacks| case(tool, folder, text, lacks).run(folder, &folder.join("o.spv")).unwrap();
+            assert_eq!(verdict(GOOD, None), None);
+            assert_eq!(verdict(LACKS, Some("f")), None);
+            assert!(verdict(GOOD, Some("f")).unwrap().contains("must not compile"));
+            assert!(verdict(LACKS, Some("g")).unwrap().contains("does not name"));
+            assert!(verdict(LACKS, None).unwrap().contains("does not compile"));
+        }
+    }
+
+    #[test]
+    fn every_case_runs_once_and_failures_keep_their_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let cases: Vec<Case> = (0..50).map(|_| case(Tool::Glslc, folder.path(), GOOD, None)).collect();
+        let failures = run_all(&cases, |index, _| Ok((index % 7 == 0).then(|| format!("{index}")))).unwrap();
+        assert_eq!(failures, ["0", "7", "14", "21", "28", "35", "42", "49"]);
+    }
+}
