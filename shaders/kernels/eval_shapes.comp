@@ -14,6 +14,7 @@ layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 10) const int SHAPE = 3;
 
+#define SHAPES_BINDING 1
 #define CASES_BINDING 2
 #include "table_image.glsl"
 #include "shape_buffer.glsl"

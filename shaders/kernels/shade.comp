@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Shades a G-buffer with every light of a buffer.
+// Shades a G-buffer with every light of two buffers: polygons, and shapes.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -21,9 +21,11 @@ const int OUTPUT_ADD = 1;
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
 #define LIGHT_TEXTURES_BINDING 8
+#define SHAPES_BINDING 9
 #include "table_image.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"
+#include "shape_buffer.glsl"
 
 layout(set = 0, binding = 7, rgba32f) uniform image2D radiance_image;
 
@@ -31,6 +33,7 @@ layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
     vec3 camera;
     uint light_count;
+    uint shape_count;
 } constants;
 
 // The pixel's position relative to the origin; false where there is no surface.
@@ -63,6 +66,11 @@ void main() {
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
         for (uint index = 0u; index < constants.light_count; index++) {
             radiance += arealight_polygon_radiance(point, load_light(index), EFFECTS, quality);
+        }
+        if (arealight_has_shapes(EFFECTS)) {
+            for (uint index = 0u; index < constants.shape_count; index++) {
+                radiance += arealight_shape_radiance(point, load_shape(index, SHAPE_ANY), EFFECTS, quality);
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 #ifndef SHAPE_BUFFER_GLSL
 #define SHAPE_BUFFER_GLSL
 
-// The list of shapes at binding 1, as the library sees them.
+// The list of shapes as the library sees them. The including kernel defines SHAPES_BINDING.
 
 #include "arealight/shapes.glsl"
 
@@ -21,7 +21,7 @@ const uint SHAPE_TWO_SIDED = 1u;
 // Each shape is what its record says
 const int SHAPE_ANY = 3;
 
-layout(set = 0, binding = 1, std430) readonly buffer Shapes {
+layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
     ArealightGpuShape shapes[];
 };
 

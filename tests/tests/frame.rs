@@ -285,6 +285,7 @@ impl<'a> OnePixel<'a> {
                 specular: sampled(&self.base_color),
                 radiance: Resource::StorageImage { view: self.radiance.view() },
                 light_textures: self.engine.light_textures(),
+                shapes: Resource::buffer(light_buffer.handle()),
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -292,6 +293,7 @@ impl<'a> OnePixel<'a> {
                 camera,
                 position_from_clip: matrix,
                 light_count: lights.len() as u32,
+                shape_count: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

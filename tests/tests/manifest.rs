@@ -231,7 +231,6 @@ fn every_structure_has_the_same_offsets() {
     let eval = module(&kernels::EVAL);
     let reference = module(&kernels::REFERENCE);
     let visibility = module(&kernels::VISIBILITY);
-    let shapes = module(&kernels::EVAL_SHAPES);
     let light = layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
                         texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
                         texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
@@ -240,14 +239,12 @@ fn every_structure_has_the_same_offsets() {
         (&shade, "ArealightGpuLight", light.clone()),
         (&reference, "ArealightGpuLight", light.clone()),
         (&eval, "ArealightGpuLight", light),
-        (&shade, "ShadeConstants", layout!(gpu::ShadeConstants, position_from_clip, camera, light_count)),
-        (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
-        (&shapes, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
         (
-            &shapes,
-            "ArealightGpuShape",
-            layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, ends, axis_v, flags),
+            &shade,
+            "ShadeConstants",
+            layout!(gpu::ShadeConstants, position_from_clip, camera, light_count, shape_count),
         ),
+        (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
         (
             &eval,
             "ArealightGpuCase",
@@ -328,6 +325,16 @@ fn every_structure_has_the_same_offsets() {
 }
 
 #[test]
+fn shapes_have_the_same_offsets() {
+    let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, ends, axis_v, flags);
+    for kernel in [&kernels::SHADE, &kernels::EVAL_SHAPES] {
+        assert_offsets(&module(kernel), "ArealightGpuShape", &shape);
+    }
+    let constants = layout!(gpu::EvalConstants, case_count);
+    assert_offsets(&module(&kernels::EVAL_SHAPES), "EvalConstants", &constants);
+}
+
+#[test]
 fn the_texture_kernels_constants_have_the_same_offsets() {
     for (kernel, structure, expected) in [
         (
@@ -361,6 +368,7 @@ fn array_strides_are_the_sizes_in_rust() {
         (&kernels::EVAL, "cases", size_of::<gpu::GpuCase>()),
         (&kernels::EVAL_SHAPES, "cases", size_of::<gpu::GpuCase>()),
         (&kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
+        (&kernels::SHADE, "shapes", size_of::<gpu::GpuShape>()),
         (&kernels::REFERENCE, "light_sampling", size_of::<gpu::GpuLightSampling>()),
         (&kernels::REFERENCE, "light_triangles", size_of::<gpu::GpuLightTriangle>()),
         (&kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),

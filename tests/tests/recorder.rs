@@ -16,7 +16,7 @@ fn field(error: &Error) -> &'static str {
 }
 
 fn frame() -> ShadeFrame {
-    ShadeFrame { size: [8, 8], camera: Vec3::ZERO, position_from_clip: None, light_count: 0 }
+    ShadeFrame { size: [8, 8], camera: Vec3::ZERO, position_from_clip: None, light_count: 0, shape_count: 0 }
 }
 
 /// Runs `check` with a pass and a command buffer that is being recorded.

@@ -154,6 +154,7 @@ impl<'a> Sweep<'a> {
                 specular: sampled(color),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 light_textures: self.engine.light_textures(),
+                shapes: Resource::buffer(lights.handle()),
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -161,6 +162,7 @@ impl<'a> Sweep<'a> {
                 camera: CAMERA,
                 position_from_clip: None,
                 light_count: 1,
+                shape_count: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

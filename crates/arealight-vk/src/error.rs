@@ -33,6 +33,9 @@ pub enum Error {
     /// A light cannot be used.
     #[error(transparent)]
     Light(#[from] arealight::LightError),
+    /// A shape cannot be used as a light.
+    #[error(transparent)]
+    Shape(#[from] arealight::ShapeError),
     /// A part of an image cannot become a light's texture.
     #[error("layer {layer} of the light textures: {error}")]
     TexturePart {

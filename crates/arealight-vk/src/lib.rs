@@ -23,6 +23,7 @@
 //!     camera: glam::Vec3::ZERO,
 //!     position_from_clip: None,
 //!     light_count: packed.lights.len() as u32,
+//!     shape_count: 0,
 //! };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;
 //! # Ok(()) }

@@ -3,10 +3,10 @@
 use crate::context::Context;
 use crate::error::Error;
 use crate::pass::{ComputePass, Resource};
-use arealight::gpu::ShadeConstants;
+use arealight::gpu::{GpuShape, ShadeConstants};
 use arealight::kernels::{Access, BindingKind, SHADE};
 use arealight::plan::{self, PositionSource, ShadeOptions};
-use arealight::{PackedLights, PolygonLight};
+use arealight::{PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
 
@@ -34,6 +34,9 @@ pub struct ShadeResources {
     /// The lights' textures ([`crate::LightTextures`]); the host sees to it that every light's layer is there. Read only with
     /// [`arealight::Effects::TEXTURED`]: without it any 2D array image, the table's for instance.
     pub light_textures: Resource,
+    /// What [`ShadePass::pack_shapes`] gave. Read only with [`arealight::Effects::SHAPES`]: without them any buffer of 64 bytes
+    /// or more.
+    pub shapes: Resource,
 }
 
 /// What differs from frame to frame.
@@ -48,6 +51,8 @@ pub struct ShadeFrame {
     pub position_from_clip: Option<Mat4>,
     /// How many lights of the buffer are shaded.
     pub light_count: u32,
+    /// How many shapes of their buffer are shaded; none where the pass was made without [`arealight::Effects::SHAPES`].
+    pub shape_count: u32,
 }
 
 /// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
@@ -141,6 +146,26 @@ impl ShadePass {
         }
     }
 
+    /// Packs disks, spheres and tubes for this pass, relative to `origin`; upload them to [`ShadeResources::shapes`].
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for one that cannot be shaded, [`Error::EffectsTooSmall`] as [`ShadePass::pack_lights`].
+    pub fn pack_shapes(&self, shapes: &[ShapeLight], origin: DVec3) -> Result<Vec<GpuShape>, Error> {
+        self.check_shapes(shapes)?;
+        Ok(shapes.iter().map(|shape| shape.pack(origin)).collect::<Result<_, _>>()?)
+    }
+
+    /// Checks that the pass was made with every effect that `shapes` call for.
+    ///
+    /// # Errors
+    /// [`Error::EffectsTooSmall`] names the first shape that calls for more.
+    pub fn check_shapes(&self, shapes: &[ShapeLight]) -> Result<(), Error> {
+        match self.options.effects.missing_for_shapes(shapes) {
+            Some((missing, light)) => Err(Error::EffectsTooSmall { light: light.to_owned(), missing }),
+            None => Ok(()),
+        }
+    }
+
     /// Points a descriptor set at the resources of a run.
     ///
     /// # Safety
@@ -159,6 +184,7 @@ impl ShadePass {
             resources.specular,
             resources.radiance,
             resources.light_textures,
+            resources.shapes,
         ];
         // SAFETY: the same contract.
         unsafe { self.pass.write_set(set, &resources) }
@@ -169,7 +195,7 @@ impl ShadePass {
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
     /// - `set` was written by [`ShadePass::write_set`], with images of `frame.size` and buffers that hold
-    ///   `frame.light_count` lights.
+    ///   `frame.light_count` lights and `frame.shape_count` shapes.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the field of `frame` that is wrong; then nothing is recorded.
@@ -199,6 +225,7 @@ impl ShadePass {
             position_from_clip: position_from_clip.to_cols_array_2d(),
             camera: frame.camera.to_array(),
             light_count: frame.light_count,
+            shape_count: frame.shape_count,
         };
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
         // SAFETY: the same contract.

@@ -23,10 +23,19 @@ bitflags::bitflags! {
         const POLYGON = 1 << 4;
         /// Some light shows an image ([`PolygonLight::texture`](crate::PolygonLight::texture)).
         const TEXTURED = 1 << 5;
+        /// Some light is a disk or an ellipse ([`Shape::Ellipse`](crate::Shape::Ellipse)).
+        const ELLIPSE = 1 << 8;
+        /// Some light is a sphere ([`Shape::Sphere`](crate::Shape::Sphere)).
+        const SPHERE = 1 << 9;
+        /// Some light is a cylinder or a capsule ([`Shape::Tube`](crate::Shape::Tube)).
+        const TUBE = 1 << 10;
     }
 }
 
 impl Effects {
+    /// Every kind of light that is no polygon.
+    pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
+
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
         [
@@ -36,6 +45,9 @@ impl Effects {
             (Self::SPECULAR_INPUT, "specular_input"),
             (Self::POLYGON, "polygon"),
             (Self::TEXTURED, "textured"),
+            (Self::ELLIPSE, "ellipse"),
+            (Self::SPHERE, "sphere"),
+            (Self::TUBE, "tube"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -50,6 +62,14 @@ impl Effects {
             (!missing.is_empty()).then_some((missing, light.name.as_str()))
         })
     }
+
+    /// As [`Effects::missing_for`], of lights that are no polygons.
+    pub fn missing_for_shapes(self, shapes: &[crate::ShapeLight]) -> Option<(Self, &str)> {
+        shapes.iter().filter(|shape| shape.validate().is_ok()).find_map(|shape| {
+            let missing = shape.effects() - self;
+            (!missing.is_empty()).then_some((missing, shape.name.as_str()))
+        })
+    }
 }
 
 impl std::fmt::Display for Effects {
@@ -61,7 +81,7 @@ impl std::fmt::Display for Effects {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PolygonLight;
+    use crate::{PolygonLight, Shape, ShapeLight, TubeEnds};
     use glam::{DVec3, Vec3};
 
     fn light(name: &str, two_sided: bool) -> PolygonLight {
@@ -90,5 +110,31 @@ mod tests {
         let mut star = light("star", false);
         star.vertices = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y, -DVec3::X].into();
         assert_eq!(Effects::TWO_SIDED.missing_for(&[star]), Some((Effects::POLYGON, "star")));
+    }
+
+    #[test]
+    fn a_set_without_a_shape_s_kind_names_it() {
+        let shape = |name: &str, two_sided, shape| ShapeLight {
+            name: name.into(),
+            radiance: Vec3::ONE,
+            two_sided,
+            shape,
+        };
+        let (center, radius) = (DVec3::ZERO, 1.0);
+        let shapes = [
+            shape("sun", false, Shape::Sphere { center, radius }),
+            shape("plate", true, Shape::Ellipse { center, axis_u: DVec3::X, axis_v: DVec3::Y }),
+            shape("lamp", false, Shape::Tube { p0: center, p1: DVec3::X, radius, ends: TubeEnds::Flat }),
+        ];
+        let all = Effects::SHAPES | Effects::TWO_SIDED;
+        assert_eq!(all.missing_for_shapes(&shapes), None);
+        for (without, name) in [
+            (Effects::SPHERE, "sun"),
+            (Effects::ELLIPSE, "plate"),
+            (Effects::TWO_SIDED, "plate"),
+            (Effects::TUBE, "lamp"),
+        ] {
+            assert_eq!((all - without).missing_for_shapes(&shapes), Some((without, name)));
+        }
     }
 }

@@ -87,8 +87,10 @@ pub struct ShadeConstants {
     pub position_from_clip: [[f32; 4]; 4],
     /// The camera's position relative to the origin.
     pub camera: [f32; 3],
-    /// How many lights are shaded.
+    /// How many polygon lights are shaded.
     pub light_count: u32,
+    /// How many shapes are shaded.
+    pub shape_count: u32,
 }
 
 /// Push constants of the Monte Carlo reference kernel.

@@ -153,7 +153,13 @@ const LIGHT_TEXTURES: Binding = read(
      Effects::TEXTURED, else bind any 2D array image",
 );
 
-/// Shades a G-buffer with polygon lights. Push constants: [`crate::gpu::ShadeConstants`].
+const SHAPES: Binding = read(
+    "shapes",
+    BindingKind::StorageBuffer,
+    "GpuShape[]; read only with Effects::SHAPES, else bind any buffer",
+);
+
+/// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].
 pub static SHADE: Kernel = Kernel {
     name: "shade",
     spirv: include_bytes!("../spirv/shade.spv"),
@@ -174,6 +180,7 @@ pub static SHADE: Kernel = Kernel {
             "outgoing radiance in rgb, 1 in a where there is a surface (rgba32f)",
         ),
         LIGHT_TEXTURES,
+        SHAPES,
     ],
     constants: &[
         constant::EFFECTS,

@@ -150,7 +150,14 @@ impl ShapeLight {
 
     /// What the light calls for.
     pub fn effects(&self) -> Effects {
-        if self.two_sided { Effects::TWO_SIDED } else { Effects::empty() }
+        let kind = match self.shape {
+            Shape::Ellipse { .. } => Effects::ELLIPSE,
+            Shape::Sphere { .. } => Effects::SPHERE,
+            Shape::Tube { .. } => Effects::TUBE,
+        };
+        // A tube's inside is not shaded
+        let sides = self.two_sided && kind != Effects::TUBE;
+        if sides { kind | Effects::TWO_SIDED } else { kind }
     }
 
     /// The light as the GPU reads it, relative to `origin`: the subtraction is made in float64, so that a scene far

@@ -16,6 +16,12 @@ const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
 const uint AREALIGHT_EFFECT_POLYGON = 16u;
 // Some light shows an image.
 const uint AREALIGHT_EFFECT_TEXTURED = 32u;
+// Some light is a disk or an ellipse.
+const uint AREALIGHT_EFFECT_ELLIPSE = 256u;
+// Some light is a sphere.
+const uint AREALIGHT_EFFECT_SPHERE = 512u;
+// Some light is a cylinder or a capsule.
+const uint AREALIGHT_EFFECT_TUBE = 1024u;
 
 // Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
 // arealight::Quality::form_factor_bits.

@@ -11,10 +11,30 @@
 // Disks, spheres and tubes as lights: from a light's record to the radiance that a surface reflects of it, as
 // polygon_light.glsl has it for polygons.
 
-// What a shape is. Pass it as a literal or a specialisation constant where all lights of a pass are alike.
+// What a shape is. Where the effects of a pass have one kind alone, the record's is not looked at.
 const int AREALIGHT_SHAPE_ELLIPSE = 0; // a flat disk or ellipse
 const int AREALIGHT_SHAPE_SPHERE = 1;
 const int AREALIGHT_SHAPE_TUBE = 2; // a cylinder or capsule
+
+// Whether any light is a shape.
+bool arealight_has_shapes(uint effects) {
+    return (effects & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u;
+}
+
+// Whether a shape whose record says `kind` is of the kind that has the bit `effect` of the effects: known without the
+// record where no other kind is among them, and false where that kind is not.
+bool arealight_shape_is(int wanted, uint effect, int kind, uint effects) {
+    uint kinds = effects & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
+    return kinds == effect || ((kinds & effect) != 0u && kind == wanted);
+}
+
+bool arealight_is_sphere(int kind, uint effects) {
+    return arealight_shape_is(AREALIGHT_SHAPE_SPHERE, AREALIGHT_EFFECT_SPHERE, kind, effects);
+}
+
+bool arealight_is_tube(int kind, uint effects) {
+    return arealight_shape_is(AREALIGHT_SHAPE_TUBE, AREALIGHT_EFFECT_TUBE, kind, effects);
+}
 
 // A light of constant radiance.
 struct ArealightShape {
@@ -39,10 +59,10 @@ struct ArealightSeenShape {
     ArealightTube tube;
 };
 
-ArealightSeenShape arealight_see_shape(vec3 position, ArealightShape shape) {
+ArealightSeenShape arealight_see_shape(vec3 position, ArealightShape shape, uint effects) {
     ArealightSeenShape seen;
     vec3 center = shape.center - position;
-    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+    if (arealight_is_tube(shape.kind, effects)) {
         seen.tube = arealight_tube(center, shape.axis_u, shape.radius, shape.ends);
         return seen;
     }
@@ -53,7 +73,7 @@ ArealightSeenShape arealight_see_shape(vec3 position, ArealightShape shape) {
     seen.sphere = seen.center;
     seen.radius = shape.radius * scale;
     seen.inside = false;
-    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+    if (arealight_is_sphere(shape.kind, effects)) {
         ArealightSilhouette silhouette = arealight_sphere_silhouette(seen.sphere, seen.radius);
         seen.center = silhouette.center;
         seen.axis_u = silhouette.axis_u;
@@ -101,9 +121,9 @@ float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape
 // What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space.
 // `keeps_lengths`: the lobe is Lambert's.
 vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, ArealightShape shape,
-                          bool keeps_lengths, ArealightQuality quality) {
+                          bool keeps_lengths, uint effects, ArealightQuality quality) {
     float form_factor;
-    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+    if (arealight_is_tube(shape.kind, effects)) {
         float horizon = AREALIGHT_HORIZON_WIDTH * lobe.space.flatness;
         if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
             form_factor = arealight_tube_both_horizons(seen.tube, normal, lobe.space.to_cosine, horizon,
@@ -111,7 +131,7 @@ vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape se
         } else {
             form_factor = arealight_tube_form_factor(seen.tube, lobe.space.to_cosine, horizon, quality.form_factor);
         }
-    } else if (shape.kind == AREALIGHT_SHAPE_SPHERE && keeps_lengths) {
+    } else if (arealight_is_sphere(shape.kind, effects) && keeps_lengths) {
         form_factor = arealight_sphere_form_factor(lobe.space.to_cosine * seen.sphere, seen.radius, shape.two_sided,
                                                    quality.form_factor);
     } else {
@@ -126,12 +146,12 @@ vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape se
 vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape, uint effects,
                               ArealightQuality quality) {
     shape.two_sided = shape.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
-    ArealightSeenShape seen = arealight_see_shape(point.position, shape);
+    ArealightSeenShape seen = arealight_see_shape(point.position, shape, effects);
     vec3 reflected = vec3(0.0);
     if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        reflected = arealight_lobe_shape(point.glossy, point.normal, seen, shape, false, quality);
+        reflected = arealight_lobe_shape(point.glossy, point.normal, seen, shape, false, effects, quality);
         if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {
-            reflected += arealight_lobe_shape(point.schlick, point.normal, seen, shape, false, quality);
+            reflected += arealight_lobe_shape(point.schlick, point.normal, seen, shape, false, effects, quality);
             reflected = max(reflected, vec3(0.0));
         }
     }
@@ -140,7 +160,7 @@ vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape,
         if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
             quality.horizon = AREALIGHT_HORIZON_COSINE;
         }
-        reflected += arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, quality);
+        reflected += arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, effects, quality);
     }
     return shape.radiance * reflected;
 }

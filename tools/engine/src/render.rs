@@ -2,15 +2,16 @@
 
 use crate::kept::Kept;
 use crate::{BoundPass, Engine, EngineError, GBuffer};
+use arealight::gpu::GpuShape;
 use arealight::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight::kernels::{REFERENCE, VISIBILITY};
 use arealight::plan::{Output, PositionSource, ShadeOptions};
-use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality};
+use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality, ShapeLight};
 use arealight_host::{Buffer, DescriptorPool, Usage};
 use arealight_scene::SceneBuffers;
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 use std::time::Duration;
 
 /// A scene on the device, with the images of one view of it.
@@ -20,12 +21,15 @@ use std::time::Duration;
 pub struct SceneRenderer<'a> {
     engine: &'a Engine,
     lights: &'a [PolygonLight],
+    shapes: &'a [ShapeLight],
+    origin: DVec3,
     size: [u32; 2],
     camera: VisibilityConstants,
     g_buffer: GBuffer,
     geometry: [Buffer; 5],
     light_buffer: Buffer,
     vertex_buffer: Buffer,
+    shape_buffer: Buffer,
     sampling: LightSampling,
     shown: bool,
 }
@@ -55,15 +59,30 @@ impl<'a> SceneRenderer<'a> {
         Ok(Self {
             engine,
             lights,
+            shapes: &[],
+            origin: scene.origin,
             size,
             camera,
             g_buffer: GBuffer::new(engine, size)?,
             geometry,
             light_buffer: engine.storage("lights", &packed.lights)?,
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
+            shape_buffer: engine.storage::<GpuShape>("shapes", &[])?,
             sampling: LightSampling::new(lights, &packed),
             shown: false,
         })
+    }
+
+    /// Adds lights that are no polygons.
+    ///
+    /// # Errors
+    /// [`EngineError`] names the shape that cannot be shaded.
+    pub fn with_shapes(mut self, shapes: &'a [ShapeLight]) -> Result<Self, EngineError> {
+        let packed = shapes.iter().map(|shape| shape.pack(self.origin));
+        let packed = packed.collect::<Result<Vec<GpuShape>, _>>()?;
+        self.shape_buffer = self.engine.storage("shapes", &packed)?;
+        self.shapes = shapes;
+        Ok(self)
     }
 
     /// Finds the surface at each pixel, and writes the emission that the camera sees. GPU time, where the
@@ -102,6 +121,7 @@ impl<'a> SceneRenderer<'a> {
         let pass = unsafe { ShadePass::new(self.engine.context(), options) }?;
         let pass = Kept::new(self.engine.host(), pass);
         pass.check_lights(self.lights)?;
+        pass.check_shapes(self.shapes)?;
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
@@ -116,6 +136,7 @@ impl<'a> SceneRenderer<'a> {
             specular,
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             light_textures: self.engine.light_textures(),
+            shapes: Resource::buffer(self.shape_buffer.handle()),
         };
         // SAFETY: The set is new, and the resources live until the submission was waited for.
         unsafe { pass.write_set(set, &resources) }?;
@@ -124,6 +145,7 @@ impl<'a> SceneRenderer<'a> {
             camera: Vec3::from(self.camera.camera),
             position_from_clip: None,
             light_count: self.lights.len() as u32,
+            shape_count: self.shapes.len() as u32,
         };
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);

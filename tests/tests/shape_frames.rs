@@ -1,0 +1,233 @@
+//! Disks, spheres and tubes in the shade pass: pixels of a G-buffer against the float64 oracle.
+
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightTable, Material, Quality, Shape, ShapeLight, TubeEnds};
+use arealight_engine::Engine;
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_oracle::shading::shape_ltc_on;
+use arealight_tests::{Comparison, Random, TestEngine, rounding};
+use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use glam::{DVec3, Vec3, Vec4};
+use std::sync::LazyLock;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+const PIXELS: usize = 512;
+const CAMERA: DVec3 = DVec3::new(0.5, -4.0, 3.0);
+
+/// A pixel's surface.
+struct Pixel {
+    position: DVec3,
+    normal: DVec3,
+    material: Material,
+}
+
+fn pixels() -> Vec<Pixel> {
+    let mut random = Random::new(301);
+    let pixel = |_| Pixel {
+        position: DVec3::new(random.between(-2.0, 2.0), random.between(-2.0, 2.0), 0.0).as_vec3().as_dvec3(),
+        normal: (DVec3::Z + random.direction() * 0.7).as_vec3().as_dvec3(),
+        material: Material {
+            base_color: Vec3::splat(0.75),
+            metalness: 0.5,
+            roughness: random.between(0.4, 1.0) as f32,
+            dielectric_f0: Vec3::splat(0.04),
+            dielectric_f90: 1.0,
+        },
+    };
+    (0..PIXELS).map(pixel).collect()
+}
+
+/// Two of each kind: about the pixels' horizons, and one of them with two sides.
+fn shapes() -> Vec<ShapeLight> {
+    let light = |name: &str, radiance: Vec3, two_sided, shape| ShapeLight {
+        name: name.into(),
+        radiance,
+        two_sided,
+        shape,
+    };
+    let tube =
+        |p0: [f64; 3], p1: [f64; 3], radius, ends| Shape::Tube { p0: p0.into(), p1: p1.into(), radius, ends };
+    vec![
+        light(
+            "disk",
+            Vec3::new(1.0, 2.0, 3.0),
+            false,
+            Shape::Ellipse { center: DVec3::Z * 2.0, axis_u: DVec3::Y * 0.5, axis_v: DVec3::X * 0.5 },
+        ),
+        light(
+            "plate",
+            Vec3::new(3.0, 1.0, 0.5),
+            true,
+            Shape::Ellipse {
+                center: DVec3::new(0.5, 1.0, 0.25),
+                axis_u: DVec3::new(0.5, 0.0, 0.5),
+                axis_v: DVec3::new(0.0, 0.25, 0.125),
+            },
+        ),
+        light(
+            "sun",
+            Vec3::new(2.0, 1.0, 1.0),
+            false,
+            Shape::Sphere { center: DVec3::new(-1.0, 0.0, 1.0), radius: 0.5 },
+        ),
+        light(
+            "ball",
+            Vec3::new(0.0, 2.0, 1.0),
+            false,
+            Shape::Sphere { center: DVec3::new(1.0, -1.0, 0.0), radius: 0.25 },
+        ),
+        light(
+            "lamp",
+            Vec3::new(1.0, 1.0, 2.0),
+            false,
+            tube([-1.0, -1.5, 0.5], [1.0, -1.5, 1.0], 0.125, TubeEnds::Flat),
+        ),
+        light(
+            "pill",
+            Vec3::new(2.0, 2.0, 0.0),
+            false,
+            tube([1.5, 0.5, -0.25], [1.5, 1.5, 0.75], 0.25, TubeEnds::Round),
+        ),
+    ]
+}
+
+fn of_kinds(effects: Effects) -> Vec<ShapeLight> {
+    let kind = |shape: &ShapeLight| shape.effects() - Effects::TWO_SIDED;
+    shapes().into_iter().filter(|shape| effects.contains(kind(shape))).collect()
+}
+
+/// What float64 says that every pixel shows, and the largest radiance of a light summed over them.
+fn expected(shapes: &[ShapeLight]) -> Vec<DVec3> {
+    let of_one = |pixel: &Pixel, shape: &ShapeLight| {
+        let moved = |p: DVec3| p - pixel.position;
+        let shape = ShapeLight {
+            shape: match shape.shape {
+                Shape::Ellipse { center, axis_u, axis_v } => {
+                    Shape::Ellipse { center: moved(center), axis_u, axis_v }
+                }
+                Shape::Sphere { center, radius } => Shape::Sphere { center: moved(center), radius },
+                Shape::Tube { p0, p1, radius, ends } => {
+                    Shape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
+                }
+            },
+            ..shape.clone()
+        };
+        let view = CAMERA - pixel.position;
+        shape_ltc_on(Quality::default(), &TABLE, &pixel.material.surface(), pixel.normal, view, &shape)
+    };
+    pixels().iter().map(|pixel| shapes.iter().map(|shape| of_one(pixel, shape)).sum()).collect()
+}
+
+/// What the shade pass makes of all pixels.
+fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> {
+    let host = engine.host();
+    let image = |name, usage, texels: Vec<[f32; 4]>, ready| {
+        let (format, extent) = (vk::Format::R32G32B32A32_SFLOAT, [PIXELS as u32, 1]);
+        let image =
+            host.image(&ImageDescription { name, extent, layers: 1, format, usage }).expect("an image");
+        image.upload(&texels, ready).expect("an upload");
+        image
+    };
+    let sampled = |name, texel: &dyn Fn(&Pixel) -> Vec4| {
+        let texels = pixels().iter().map(|pixel| texel(pixel).to_array()).collect();
+        image(name, vk::ImageUsageFlags::SAMPLED, texels, Usage::COMPUTE_READ)
+    };
+    let position = sampled("position", &|p| p.position.as_vec3().extend(1.0));
+    let normal = sampled("normal", &|p| p.normal.as_vec3().extend(p.material.roughness));
+    let color = sampled("colour", &|p| p.material.base_color.extend(p.material.metalness));
+    let specular = sampled("specular", &|p| p.material.dielectric_f0.extend(p.material.dielectric_f90));
+    let radiance =
+        image("radiance", vk::ImageUsageFlags::STORAGE, vec![[f32::NAN; 4]; PIXELS], Usage::COMPUTE_WRITE);
+    let read =
+        |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
+    // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+    unsafe {
+        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        let pass = ShadePass::new(engine.context(), options).expect("a pipeline");
+        let packed = pass.pack_shapes(shapes, DVec3::ZERO).expect("shapes");
+        let buffer = host.storage_buffer("shapes", &packed).expect("a buffer");
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");
+        let set = pool.allocate(pass.set_layout()).expect("a set");
+        let resources = ShadeResources {
+            table: engine.table(),
+            lights: Resource::buffer(buffer.handle()),
+            light_vertices: Resource::buffer(buffer.handle()),
+            position: read(&position),
+            normal: read(&normal),
+            base_color: read(&color),
+            specular: read(&specular),
+            radiance: Resource::StorageImage { view: radiance.view() },
+            light_textures: engine.light_textures(),
+            shapes: Resource::buffer(buffer.handle()),
+        };
+        pass.write_set(set, &resources).expect("resources");
+        let frame = ShadeFrame {
+            size: [PIXELS as u32, 1],
+            camera: CAMERA.as_vec3(),
+            position_from_clip: None,
+            light_count: 0,
+            shape_count: shapes.len() as u32,
+        };
+        host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
+    }
+    let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).expect("a download");
+    texels.into_iter().map(Vec4::from_array).collect()
+}
+
+#[test]
+fn pixels_show_what_the_oracle_says_with_every_set_of_kinds() {
+    let Some(engine) = TestEngine::new() else { return };
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    let (disks, balls, tubes) = (Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE);
+    for kinds in [disks, balls, disks | balls, balls | tubes, tubes] {
+        let shapes = of_kinds(kinds);
+        let effects: Effects = shapes.iter().map(ShapeLight::effects).collect();
+        let found = shade(&engine, lobes | effects, &shapes);
+        let expected = expected(&shapes);
+        let mut comparison = Comparison::new(format!("{kinds}"));
+        let mut lit = 0;
+        for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            for (channel, expected) in expected.to_array().into_iter().enumerate() {
+                // The narrowest lobe's rounding, for two lobes of each of the lights, of a radiance of 3 at most
+                let bound = 6.0 * shapes.len() as f64 * rounding(0.16);
+                let place = || format!("pixel {index}, channel {channel}");
+                comparison.add(found[channel].into(), expected, bound, place);
+            }
+            lit += usize::from(expected.max_element() > 0.05);
+        }
+        comparison.assert_all();
+        assert!(lit > PIXELS / 4, "{kinds}: {lit} pixels are lit");
+    }
+}
+
+#[test]
+fn effects_that_no_shape_calls_for_change_nothing() {
+    let Some(engine) = TestEngine::new() else { return };
+    let shapes = of_kinds(Effects::SPHERE);
+    let needed = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPHERE;
+    let (few, many) = (shade(&engine, needed, &shapes), shade(&engine, Effects::all(), &shapes));
+    let apart = few.iter().zip(&many).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
+    // The compiler may fuse another multiplication and addition of another pipeline
+    assert!(apart < 2e-6, "{apart}");
+    // The twin: without its effect a shape is not there
+    let none = shade(&engine, needed - Effects::SPHERE, &[]);
+    assert!(none.iter().all(|pixel| pixel.truncate() == Vec3::ZERO));
+    assert!(few.iter().any(|pixel| pixel.max_element() > 0.1));
+}
+
+#[test]
+fn a_pass_without_a_shape_s_effect_refuses_it() {
+    let Some(engine) = TestEngine::new() else { return };
+    let options = ShadeOptions { effects: Effects::DIFFUSE | Effects::SPHERE, ..ShadeOptions::all() };
+    // SAFETY: Nothing is recorded.
+    let pass = unsafe { ShadePass::new(engine.context(), options) }.expect("a pipeline");
+    let message = pass.pack_shapes(&shapes(), DVec3::ZERO).unwrap_err().to_string();
+    assert!(message.contains("'disk' calls for the effects: ellipse"), "{message}");
+    assert!(pass.pack_shapes(&of_kinds(Effects::SPHERE), DVec3::ZERO).is_ok());
+    let mut broken = of_kinds(Effects::SPHERE);
+    broken[0].radiance.x = f32::NAN;
+    let error = pass.pack_shapes(&broken, DVec3::ZERO).unwrap_err();
+    assert!(matches!(error, Error::Shape(_)), "{error}");
+}
