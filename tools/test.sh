@@ -11,7 +11,7 @@ export PATH="$PATH:${HOME:-/root}/.cargo/bin"
 
 # So many tests must have had a device, where one is required. Raise it with every GPU test that is added: a test
 # that is lost, or returns before it asks for a device, then shows.
-gpu_test_floor=133
+gpu_test_floor=137
 
 tools/setup.sh test || exit 1
 SHADERC_LIB_DIR="$(tools/shaderc.sh)" || exit 1
@@ -54,9 +54,9 @@ run_tests() {
 # under core and synchronisation validation, which cannot be had together with this.)
 run_assisted() {
     if cargo nextest --version >/dev/null 2>&1; then
-        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run -p arealight-tests --locked
+        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run -p arealight-tests -p arealight-examples --locked
     else
-        AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests --tests --locked
+        AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked
     fi
 }
 

@@ -53,6 +53,9 @@ pub struct TableImage {
 }
 
 impl TableImage {
+    /// The layout that [`TableImage::record_upload`] leaves the image in.
+    pub const LAYOUT: vk::ImageLayout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+
     /// Makes the image, without memory.
     ///
     /// # Safety
@@ -132,7 +135,7 @@ impl TableImage {
     }
 
     /// Records the copy from a staging buffer, with the barriers around it: afterwards the image is in layout
-    /// `SHADER_READ_ONLY_OPTIMAL`, visible to compute and fragment shaders.
+    /// [`TableImage::LAYOUT`], visible to compute and fragment shaders.
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.
@@ -157,7 +160,7 @@ impl TableImage {
             .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
         let after = barrier
             .old_layout(vk::ImageLayout::TRANSFER_DST_OPTIMAL)
-            .new_layout(vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)
+            .new_layout(Self::LAYOUT)
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
             .dst_access_mask(vk::AccessFlags::SHADER_READ);
         let copy = vk::BufferImageCopy::default()
@@ -202,16 +205,21 @@ impl TableImage {
         }
     }
 
+    /// A view of all three layers, for shaders of the host's own. Null before [`TableImage::bind_memory`].
+    pub fn view(&self) -> vk::ImageView {
+        self.view
+    }
+
     /// The table as a pass takes it, after the upload. A null view before [`TableImage::bind_memory`], which
     /// `write_set` refuses.
     pub fn resource(&self) -> Resource {
-        Resource::SampledImage { view: self.view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
+        Resource::SampledImage { view: self.view, layout: Self::LAYOUT }
     }
 
     /// The table in place of light textures, for a pass that is made without [`arealight::Effects::TEXTURED`] and
     /// does not read them.
     pub fn in_place_of_textures(&self) -> Resource {
-        Resource::FilteredImage { view: self.view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
+        Resource::FilteredImage { view: self.view, layout: Self::LAYOUT }
     }
 }
 

@@ -16,10 +16,16 @@ pub(crate) struct Instance {
 }
 
 impl Instance {
+    /// For applications of the loader's version of Vulkan, from 1.1 to 1.3.
     pub(crate) fn new(validation: Validation) -> Result<Self, HostError> {
+        Self::for_version(vk::API_VERSION_1_3, validation)
+    }
+
+    /// Likewise, up to `newest`: nothing that came later may be used, and the validation layer says so.
+    pub(crate) fn for_version(newest: u32, validation: Validation) -> Result<Self, HostError> {
         // SAFETY: The loader's library has initialisers that are safe to run.
         let entry = unsafe { ash::Entry::load() }.map_err(HostError::LoaderMissing)?;
-        let api_version = application_version(&entry)?;
+        let api_version = application_version(&entry, newest)?;
         let application = vk::ApplicationInfo::default()
             .application_name(c"arealight")
             .engine_name(c"arealight")
@@ -119,15 +125,15 @@ impl Drop for Instance {
     }
 }
 
-/// The version to ask for: the loader's, from 1.1 to 1.3.
-fn application_version(entry: &ash::Entry) -> Result<u32, HostError> {
+/// The version to ask for: the loader's, from 1.1 to `newest`.
+fn application_version(entry: &ash::Entry, newest: u32) -> Result<u32, HostError> {
     // SAFETY: The loader is open.
     let offered = unsafe { entry.try_enumerate_instance_version() }.named("vkEnumerateInstanceVersion")?;
     let offered = offered.unwrap_or(vk::API_VERSION_1_0);
     if offered < vk::API_VERSION_1_1 {
         return Err(HostError::LoaderTooOld(version_text(offered)));
     }
-    Ok(offered.min(vk::API_VERSION_1_3))
+    Ok(offered.min(newest))
 }
 
 /// A packed version as `major.minor.patch`.

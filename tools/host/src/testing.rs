@@ -12,7 +12,9 @@
 
 use crate::device::{Host, HostOptions};
 use crate::error::HostError;
+use crate::instance::Instance;
 use crate::validation::{Message, MessageLog, Validation};
+use ash::vk;
 use std::io::Write as _;
 use std::sync::Arc;
 
@@ -43,13 +45,63 @@ impl Drop for TestHost {
     }
 }
 
+/// A validated instance of Vulkan 1.1 alone, for the test of a host that makes its own device. It fails the test as a
+/// [`TestHost`] does.
+pub struct TestInstance {
+    /// `None` only while it is being dropped.
+    instance: Option<Instance>,
+    log: Arc<MessageLog>,
+}
+
+impl std::ops::Deref for TestInstance {
+    type Target = ash::Instance;
+
+    fn deref(&self) -> &ash::Instance {
+        let Some(instance) = self.instance.as_ref() else {
+            unreachable!("the instance is taken only by drop")
+        };
+        &instance.raw
+    }
+}
+
+impl Drop for TestInstance {
+    fn drop(&mut self) {
+        // Let the instance go first, so that the layer reports what was never destroyed.
+        self.instance = None;
+        let messages = self.log.take();
+        if !std::thread::panicking() {
+            assert_silent(&messages);
+        }
+    }
+}
+
+/// An instance for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is no device: return then.
+///
+/// # Panics
+/// As [`device_or_skip`].
+pub fn instance_or_skip() -> Option<TestInstance> {
+    let made =
+        Instance::for_version(vk::API_VERSION_1_1, validation_asked_for()).and_then(
+            |instance| match instance.physical_devices()?.len() {
+                0 => Err(HostError::NoDevice { found: vec![] }),
+                _ => Ok(instance),
+            },
+        );
+    let instance = made_or_skip(made)?;
+    Some(TestInstance { log: Arc::clone(&instance.messages), instance: Some(instance) })
+}
+
 /// A device for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is none: return then.
 ///
 /// # Panics
 /// Where `AREALIGHT_REQUIRE_GPU=1` and the device or the validation layer is missing; where Vulkan fails in
 /// another way; where a variable has no known value.
 pub fn device_or_skip() -> Option<TestHost> {
-    let validation = match std::env::var("AREALIGHT_VALIDATION").as_deref() {
+    device_with(validation_asked_for())
+}
+
+fn validation_asked_for() -> Validation {
+    match std::env::var("AREALIGHT_VALIDATION").as_deref() {
         Err(_) | Ok("synchronization") => Validation::Synchronization,
         Ok("core") => Validation::Core,
         Ok("gpu-assisted") => Validation::GpuAssisted,
@@ -57,8 +109,7 @@ pub fn device_or_skip() -> Option<TestHost> {
         Ok(other) => {
             panic!("AREALIGHT_VALIDATION={other}: must be off, core, synchronization or gpu-assisted")
         }
-    };
-    device_with(validation)
+    }
 }
 
 /// As [`device_or_skip`], validated in a way that the test insists on.
@@ -68,11 +119,17 @@ pub fn device_or_skip() -> Option<TestHost> {
 pub fn device_with(validation: Validation) -> Option<TestHost> {
     let options =
         HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() };
+    let host = made_or_skip(Host::new(options))?;
+    Some(TestHost { log: host.message_log(), host: Some(host) })
+}
+
+/// What was made, and a line in the log; `None` where there is no device and none is required.
+fn made_or_skip<T>(made: Result<T, HostError>) -> Option<T> {
     let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
-    match Host::new(options) {
-        Ok(host) => {
+    match made {
+        Ok(made) => {
             record("ran");
-            Some(TestHost { log: host.message_log(), host: Some(host) })
+            Some(made)
         }
         Err(error) if required => panic!("AREALIGHT_REQUIRE_GPU=1, and: {error}"),
         Err(error @ (HostError::LoaderMissing(_) | HostError::NoDevice { .. })) => {

@@ -10,12 +10,11 @@ use std::path::Path;
 /// Folders that `#include` searches after the including file's own, from the checkout's root.
 pub const INCLUDE_FOLDERS: [&str; 2] = ["shaders/include", "shaders/kernels"];
 
-/// What decides the SPIR-V beside the sources; a part of the hash of the sources.
-pub const OPTIONS: &str = "glsl compute, vulkan 1.1, spirv 1.3, not optimised, warnings are errors";
-
 /// A compiled kernel.
 #[derive(Debug)]
 pub struct Compiled {
+    /// What decides the SPIR-V beside the sources; a part of the hash of the sources.
+    pub options: String,
     /// The SPIR-V module, little-endian.
     pub spirv: Vec<u8>,
     /// Path from the checkout's root, and text, of the kernel and of each file it includes.
@@ -43,12 +42,18 @@ pub fn compile(root: &Path, path: &str) -> Result<Result<Compiled, String>, Task
         Ok(ResolvedInclude { resolved_name: path, content: text })
     });
 
-    let result = compiler.compile_into_spirv(&text, ShaderKind::Compute, path, "main", Some(&options));
+    let (kind, stage) = match Path::new(path).extension().and_then(std::ffi::OsStr::to_str) {
+        Some("vert") => (ShaderKind::Vertex, "vertex"),
+        Some("frag") => (ShaderKind::Fragment, "fragment"),
+        _ => (ShaderKind::Compute, "compute"),
+    };
+    let result = compiler.compile_into_spirv(&text, kind, path, "main", Some(&options));
     let mut included = included.take();
     Ok(match result {
         Ok(artifact) => {
             included.sources.insert(path.to_owned(), text);
-            Ok(Compiled { spirv: artifact.as_binary_u8().to_vec(), sources: included.sources })
+            let options = format!("glsl {stage}, vulkan 1.1, spirv 1.3, not optimised, warnings are errors");
+            Ok(Compiled { options, spirv: artifact.as_binary_u8().to_vec(), sources: included.sources })
         }
         Err(shaderc::Error::CompilationError(_, messages)) => Err(included.explain(&messages)),
         Err(error) => Err(format!("{path}: error: {error}")),

@@ -1,7 +1,7 @@
 //! The record beside the SPIR-V files of what they were made from.
 
 use crate::TaskError;
-use crate::compile::{Compiled, OPTIONS};
+use crate::compile::Compiled;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ impl Entry {
     /// What was just compiled.
     pub fn of(compiled: &Compiled) -> Self {
         Self {
-            source_sha256: source_hash(&compiled.sources),
+            source_sha256: source_hash(&compiled.options, &compiled.sources),
             spirv_sha256: hash(&compiled.spirv),
             compiler: compiler_of(&compiled.spirv),
         }
@@ -71,10 +71,10 @@ pub fn hash(bytes: &[u8]) -> String {
 }
 
 /// Hashes the options, then path and text of each source, each with its length before it.
-fn source_hash(sources: &BTreeMap<String, String>) -> String {
+fn source_hash(options: &str, sources: &BTreeMap<String, String>) -> String {
     let mut bytes = vec![];
     let parts = sources.iter().flat_map(|(path, text)| [path.as_str(), text.as_str()]);
-    for part in std::iter::once(OPTIONS).chain(parts) {
+    for part in std::iter::once(options).chain(parts) {
         bytes.extend((part.len() as u64).to_le_bytes());
         bytes.extend(part.as_bytes());
     }
@@ -109,10 +109,10 @@ mod tests {
 
     #[test]
     fn the_source_hash_tells_apart_what_concatenation_does_not() {
-        let one = source_hash(&sources(&[("a", "bc"), ("d", "e")]));
-        assert_eq!(one, source_hash(&sources(&[("d", "e"), ("a", "bc")])), "the order is the paths'");
-        assert_ne!(one, source_hash(&sources(&[("ab", "c"), ("d", "e")])));
-        assert_ne!(one, source_hash(&sources(&[("a", "bcd"), ("", "e")])));
+        let one = source_hash("", &sources(&[("a", "bc"), ("d", "e")]));
+        assert_eq!(one, source_hash("", &sources(&[("d", "e"), ("a", "bc")])), "the order is the paths'");
+        assert_ne!(one, source_hash("", &sources(&[("ab", "c"), ("d", "e")])));
+        assert_ne!(one, source_hash("", &sources(&[("a", "bcd"), ("", "e")])));
     }
 
     #[test]

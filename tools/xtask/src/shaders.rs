@@ -9,26 +9,28 @@ use std::process::{Command, Stdio};
 
 const REMEDY: &str = "run: SHADERC_LIB_DIR=\"$(tools/shaderc.sh)\" cargo run -p xtask -- shaders";
 
-/// Kernels and where their modules go, both from the checkout's root.
+/// Kernels, or shaders of other stages, and where their modules go, both from the checkout's root.
 struct KernelSet {
     sources: &'static str,
     modules: &'static str,
 }
 
-/// What the crate `arealight` embeds, what only the benchmarks and the tests run, and the wrong-doers that the host's
-/// tests must catch.
-const SETS: [KernelSet; 4] = [
+/// What the crate `arealight` embeds, what only the benchmarks and the tests run, the wrong-doers that the host's
+/// tests must catch, and what the example hosts draw with.
+const SETS: [KernelSet; 5] = [
     KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
     KernelSet { sources: "benches/kernels", modules: "benches/spirv" },
     KernelSet { sources: "tests/kernels", modules: "tests/spirv" },
     KernelSet { sources: "tools/host/tests/canary", modules: "tools/host/tests/canary" },
+    KernelSet { sources: "examples/rust/shaders", modules: "examples/rust/spirv" },
 ];
 
 /// Compile the kernels to the SPIR-V that is checked in.
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
 /// the sources' hash, the module's hash and the compiler. Likewise benches/kernels into
-/// benches/spirv, tests/kernels into tests/spirv, and tools/host/tests/canary.
+/// benches/spirv, tests/kernels into tests/spirv, and tools/host/tests/canary; examples/rust/shaders into
+/// examples/rust/spirv, of which shaders of other stages (*.vert, *.frag) keep that ending in their names.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.
@@ -127,9 +129,15 @@ struct Checkout<'a> {
 }
 
 impl Checkout<'_> {
-    /// The kernels' names, sorted.
+    /// The kernels' names, sorted: those of files, without the ending of a compute shader.
     fn kernels(&self) -> Result<Vec<String>, TaskError> {
-        stems(&self.root.join(self.set.sources), "comp")
+        let folder = self.root.join(self.set.sources);
+        let mut names = stems(&folder, "comp")?;
+        for stage in ["vert", "frag"] {
+            names.extend(stems(&folder, stage)?.into_iter().map(|stem| format!("{stem}.{stage}")));
+        }
+        names.sort();
+        Ok(names)
     }
 
     fn modules(&self) -> PathBuf {
@@ -195,7 +203,8 @@ impl Checkout<'_> {
 
     /// Compiles a kernel and has spirv-val look at the module, where that tool is installed.
     fn compile(&self, name: &str) -> Result<Result<Compiled, String>, TaskError> {
-        let path = format!("{}/{name}.comp", self.set.sources);
+        let ending = if name.contains('.') { "" } else { ".comp" };
+        let path = format!("{}/{name}{ending}", self.set.sources);
         let compiled = match compile(self.root, &path)? {
             Ok(compiled) => compiled,
             Err(messages) => return Ok(Err(messages)),

@@ -1,0 +1,257 @@
+//! A deferred engine: it draws a G-buffer of its own, and Arealight shades it.
+
+use crate::Result;
+use crate::draw::{Draw, DrawOptions, Users};
+use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory};
+use crate::picture::{Picture, Readback};
+use crate::scene;
+use arealight::gpu::GpuLight;
+use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::{Effects, Quality};
+use arealight_vk::{
+    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
+};
+use ash::vk;
+use glam::{Vec3, Vec4};
+
+/// What the buffers of the lights have room for.
+const MOST_LIGHTS: usize = 16;
+
+/// The engine, with images of one size. Fields are dropped from the top: frames in flight end first, and memory goes
+/// after what lies in it.
+pub struct Deferred<'a> {
+    frames: Frames<'a>,
+    places: Vec<Place<'a>>,
+    readback: Readback<'a>,
+    draw: Draw<'a>,
+    shade: ShadePass,
+    _sets: DescriptorPool<'a>,
+    _table: TableImage,
+    _table_memory: Memory<'a>,
+    g_buffer: GBuffer<'a>,
+    size: [u32; 2],
+}
+
+/// The images: depth, and what the fragment shader writes.
+struct GBuffer<'a> {
+    depth: Image<'a>,
+    normal_roughness: Image<'a>,
+    base_color_metalness: Image<'a>,
+    radiance: Image<'a>,
+}
+
+/// What each frame in flight has for itself, because the CPU writes it anew for every frame.
+struct Place<'a> {
+    vertices: Buffer<'a>,
+    lights: Buffer<'a>,
+    light_vertices: Buffer<'a>,
+    set: vk::DescriptorSet,
+}
+
+impl<'a> Deferred<'a> {
+    /// Makes the engine for pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
+        let mut frames = Frames::new(gpu)?;
+        let g_buffer = GBuffer::new(gpu, size)?;
+
+        // doc: context
+        // Hand over the device: handles only, which stay yours
+        let host = HostDevice {
+            instance: gpu.instance,
+            physical_device: gpu.physical_device,
+            device: &gpu.device,
+            pipeline_cache: vk::PipelineCache::null(), // or yours
+        };
+        // SAFETY: the handles belong together, and outlive what is made of the context.
+        let context = unsafe { Context::new(&host) }?;
+        // doc end
+
+        // doc: pass
+        // Make the pass for what your scenes call for, and nothing else
+        let options = ShadeOptions {
+            effects: Effects::DIFFUSE | Effects::GLOSSY,
+            quality: Quality::default(),
+            position: PositionSource::Depth,
+            output: Output::Add, // to the emission that was drawn
+        };
+        // SAFETY: the pass is dropped after the frames, and before the device.
+        let shade = unsafe { ShadePass::new(&context, options) }?;
+        // doc end
+
+        // doc: table
+        // Give the light table memory, and fill it
+        let table = arealight_table::ggx();
+        let format = TableFormat::Rgba16Float;
+        // SAFETY: the image goes after the frames, and its memory after the image.
+        let mut image = unsafe { TableImage::new(&context, &table, format) }?;
+        let memory = gpu.device_memory(image.memory_requirements())?;
+        // SAFETY: the memory was made for the image.
+        unsafe { image.bind_memory(memory.raw, 0) }?;
+        let bytes = format.bytes(&table);
+        let staging = gpu.buffer(vk::BufferUsageFlags::TRANSFER_SRC, bytes.len())?;
+        staging.write(&bytes)?;
+        frames.submit(|_, commands| {
+            // SAFETY: the staging buffer holds the table until the wait below.
+            unsafe { image.record_upload(commands, staging.raw, 0) };
+            Ok(())
+        })?;
+        frames.wait()?;
+        // doc end
+
+        // doc: sets
+        // Point a descriptor set of yours at your images and buffers, for each frame in flight
+        let sets = DescriptorPool::new(gpu, &shade.pool_sizes(FRAMES_IN_FLIGHT as u32))?;
+        let mut places = vec![];
+        for _ in 0..FRAMES_IN_FLIGHT {
+            // SAFETY: the layout is the pass's.
+            let place = Place::new(gpu, unsafe { sets.allocate(shade.set_layout()) }?)?;
+            let sampled = |image: &Image<'_>, layout| Resource::SampledImage { view: image.view, layout };
+            let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+            let base_color = sampled(&g_buffer.base_color_metalness, read_only);
+            let resources = ShadeResources {
+                table: image.resource(),
+                lights: Resource::buffer(place.lights.raw),
+                light_vertices: Resource::buffer(place.light_vertices.raw),
+                position: sampled(&g_buffer.depth, vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL),
+                normal: sampled(&g_buffer.normal_roughness, read_only),
+                base_color,
+                specular: base_color, // not read without Effects::SPECULAR_INPUT
+                radiance: Resource::StorageImage { view: g_buffer.radiance.view },
+                light_textures: image.in_place_of_textures(), // nor these without Effects::TEXTURED
+                shapes: Resource::buffer(place.lights.raw),   // nor these without Effects::SHAPES
+            };
+            // SAFETY: the set is new, and goes before the resources.
+            unsafe { shade.write_set(place.set, &resources) }?;
+            places.push(place);
+        }
+        // doc end
+
+        // doc: barriers
+        // Place your barriers by what the pass says of itself: here, in the render pass
+        let accesses = shade.accesses();
+        let users = Users {
+            stages: accesses.iter().fold(vk::PipelineStageFlags::TRANSFER, |all, one| all | one.stage),
+            access: accesses.iter().fold(vk::AccessFlags::TRANSFER_READ, |all, one| all | one.access),
+        };
+        // doc end
+        // SAFETY: the images outlive the drawing, which is dropped after the frames.
+        let draw = unsafe { g_buffer.make_draw(gpu, size, users) }?;
+        let readback = Readback::new(gpu, size)?;
+        Ok(Self {
+            frames,
+            places,
+            readback,
+            draw,
+            shade,
+            _sets: sets,
+            _table: image,
+            _table_memory: memory,
+            g_buffer,
+            size,
+        })
+    }
+
+    /// Draws and shades the scene as it is after `seconds`. Waits for nothing but the frame before the last.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn frame(&mut self, seconds: f64) -> Result<()> {
+        let Self { frames, places, draw, shade, size, .. } = self;
+        frames.submit(|place, commands| {
+            let place = &places[place];
+            // doc: frame
+            // Write what is new in this frame: no other frame reads this place's buffers
+            let camera = scene::camera(*size);
+            let packed = shade.pack_lights(&scene::lights(seconds), camera.position.as_dvec3())?;
+            place.lights.write(bytemuck::cast_slice(&packed.lights))?;
+            place.light_vertices.write(bytemuck::cast_slice(&packed.vertices))?;
+            let vertices = scene::vertices(seconds);
+            place.vertices.write(bytemuck::cast_slice(&vertices))?;
+
+            // Draw the G-buffer, and shade it: all is relative to the camera
+            let frame = ShadeFrame {
+                size: *size,
+                camera: Vec3::ZERO,
+                position_from_clip: Some(camera.clip_from_view.inverse()),
+                light_count: packed.lights.len() as u32,
+                shape_count: 0,
+            };
+            // SAFETY: the commands are being recorded; buffers and sets are this place's.
+            unsafe {
+                draw.record(commands, &camera, place.vertices.raw, vertices.len(), None);
+                shade.record(commands, place.set, &frame)?;
+            }
+            // doc end
+            Ok(())
+        })
+    }
+
+    /// Waits for the last frame, and returns its radiance.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn picture(&mut self) -> Result<Picture> {
+        let Self { frames, readback, g_buffer, .. } = self;
+        readback.read(
+            frames,
+            &g_buffer.radiance,
+            vk::ImageLayout::GENERAL,
+            Users { stages: vk::PipelineStageFlags::COMPUTE_SHADER, access: vk::AccessFlags::SHADER_WRITE },
+        )
+    }
+}
+
+impl<'a> GBuffer<'a> {
+    fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
+        // doc: g_buffer
+        let (color, sampled) = (vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::SAMPLED);
+        let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
+        let radiance = color | vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
+        Ok(Self {
+            depth: gpu.image(vk::Format::D32_SFLOAT, size, depth)?,
+            normal_roughness: gpu.image(vk::Format::R16G16B16A16_SFLOAT, size, color | sampled)?,
+            base_color_metalness: gpu.image(vk::Format::R8G8B8A8_UNORM, size, color | sampled)?,
+            radiance: gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, radiance)?,
+        })
+        // doc end
+    }
+
+    /// The drawing into these images.
+    ///
+    /// # Safety
+    /// As [`Draw::new`].
+    unsafe fn make_draw(&self, gpu: &'a Gpu<'a>, size: [u32; 2], users: Users) -> Result<Draw<'a>> {
+        let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+        let colors = [
+            (&self.normal_roughness, read_only),
+            (&self.base_color_metalness, read_only),
+            (&self.radiance, vk::ImageLayout::GENERAL), // as the pass wants it
+        ];
+        let options = DrawOptions {
+            colors: &colors,
+            depth: &self.depth,
+            size,
+            fragment: include_bytes!("../spirv/g_buffer.frag.spv"),
+            set_layout: None,
+            users,
+        };
+        // SAFETY: the same contract.
+        unsafe { Draw::new(gpu, &options) }
+    }
+}
+
+impl<'a> Place<'a> {
+    fn new(gpu: &'a Gpu<'a>, set: vk::DescriptorSet) -> Result<Self> {
+        let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
+        let vertices = size_of_val(scene::vertices(0.0).as_slice());
+        Ok(Self {
+            vertices: gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, vertices)?,
+            lights: gpu.buffer(storage, MOST_LIGHTS * size_of::<GpuLight>())?,
+            light_vertices: gpu.buffer(storage, MOST_LIGHTS * 4 * size_of::<Vec4>())?,
+            set,
+        })
+    }
+}

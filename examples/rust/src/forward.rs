@@ -1,0 +1,264 @@
+//! A forward engine: its fragment shader includes the GLSL library, and reads table and lights by bridges of its own.
+
+use crate::Result;
+use crate::draw::{Draw, DrawOptions, Users};
+use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory};
+use crate::picture::{Picture, Readback};
+use crate::scene;
+use arealight::PackedLights;
+use arealight_vk::{Context, HostDevice, TableFormat, TableImage};
+use ash::vk;
+use bytemuck::{Pod, Zeroable};
+
+/// The engine, with images of one size. Fields are dropped from the top, as those of the deferred one.
+pub struct Forward<'a> {
+    frames: Frames<'a>,
+    places: Vec<Place<'a>>,
+    readback: Readback<'a>,
+    draw: Draw<'a>,
+    _sets: DescriptorPool<'a>,
+    _bindings: Bindings<'a>,
+    _table: TableImage,
+    _table_memory: Memory<'a>,
+    radiance: Image<'a>,
+    _depth: Image<'a>,
+    size: [u32; 2],
+}
+
+/// What each frame in flight has for itself.
+struct Place<'a> {
+    vertices: Buffer<'a>,
+    lamps: Buffer<'a>,
+    set: vk::DescriptorSet,
+}
+
+// doc: lamps
+/// A light as `forward.frag` reads it: of [`arealight::gpu::GpuLight`] what lights without an image need.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Lamp {
+    radiance: [f32; 3],
+    first_vertex: u32,
+    center: [f32; 3],
+    radius: f32,
+    area: [f32; 3],
+    vertex_count: u32,
+}
+
+/// The uniform buffer of `forward.frag`.
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct Uniforms {
+    lamps: [Lamp; 16],
+    vertices: [[f32; 4]; 64],
+    lamp_count: u32,
+}
+
+impl Uniforms {
+    fn new(packed: &PackedLights) -> Result<Self> {
+        let mut all = Self::zeroed();
+        if packed.lights.len() > all.lamps.len() || packed.vertices.len() > all.vertices.len() {
+            return Err("more lights than the uniform buffer holds".into());
+        }
+        for (lamp, light) in all.lamps.iter_mut().zip(&packed.lights) {
+            *lamp = Lamp {
+                radiance: light.radiance,
+                first_vertex: light.first_vertex,
+                center: light.center,
+                radius: light.radius,
+                area: light.area,
+                vertex_count: light.vertex_count,
+            };
+        }
+        all.vertices[..packed.vertices.len()].copy_from_slice(&packed.vertices);
+        all.lamp_count = packed.lights.len() as u32;
+        Ok(all)
+    }
+}
+// doc end
+
+impl<'a> Forward<'a> {
+    /// Makes the engine for pictures of `size` pixels.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
+        let mut frames = Frames::new(gpu)?;
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+        let radiance = gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, usage)?;
+        let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+        let depth = gpu.image(vk::Format::D32_SFLOAT, size, usage)?;
+
+        // Give the light table memory, and fill it
+        let (table, table_memory) = upload_table(gpu, &mut frames)?;
+
+        // Point a set at the table and at each place's lights
+        let bindings = Bindings::new(gpu)?;
+        let sets = DescriptorPool::new(gpu, &Bindings::pool_sizes())?;
+        let mut places = vec![];
+        for _ in 0..FRAMES_IN_FLIGHT {
+            let vertices = size_of_val(scene::vertices(0.0).as_slice());
+            let place = Place {
+                vertices: gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, vertices)?,
+                lamps: gpu.buffer(vk::BufferUsageFlags::UNIFORM_BUFFER, size_of::<Uniforms>())?,
+                // SAFETY: the layout is ours.
+                set: unsafe { sets.allocate(bindings.layout) }?,
+            };
+            // SAFETY: the set is new, and goes before table and buffer.
+            unsafe { bindings.write(place.set, &table, &place.lamps) };
+            places.push(place);
+        }
+
+        let options = DrawOptions {
+            colors: &[(&radiance, vk::ImageLayout::TRANSFER_SRC_OPTIMAL)],
+            depth: &depth,
+            size,
+            fragment: include_bytes!("../spirv/forward.frag.spv"),
+            set_layout: Some(bindings.layout),
+            users: READER,
+        };
+        // SAFETY: images and layout outlive the drawing, which is dropped after the frames.
+        let draw = unsafe { Draw::new(gpu, &options) }?;
+        Ok(Self {
+            readback: Readback::new(gpu, size)?,
+            frames,
+            places,
+            draw,
+            _sets: sets,
+            _bindings: bindings,
+            _table: table,
+            _table_memory: table_memory,
+            radiance,
+            _depth: depth,
+            size,
+        })
+    }
+
+    /// Draws the scene as it is after `seconds`. Waits for nothing but the frame before the last.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn frame(&mut self, seconds: f64) -> Result<()> {
+        let Self { frames, places, draw, size, .. } = self;
+        frames.submit(|place, commands| {
+            let place = &places[place];
+            // doc: frame
+            let camera = scene::camera(*size);
+            let packed = PackedLights::new(&scene::lights(seconds), camera.position.as_dvec3())?;
+            place.lamps.write(bytemuck::bytes_of(&Uniforms::new(&packed)?))?;
+            // doc end
+            let vertices = scene::vertices(seconds);
+            place.vertices.write(bytemuck::cast_slice(&vertices))?;
+            // SAFETY: the commands are being recorded; buffers and set are this place's.
+            unsafe {
+                draw.record(commands, &camera, place.vertices.raw, vertices.len(), Some(place.set));
+            }
+            Ok(())
+        })
+    }
+
+    /// Waits for the last frame, and returns its radiance.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn picture(&mut self) -> Result<Picture> {
+        // What the render pass left is visible to transfers
+        self.readback.read(&mut self.frames, &self.radiance, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, READER)
+    }
+}
+
+/// Who uses the image beside the drawing.
+const READER: Users =
+    Users { stages: vk::PipelineStageFlags::TRANSFER, access: vk::AccessFlags::TRANSFER_READ };
+
+/// The table on the device, with its memory.
+fn upload_table<'a>(gpu: &'a Gpu<'a>, frames: &mut Frames<'_>) -> Result<(TableImage, Memory<'a>)> {
+    // doc: table
+    let host = HostDevice {
+        instance: gpu.instance,
+        physical_device: gpu.physical_device,
+        device: &gpu.device,
+        pipeline_cache: vk::PipelineCache::null(),
+    };
+    let (table, format) = (arealight_table::ggx(), TableFormat::Rgba16Float);
+    // SAFETY: the handles belong together; the image goes after the frames, and its memory after the image.
+    let mut image = unsafe { TableImage::new(&Context::new(&host)?, &table, format) }?;
+    let memory = gpu.device_memory(image.memory_requirements())?;
+    // SAFETY: the memory was made for the image.
+    unsafe { image.bind_memory(memory.raw, 0) }?;
+    // doc end
+    let bytes = format.bytes(&table);
+    let staging = gpu.buffer(vk::BufferUsageFlags::TRANSFER_SRC, bytes.len())?;
+    staging.write(&bytes)?;
+    frames.submit(|_, commands| {
+        // SAFETY: the staging buffer holds the table until the wait below.
+        unsafe { image.record_upload(commands, staging.raw, 0) };
+        Ok(())
+    })?;
+    frames.wait()?;
+    Ok((image, memory))
+}
+
+/// Set 0 of `forward.frag`: the table with a sampler, and the lights.
+struct Bindings<'a> {
+    gpu: &'a Gpu<'a>,
+    sampler: vk::Sampler,
+    layout: vk::DescriptorSetLayout,
+}
+
+impl<'a> Bindings<'a> {
+    const TYPES: [vk::DescriptorType; 2] =
+        [vk::DescriptorType::COMBINED_IMAGE_SAMPLER, vk::DescriptorType::UNIFORM_BUFFER];
+
+    fn new(gpu: &'a Gpu<'a>) -> Result<Self> {
+        let bindings: Vec<_> = (0..)
+            .zip(Self::TYPES)
+            .map(|(number, kind)| {
+                let binding = vk::DescriptorSetLayoutBinding::default().binding(number);
+                binding.descriptor_type(kind).descriptor_count(1).stage_flags(vk::ShaderStageFlags::FRAGMENT)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        let mut made = Self { gpu, sampler: vk::Sampler::null(), layout: vk::DescriptorSetLayout::null() };
+        // SAFETY: the device is alive. The table is read by texel, so that any sampler will do.
+        unsafe {
+            made.sampler = gpu.device.create_sampler(&vk::SamplerCreateInfo::default(), None)?;
+            made.layout = gpu.device.create_descriptor_set_layout(&info, None)?;
+        }
+        Ok(made)
+    }
+
+    fn pool_sizes() -> [vk::DescriptorPoolSize; 2] {
+        Self::TYPES.map(|ty| vk::DescriptorPoolSize { ty, descriptor_count: FRAMES_IN_FLIGHT as u32 })
+    }
+
+    /// # Safety
+    /// As of `vkUpdateDescriptorSets`.
+    unsafe fn write(&self, set: vk::DescriptorSet, table: &TableImage, lamps: &Buffer<'_>) {
+        let image = [vk::DescriptorImageInfo {
+            sampler: self.sampler,
+            image_view: table.view(),
+            image_layout: TableImage::LAYOUT,
+        }];
+        let buffer = [vk::DescriptorBufferInfo { buffer: lamps.raw, offset: 0, range: vk::WHOLE_SIZE }];
+        let write = |binding: u32| {
+            vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .dst_binding(binding)
+                .descriptor_type(Self::TYPES[binding as usize])
+        };
+        let writes = [write(0).image_info(&image), write(1).buffer_info(&buffer)];
+        // SAFETY: the caller's contract.
+        unsafe { self.gpu.device.update_descriptor_sets(&writes, &[]) };
+    }
+}
+
+impl Drop for Bindings<'_> {
+    fn drop(&mut self) {
+        // SAFETY: this goes after the frames.
+        unsafe {
+            self.gpu.device.destroy_descriptor_set_layout(self.layout, None);
+            self.gpu.device.destroy_sampler(self.sampler, None);
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! Two small engines that embed Arealight, each with a device, memory and frames in flight of its own:
+//!
+//! - [`deferred`] draws a G-buffer, and records the recorder's pass (`arealight-vk`) behind it;
+//! - [`forward`] includes the GLSL library in its fragment shader, and needs the recorder for the table's image alone.
+//!
+//! ```sh
+//! cargo run --release -p arealight-examples --bin deferred -- deferred.png
+//! cargo run --release -p arealight-examples --bin forward -- forward.png
+//! ```
+//!
+//! Both make the same picture. What is theirs alone is in [`deferred`] and [`forward`]; what every Vulkan engine has
+//! is in [`gpu`] and [`draw`].
+
+pub mod command_line;
+pub mod deferred;
+pub mod draw;
+pub mod forward;
+pub mod gpu;
+pub mod picture;
+pub mod scene;
+
+/// What can fail; an engine would have a type of its own.
+pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
