@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick: integrates the true BRDF (Lambert + GGX) over the same polygon lights by Monte Carlo, at the
+// The yardstick: integrates the true BRDF (Lambert + GGX) over the same lights by Monte Carlo, at the
 // same G-buffer, without visibility, as the shade kernel. For each light one direction drawn from its area and
 // the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995).
 
@@ -11,10 +11,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define LIGHTS_BINDING 0
 #define G_BUFFER_BINDING 4
 #define LIGHT_TEXTURES_BINDING 9
+#define SHAPES_BINDING 10
 #include "arealight/ggx.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"
 #include "random.glsl"
+#include "shape_sampling.glsl"
 
 struct ArealightGpuLightSampling {
     vec3 normal;
@@ -47,6 +49,7 @@ layout(push_constant, std430) uniform ReferenceConstants {
     uint sample_count;
     float weight;
     uint seed;
+    uint shape_count;
 } constants;
 
 // A surface with its frame: directions below are in the frame, z being the normal.
@@ -175,6 +178,21 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
     return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
+// As both estimates above, of a shape.
+vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightShape shape, inout RandomState random) {
+    vec3 sum = vec3(0.0);
+    ShapeSample drawn = sample_shape(shape, lobes.position, random);
+    vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
+    if (drawn.density > 0.0 && towards.z > 0.0) {
+        sum += evaluate(lobes, towards) / (drawn.density + density(lobes, towards));
+    }
+    if (by_brdf > 0.0) {
+        float by_light = ray_shape_density(shape, lobes.position, direction * lobes.to_surface);
+        sum += by_light > 0.0 ? evaluate(lobes, direction) / (by_light + by_brdf) : vec3(0.0);
+    }
+    return shape.radiance * sum;
+}
+
 vec3 estimate(Lobes lobes, inout RandomState random) {
     vec3 direction = sample_direction(lobes, random);
     float by_brdf = direction.z > 0.0 ? density(lobes, direction) : 0.0;
@@ -189,6 +207,9 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
         if (by_brdf > 0.0) {
             radiance += estimate_by_brdf(lobes, direction, by_brdf, light, sampling);
         }
+    }
+    for (uint index = 0u; index < constants.shape_count; index++) {
+        radiance += estimate_shape(lobes, direction, by_brdf, load_shape(index, SHAPE_ANY), random);
     }
     return radiance;
 }

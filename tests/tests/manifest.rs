@@ -254,7 +254,16 @@ fn every_structure_has_the_same_offsets() {
         (
             &reference,
             "ReferenceConstants",
-            layout!(gpu::ReferenceConstants, camera, light_count, first_sample, sample_count, weight, seed),
+            layout!(
+                gpu::ReferenceConstants,
+                camera,
+                light_count,
+                first_sample,
+                sample_count,
+                weight,
+                seed,
+                shape_count
+            ),
         ),
         (
             &reference,
@@ -327,7 +336,7 @@ fn every_structure_has_the_same_offsets() {
 #[test]
 fn shapes_have_the_same_offsets() {
     let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, ends, axis_v, flags);
-    for kernel in [&kernels::SHADE, &kernels::EVAL_SHAPES] {
+    for kernel in [&kernels::SHADE, &kernels::EVAL_SHAPES, &kernels::REFERENCE] {
         assert_offsets(&module(kernel), "ArealightGpuShape", &shape);
     }
     let constants = layout!(gpu::EvalConstants, case_count);

@@ -1,9 +1,9 @@
-//! `EXT_lights_area`: rectangles that hang on nodes and have no visible geometry.
+//! `EXT_lights_area`: rectangles and disks that hang on nodes and have no visible geometry.
 
 use crate::SceneError;
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
-use arealight::PolygonLight;
+use arealight::{PolygonLight, Shape, ShapeLight};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 
@@ -89,35 +89,53 @@ pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), Scene
         })?;
         let name = [&node.name, &light.name].into_iter().flatten().find(|name| !name.is_empty());
         let name = name.map_or_else(|| format!("area light {}", reference.light), Clone::clone);
-        match polygon(light, node, name.clone()) {
-            Ok(polygon) => loader.scene.lights.push(polygon),
-            Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),
+        let added = match light.shape.as_str() {
+            "rect" => polygon(light, node, name.clone()).map(|light| loader.scene.lights.push(light)),
+            "disk" => disk(light, node, name.clone()).map(|light| loader.scene.shapes.push(light)),
+            other => Err(format!("type '{other}' is not known")),
+        };
+        if let Err(problem) = added {
+            loader.warn(format!("light '{name}'"), format!("{problem}: left out"));
         }
     }
     Ok(())
 }
 
+/// A node's scale as the extension has it, with unit vectors to the light's right, up and front: right-angled, also under shear.
+struct Placing {
+    scale: f64,
+    right: DVec3,
+    up: DVec3,
+    front: DVec3,
+}
+
+impl Placing {
+    fn new(node: &PlacedNode) -> Result<Self, String> {
+        // The scale is the largest of the node's three, without a sign
+        let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
+        let scale = x.length().max(y.length()).max(z.length());
+        // It emits along -Z
+        let front = (-z).normalize_or_zero();
+        let right = (x - front * x.dot(front)).normalize_or_zero();
+        let up = front.cross(right) * if front.cross(right).dot(y) < 0.0 { -1.0 } else { 1.0 };
+        if front == DVec3::ZERO || right == DVec3::ZERO {
+            return Err("its node's scale is zero".into());
+        }
+        Ok(Self { scale, right, up, front })
+    }
+}
+
+fn radiance(light: &AreaLight) -> Vec3 {
+    Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT) as f32
+}
+
 /// The light's rectangle in the world, or why there is none.
 fn polygon(light: &AreaLight, node: &PlacedNode, name: String) -> Result<PolygonLight, String> {
-    match light.shape.as_str() {
-        "rect" => {}
-        "disk" => return Err("disks are not supported yet".into()),
-        other => return Err(format!("type '{other}' is not known")),
-    }
-    // The scale is the largest of the node's three, without a sign
-    let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
-    let scale = x.length().max(y.length()).max(z.length());
+    let Placing { scale, right, up, front } = Placing::new(node)?;
     let [half_width, half_height] =
         [scale * light.size * light.rect.aspect, scale * light.size].map(|s| s * 0.5);
     if ![half_width, half_height].iter().all(|half| *half > 0.0 && half.is_finite()) {
         return Err(format!("a rectangle of {} by {}", 2.0 * half_width, 2.0 * half_height));
-    }
-    // Right-angled axes, also under shear; it emits along -Z
-    let front = (-z).normalize_or_zero();
-    let right = (x - front * x.dot(front)).normalize_or_zero();
-    let up = front.cross(right) * if front.cross(right).dot(y) < 0.0 { -1.0 } else { 1.0 };
-    if front == DVec3::ZERO || right == DVec3::ZERO {
-        return Err("its node's scale is zero".into());
     }
     let center = node.world.translation;
     let corner = |u: f64, v: f64| center + right * (u * half_width) + up * (v * half_height);
@@ -125,8 +143,21 @@ fn polygon(light: &AreaLight, node: &PlacedNode, name: String) -> Result<Polygon
     if up.cross(right).dot(front) < 0.0 {
         vertices.reverse();
     }
-    let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT) as f32;
-    let polygon = PolygonLight { name, vertices, radiance, ..PolygonLight::default() };
+    let polygon = PolygonLight { name, vertices, radiance: radiance(light), ..PolygonLight::default() };
     polygon.validate().map_err(|e| e.to_string())?;
     Ok(polygon)
+}
+
+/// The light's disk in the world, or why there is none.
+fn disk(light: &AreaLight, node: &PlacedNode, name: String) -> Result<ShapeLight, String> {
+    let Placing { scale, right, front, .. } = Placing::new(node)?;
+    let radius = scale * light.size * 0.5;
+    if !(radius > 0.0 && radius.is_finite()) {
+        return Err(format!("a disk of the diameter {}", 2.0 * radius));
+    }
+    let (axis_u, axis_v) = (right * radius, front.cross(right) * radius);
+    let shape = Shape::Ellipse { center: node.world.translation, axis_u, axis_v };
+    let disk = ShapeLight { name, radiance: radiance(light), two_sided: false, shape };
+    disk.validate().map_err(|e| e.to_string())?;
+    Ok(disk)
 }

@@ -28,8 +28,10 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         Some(Call { effect, reason: format!("material '{}'", first.name) })
     };
     let light = |effect| {
-        let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
-        Some(Call { effect, reason: format!("light '{}'", first.name) })
+        let polygon = scene.lights.iter().find(|light| light.effects().contains(effect));
+        let shape = || scene.shapes.iter().find(|shape| shape.effects().contains(effect));
+        let name = polygon.map(|light| &light.name).or_else(|| shape().map(|shape| &shape.name))?;
+        Some(Call { effect, reason: format!("light '{name}'") })
     };
     let calls = [
         material(Effects::DIFFUSE, has_diffuse_lobe),
@@ -38,6 +40,9 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         material(Effects::SPECULAR_INPUT, has_specular_input),
         light(Effects::POLYGON),
         light(Effects::TEXTURED),
+        light(Effects::ELLIPSE),
+        light(Effects::SPHERE),
+        light(Effects::TUBE),
     ];
     calls.into_iter().flatten().collect()
 }

@@ -5,6 +5,7 @@ use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
 use crate::outlines::{Coordinates, outlines};
+use crate::shape_lights;
 use arealight::PolygonLight;
 use glam::Vec3;
 
@@ -14,6 +15,10 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     if material.emission == Vec3::ZERO || instance.triangles.is_empty() {
         return;
     }
+    if shape_lights::add(loader, node, instance) {
+        return;
+    }
+    let material = &loader.scene.materials[instance.material as usize];
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());
     let (radiance, texture) = (material.emission, material.emission_texture);
     let place = format!("light '{}' (node {})", instance.name, node.index);

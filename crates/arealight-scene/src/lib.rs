@@ -1,4 +1,4 @@
-//! glTF scenes for Arealight: polygon lights, materials, triangles, cameras, and the scan that says which
+//! glTF scenes for Arealight: lights, materials, triangles, cameras, and the scan that says which
 //! effects they call for.
 //!
 //! [`Scene::load`] reads a `.gltf` or `.glb` file. Files are not trusted: whatever is in them gives a scene,
@@ -11,8 +11,13 @@
 //!   in W/(m² sr). A double-sided material makes a two-sided light. An emissiveTexture is shown where it is mapped onto
 //!   the outline by one affine map: a part of it is a layer of the light textures ([`Scene::light_textures`]), and
 //!   where the mapping has a seam, another light begins. Parts that are black are no lights.
-//! - `EXT_lights_area` rectangles, which have no visible geometry: radiance = colour × intensity in nits /
+//! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
 //!   [`LUMENS_PER_WATT`].
+//! - Emissive meshes whose node has a word for what they stand for: `"extras": { "arealight": { "shape": "sphere", "radius": 0.5 } }`.
+//!   The mesh is drawn, and a [`ShapeLight`](arealight::ShapeLight) in [`Scene::shapes`] lights. Shapes are `disk` (which faces
+//!   +Y), `sphere`, `cylinder`, `pipe` (a cylinder without caps) and `capsule`, about the node's origin and its Y axis,
+//!   each with a `radius`, and the last three with the `height` of their straight part, in the node's space. A disk may be
+//!   scaled at will; a sphere and a capsule stay what they are under a uniform scale, a cylinder as long as it stays round.
 //!
 //! # Spaces
 //! Positions are world positions in `f64`, in the file's unit of length (glTF: metres), right-handed, +Y up.
@@ -36,6 +41,7 @@ mod meshes;
 mod nodes;
 mod outlines;
 mod scene;
+mod shape_lights;
 mod shown;
 mod uv_map;
 

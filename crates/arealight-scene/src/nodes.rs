@@ -1,7 +1,7 @@
 //! The tree of nodes, flattened: who is where in the world.
 
 use crate::load::Loader;
-use crate::{Camera, MAX_COORDINATE, SceneError};
+use crate::{Camera, MAX_COORDINATE, SceneError, shape_lights};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json;
 use serde_json::Value;
@@ -20,6 +20,8 @@ pub(crate) struct PlacedNode {
     camera: Option<usize>,
     /// Its `EXT_lights_area` extension.
     pub area_light: Option<Value>,
+    /// What its `extras` say that its emissive mesh stands for.
+    pub shape: Option<Value>,
 }
 
 /// Every node of the file's default scene, parents first.
@@ -57,6 +59,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             mesh: node.mesh.map(|m| m.value()),
             camera: node.camera.map(|c| c.value()),
             area_light: extension.cloned(),
+            shape: shape_lights::said(&node.extras),
         });
         let children = node.children.iter().flatten().rev();
         stack.extend(children.map(|child| (child.value(), world)));

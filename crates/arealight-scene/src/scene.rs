@@ -2,7 +2,7 @@
 
 use crate::{Camera, SceneError, SceneLightTexture};
 pub use arealight::texture_part::Wrap;
-use arealight::{Material, PolygonLight};
+use arealight::{Material, PolygonLight, ShapeLight};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 
@@ -25,8 +25,10 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Images that the textures use.
     pub images: Vec<Image>,
-    /// Every light; each passes [`PolygonLight::validate`].
+    /// Every light that is a polygon; each passes [`PolygonLight::validate`].
     pub lights: Vec<PolygonLight>,
+    /// Every light that is a disk, sphere or tube; each passes [`ShapeLight::validate`].
+    pub shapes: Vec<ShapeLight>,
     /// What the textured lights show, at most [`crate::MAX_LIGHT_TEXTURES`]: their layers, in order.
     pub light_textures: Vec<SceneLightTexture>,
     /// The file's cameras, in the order of its nodes.

@@ -109,6 +109,8 @@ pub struct ReferenceConstants {
     pub weight: f32,
     /// Another seed gives independent noise.
     pub seed: u32,
+    /// How many shapes are shaded.
+    pub shape_count: u32,
 }
 
 /// A light's triangle for the reference's light sampling: three vertex indices, and the sum of the areas of

@@ -156,7 +156,7 @@ const LIGHT_TEXTURES: Binding = read(
 const SHAPES: Binding = read(
     "shapes",
     BindingKind::StorageBuffer,
-    "GpuShape[]; read only with Effects::SHAPES, else bind any buffer",
+    "GpuShape[]; the shade kernel reads it only with Effects::SHAPES, else bind any buffer",
 );
 
 /// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].
@@ -263,6 +263,7 @@ pub static REFERENCE: Kernel = Kernel {
             "the dispatch's weighted mean is added (rgba32f)",
         ),
         LIGHT_TEXTURES,
+        SHAPES,
     ],
     constants: &[],
 };

@@ -137,6 +137,19 @@ impl Shape {
             Self::Tube { .. } => ShapeKind::Tube,
         }
     }
+
+    /// The smallest and the largest corner of a box along the axes that holds it.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        match *self {
+            Self::Ellipse { center, axis_u, axis_v } => {
+                // Along each axis an outline reaches as far as that axis' parts of both half axes together
+                let reach = (axis_u * axis_u + axis_v * axis_v).map(f64::sqrt);
+                [center - reach, center + reach]
+            }
+            Self::Sphere { center, radius } => [center - radius, center + radius],
+            Self::Tube { p0, p1, radius, .. } => [p0.min(p1) - radius, p0.max(p1) + radius],
+        }
+    }
 }
 
 impl ShapeLight {
@@ -297,6 +310,16 @@ mod tests {
             .fold(0.0, f64::max);
         let found = f64::from(disk(DVec3::ZERO, u, v).pack(DVec3::ZERO).unwrap().radius);
         assert!((found - longest).abs() < 1e-6, "{found}, {longest}");
+    }
+
+    #[test]
+    fn boxes_hold_their_shapes() {
+        let (center, u, v) = (DVec3::X, DVec3::new(3.0, 0.0, 0.0), DVec3::new(4.0, 1.0, 0.0));
+        let ellipse = Shape::Ellipse { center, axis_u: u, axis_v: v };
+        assert_eq!(ellipse.bounds(), [DVec3::new(-4.0, -1.0, 0.0), DVec3::new(6.0, 1.0, 0.0)]);
+        let tube = Shape::Tube { p0: DVec3::Y, p1: DVec3::ZERO, radius: 0.5, ends: TubeEnds::Round };
+        assert_eq!(tube.bounds(), [DVec3::splat(-0.5), DVec3::new(0.5, 1.5, 0.5)]);
+        assert_eq!(Shape::Sphere { center, radius: 1.0 }.bounds()[0], DVec3::new(0.0, -1.0, -1.0));
     }
 
     #[test]

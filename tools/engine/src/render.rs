@@ -1,4 +1,4 @@
-//! What a camera sees of a scene, lit by its polygon lights.
+//! What a camera sees of a scene, lit by its polygon lights and its disks, spheres and tubes.
 
 use crate::kept::Kept;
 use crate::{BoundPass, Engine, EngineError, GBuffer};
@@ -178,6 +178,7 @@ impl<'a> SceneRenderer<'a> {
             .chain([
                 Resource::StorageImage { view: self.g_buffer.radiance.view() },
                 self.engine.light_textures(),
+                Resource::buffer(self.shape_buffer.handle()),
             ])
             .collect();
         let pass = self.engine.pass(&REFERENCE, &[], &resources)?;
@@ -209,6 +210,7 @@ impl<'a> SceneRenderer<'a> {
             sample_count,
             weight: (f64::from(sample_count) / f64::from(samples)) as f32,
             seed,
+            shape_count: self.shapes.len() as u32,
         };
         self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
@@ -220,7 +222,7 @@ impl<'a> SceneRenderer<'a> {
     /// device after two seconds; at least one for each pixel and light, however many there are.
     fn samples_a_dispatch(&self) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
-        let light_samples = pixels * (self.lights.len() as u64).max(1);
+        let light_samples = pixels * ((self.lights.len() + self.shapes.len()) as u64).max(1);
         ((1 << 23) / light_samples).clamp(1, 64) as u32
     }
 

@@ -175,7 +175,8 @@ fn area_lights_turn_with_their_node() {
 #[test]
 fn area_lights_that_cannot_be_are_left_out() {
     for (light, node, text) in [
-        (json!({ "type": "disk" }), json!({}), "disks are not supported yet: left out"),
+        (json!({ "type": "disk", "size": -1 }), json!({}), "a disk of the diameter -1: left out"),
+        (json!({ "type": "disk" }), json!({ "scale": [1, 1, 0] }), "its node's scale is zero: left out"),
         (json!({ "type": "blob" }), json!({}), "type 'blob' is not known: left out"),
         (json!({ "size": 0 }), json!({}), "a rectangle of 0 by 0: left out"),
         (json!({ "rect": { "aspect": -1 } }), json!({}), "a rectangle of -1 by 1: left out"),
@@ -183,7 +184,7 @@ fn area_lights_that_cannot_be_are_left_out() {
         (json!({ "intensity": -1 }), json!({}), "must be finite and not negative: left out"),
     ] {
         let scene = area_light(&light, &node);
-        assert!(scene.lights.is_empty());
+        assert!(scene.lights.is_empty() && scene.shapes.is_empty());
         assert!(warnings(&scene)[0].ends_with(text), "{:?} should end with {text:?}", warnings(&scene));
     }
 }

@@ -7,6 +7,7 @@ mod lights;
 mod materials;
 mod own_scenes;
 mod rays;
+mod shape_lights;
 mod textured_lights;
 
 // The program that writes the project's scenes, whose writer and shapes serve the tests too

@@ -143,6 +143,7 @@ fn render(
     let buffers = SceneBuffers::new(scene, camera.position)?;
     let constants = buffers.constants(camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
+    renderer = renderer.with_shapes(&scene.shapes)?;
     let visibility = renderer.visibility()?;
     let shading = match arguments.reference {
         None => renderer.shade(effects, arguments.quality.quality_or(Quality::default()))?,

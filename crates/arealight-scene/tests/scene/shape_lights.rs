@@ -1,0 +1,113 @@
+//! Disks, spheres and tubes: of `EXT_lights_area`, and emissive meshes that stand for them.
+
+use crate::shapes::{floor, sphere};
+use crate::writer::Writer;
+use crate::{emitter_with, load, warnings};
+use arealight::{Effects, Shape, TubeEnds};
+use arealight_scene::{Scene, required_effects};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+#[test]
+fn area_lights_may_be_disks() {
+    let mut writer = Writer::new();
+    let material = writer.surface("floor", [0.5; 3], 0.0, 0.5);
+    writer.object("floor", &floor(1.0, 1.0, 1.0), material, json!({}));
+    let light = json!({ "type": "disk", "intensity": 683, "size": 3, "name": "round" });
+    writer.root["extensions"] = json!({ "EXT_lights_area": { "lights": [light] } });
+    // The largest scale is 2, and a mirror in x leaves the front where it is
+    writer.node(json!({ "translation": [7, 8, 9], "scale": [-2, 1, 1],
+                        "extensions": { "EXT_lights_area": { "light": 0 } } }));
+    let scene = load(writer);
+    assert_eq!(warnings(&scene), [""; 0]);
+    let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+    assert_eq!((light.name.as_str(), light.radiance, light.two_sided), ("round", Vec3::ONE, false));
+    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
+    assert_eq!(center, DVec3::new(7.0, 8.0, 9.0));
+    assert_eq!((axis_u.length(), axis_v.length(), axis_u.dot(axis_v)), (3.0, 3.0, 0.0));
+    assert_eq!(axis_u.cross(axis_v), DVec3::NEG_Z * 9.0);
+    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | Effects::ELLIPSE);
+    let reasons: Vec<String> = required_effects(&scene).iter().map(ToString::to_string).collect();
+    assert!(reasons.contains(&"ellipse: light 'round'".to_owned()), "{reasons:?}");
+}
+
+/// An emissive ball whose node says what it is.
+fn emitter(said: &Value, mut node: Value, double_sided: bool) -> Scene {
+    node["extras"] = json!({ "arealight": said, "else": 1 });
+    let mut writer = emitter_with(&sphere(1.0, 8, 4), node);
+    writer.root["materials"][0]["doubleSided"] = json!(double_sided);
+    load(writer)
+}
+
+#[test]
+fn emissive_meshes_may_stand_for_shapes() {
+    // A quarter turn about X takes Y to Z
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let node = || json!({ "translation": [1, 2, 3], "rotation": [half, 0, 0, half], "scale": [2, 2, 2] });
+    let tube = |ends| Shape::Tube {
+        p0: DVec3::new(1.0, 2.0, 1.0),
+        p1: DVec3::new(1.0, 2.0, 5.0),
+        radius: 0.5,
+        ends,
+    };
+    let center = DVec3::new(1.0, 2.0, 3.0);
+    for (said, expected) in [
+        (json!({ "shape": "sphere", "radius": 0.5 }), Shape::Sphere { center, radius: 1.0 }),
+        (json!({ "shape": "cylinder", "radius": 0.25, "height": 2 }), tube(TubeEnds::Flat)),
+        (json!({ "shape": "pipe", "radius": 0.25, "height": 2 }), tube(TubeEnds::Open)),
+        (json!({ "shape": "capsule", "radius": 0.25, "height": 2 }), tube(TubeEnds::Round)),
+    ] {
+        let scene = emitter(&said, node(), true);
+        assert_eq!(warnings(&scene), [""; 0], "{said}");
+        let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+        assert_eq!(light.radiance, Vec3::new(3.0, 2.0, 1.0));
+        assert!(!light.two_sided, "solids shine outwards");
+        let [found, expected] = [light.shape, expected].map(|shape| shape.bounds());
+        assert!((found[0] - expected[0]).length() < 1e-6 && (found[1] - expected[1]).length() < 1e-6);
+        // The mesh is drawn, and is no light besides
+        assert!(scene.lights.is_empty() && scene.triangles.len() > 32);
+    }
+}
+
+#[test]
+fn disks_face_up_and_take_any_scale() {
+    let said = json!({ "shape": "disk", "radius": 2 });
+    for (scale, front) in
+        [([1.0, 5.0, 3.0], DVec3::Y), ([-1.0, 5.0, 3.0], DVec3::Y), ([1.0, -5.0, 3.0], DVec3::NEG_Y)]
+    {
+        let scene = emitter(&said, json!({ "scale": scale }), true);
+        let Shape::Ellipse { axis_u, axis_v, .. } = scene.shapes[0].shape else { panic!("no disk") };
+        assert_eq!(axis_u.cross(axis_v), front * 12.0, "{scale:?}");
+        assert!(scene.shapes[0].two_sided);
+    }
+}
+
+#[test]
+fn words_that_do_not_hold_leave_the_mesh_as_it_is() {
+    let plain = json!({});
+    for (said, node, text) in [
+        (json!({ "shape": "cube" }), &plain, "unknown variant `cube`"),
+        (json!({ "shape": "sphere" }), &plain, "missing field `radius`"),
+        (json!({ "shape": "sphere", "radius": -1 }), &plain, "radius: -1 must be above zero"),
+        (json!({ "shape": "capsule", "radius": 1, "height": 0 }), &plain, "both ends of the axis"),
+        (json!({ "shape": "sphere", "radius": 1 }), &json!({ "scale": [1, 2, 1] }), "scale is not uniform"),
+        (
+            json!({ "shape": "cylinder", "radius": 1, "height": 1 }),
+            &json!({ "scale": [1, 1, 2] }),
+            "does not leave it round",
+        ),
+        (json!(7), &plain, "invalid type"),
+    ] {
+        let scene = emitter(&said, node.clone(), false);
+        assert!(scene.shapes.is_empty() && !scene.lights.is_empty(), "{said}");
+        let warnings = warnings(&scene);
+        assert!(
+            warnings[0].contains("extras.arealight: ") && warnings[0].contains(text),
+            "{warnings:?}: {text}"
+        );
+    }
+    // The twin: a cylinder may be longer
+    let longer = json!({ "scale": [1, 2, 1] });
+    let said = json!({ "shape": "cylinder", "radius": 1, "height": 1 });
+    assert_eq!(emitter(&said, longer, false).shapes.len(), 1);
+}

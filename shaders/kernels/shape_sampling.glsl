@@ -1,0 +1,198 @@
+#ifndef SHAPE_SAMPLING_GLSL
+#define SHAPE_SAMPLING_GLSL
+
+// Drawing points of disks, spheres and tubes, and the density of such draws in solid angle: for the Monte Carlo reference.
+
+#include "random.glsl"
+#include "shape_buffer.glsl"
+
+// A point that was drawn.
+struct ShapeSample {
+    vec3 offset;   // from the shading point
+    float density; // in solid angle; 0 where it does not shine towards the shading point
+};
+
+// The density in solid angle of a point that was drawn by area.
+float area_density(vec3 offset, vec3 normal, float area, bool two_sided) {
+    float square = dot(offset, offset);
+    float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
+    bool shines = two_sided ? cosine != 0.0 : cosine > 0.0;
+    return shines ? square / (area * abs(cosine)) : 0.0;
+}
+
+// Two unit vectors across a third one.
+void make_basis(vec3 axis, out vec3 across, out vec3 up) {
+    vec3 other = abs(axis.x) < 0.5 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    across = arealight_normalize_or(cross(axis, other), vec3(0.0, 0.0, 1.0));
+    up = cross(axis, across);
+}
+
+// The density of directions drawn evenly from the cone that a sphere fills, `center` being from the shading point: that of all
+// directions from inside, where only a sphere of two sides shines.
+float sphere_density(vec3 center, float radius, bool two_sided) {
+    float square = radius * radius / dot(center, center);
+    if (!(square < 1.0)) {
+        return two_sided ? 0.25 * AREALIGHT_INVERSE_PI : 0.0;
+    }
+    // 1 - cosine, without a cancellation
+    float height = square / (1.0 + sqrt(1.0 - square));
+    return 0.5 * AREALIGHT_INVERSE_PI / height;
+}
+
+float ellipse_area(ArealightShape shape) {
+    return AREALIGHT_PI * length(cross(shape.axis_u, shape.axis_v));
+}
+
+// Areas of a tube's mantle and of both its ends.
+vec2 tube_areas(ArealightShape shape) {
+    float round = AREALIGHT_PI * shape.radius;
+    float ends = shape.ends == AREALIGHT_TUBE_ROUND ? 4.0 : shape.ends == AREALIGHT_TUBE_FLAT ? 2.0 : 0.0;
+    return round * vec2(4.0 * length(shape.axis_u), ends * shape.radius);
+}
+
+ShapeSample sample_ellipse(ArealightShape shape, vec3 center, inout RandomState random) {
+    float radius = sqrt(random_float(random));
+    float angle = 2.0 * AREALIGHT_PI * random_float(random);
+    vec3 offset = center + radius * (cos(angle) * shape.axis_u + sin(angle) * shape.axis_v);
+    vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
+    return ShapeSample(offset, area_density(offset, normal, ellipse_area(shape), shape.two_sided));
+}
+
+ShapeSample sample_sphere(ArealightShape shape, vec3 center, inout RandomState random) {
+    float density = sphere_density(center, shape.radius, shape.two_sided);
+    vec3 axis = arealight_normalize_or(center, vec3(0.0, 0.0, 1.0));
+    vec3 across;
+    vec3 up;
+    make_basis(axis, across, up);
+    // Heights of a cone's cap are even
+    float depth = random_float(random) * 0.5 * AREALIGHT_INVERSE_PI / max(density, AREALIGHT_TINY);
+    float sine = sqrt(max(depth * (2.0 - depth), 0.0));
+    float angle = 2.0 * AREALIGHT_PI * random_float(random);
+    return ShapeSample((1.0 - depth) * axis + sine * (cos(angle) * across + sin(angle) * up), density);
+}
+
+ShapeSample sample_tube(ArealightShape shape, vec3 center, inout RandomState random) {
+    vec2 areas = tube_areas(shape);
+    float choice = random_float(random) * (areas.x + areas.y);
+    float u = random_float(random);
+    float angle = 2.0 * AREALIGHT_PI * random_float(random);
+    vec3 axis = arealight_normalize_or(shape.axis_u, vec3(0.0, 0.0, 1.0));
+    vec3 across;
+    vec3 up;
+    make_basis(axis, across, up);
+    vec3 radial = cos(angle) * across + sin(angle) * up;
+    vec3 offset;
+    vec3 normal;
+    if (choice < areas.x) {
+        normal = radial;
+        offset = center + (2.0 * u - 1.0) * shape.axis_u + shape.radius * normal;
+    } else if (shape.ends == AREALIGHT_TUBE_ROUND) {
+        float height = 2.0 * u - 1.0;
+        normal = height * axis + sqrt(max(1.0 - height * height, 0.0)) * radial;
+        offset = center + (height < 0.0 ? -shape.axis_u : shape.axis_u) + shape.radius * normal;
+    } else {
+        // The random number that chose the ends chooses one of them
+        float side = choice < areas.x + 0.5 * areas.y ? -1.0 : 1.0;
+        normal = side * axis;
+        offset = center + side * shape.axis_u + shape.radius * sqrt(u) * radial;
+    }
+    return ShapeSample(offset, area_density(offset, normal, areas.x + areas.y, false));
+}
+
+// A point of a shape before the shading point.
+ShapeSample sample_shape(ArealightShape shape, vec3 position, inout RandomState random) {
+    vec3 center = shape.center - position;
+    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+        return sample_tube(shape, center, random);
+    }
+    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+        return sample_sphere(shape, center, random);
+    }
+    return sample_ellipse(shape, center, random);
+}
+
+// Below, the density with which sample_shape draws what a ray from the shading point meets: 0 where it meets nothing that
+// shines. `ray` is a unit vector.
+
+float ray_ellipse_density(ArealightShape shape, vec3 center, vec3 ray) {
+    vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
+    float distance = dot(normal, center) / dot(normal, ray);
+    if (!(distance > 0.0 && distance < 1e30)) {
+        return 0.0;
+    }
+    // Where in the ellipse's own axes the plane is met
+    vec3 point = ray * distance - center;
+    float uu = dot(shape.axis_u, shape.axis_u);
+    float uv = dot(shape.axis_u, shape.axis_v);
+    float vv = dot(shape.axis_v, shape.axis_v);
+    vec2 along = vec2(dot(point, shape.axis_u), dot(point, shape.axis_v));
+    vec2 place = vec2(along.x * vv - along.y * uv, along.y * uu - along.x * uv) / (uu * vv - uv * uv);
+    return dot(place, place) <= 1.0 ? area_density(ray * distance, normal, ellipse_area(shape), shape.two_sided) : 0.0;
+}
+
+float ray_sphere_density(ArealightShape shape, vec3 center, vec3 ray) {
+    vec3 beside = cross(ray, center);
+    bool inside = dot(center, center) <= shape.radius * shape.radius;
+    bool met = inside || (dot(ray, center) > 0.0 && dot(beside, beside) <= shape.radius * shape.radius);
+    return met ? sphere_density(center, shape.radius, shape.two_sided) : 0.0;
+}
+
+// The density of the point at `distance`, from where the tube's outside is seen: as it is convex, a ray enters it once.
+float tube_point_density(ArealightShape shape, vec3 ray, float distance, vec3 normal) {
+    vec2 areas = tube_areas(shape);
+    return distance > 0.0 ? area_density(ray * distance, normal, areas.x + areas.y, false) : 0.0;
+}
+
+float ray_tube_density(ArealightShape shape, vec3 center, vec3 ray) {
+    float half_length = length(shape.axis_u);
+    vec3 axis = shape.axis_u / half_length;
+    float speed = dot(ray, axis);
+    float height = -dot(center, axis);
+    // The mantle, from outside of the endless cylinder
+    vec3 across = ray - speed * axis;
+    vec3 from = -center - height * axis;
+    float a = dot(across, across);
+    float b = dot(from, across);
+    float c = dot(from, from) - shape.radius * shape.radius;
+    float discriminant = b * b - a * c;
+    if (c > 0.0 && discriminant > 0.0 && a > 0.0) {
+        float distance = (-b - sqrt(discriminant)) / a;
+        if (abs(height + distance * speed) <= half_length) {
+            return tube_point_density(shape, ray, distance, (from + distance * across) / shape.radius);
+        }
+    }
+    // The end that the ray comes from, or both half spheres
+    if (shape.ends == AREALIGHT_TUBE_FLAT && speed != 0.0) {
+        float side = speed > 0.0 ? -1.0 : 1.0;
+        float distance = (side * half_length - height) / speed;
+        vec3 beside = from + distance * across;
+        bool met = dot(beside, beside) <= shape.radius * shape.radius;
+        return met ? tube_point_density(shape, ray, distance, side * axis) : 0.0;
+    }
+    if (shape.ends == AREALIGHT_TUBE_ROUND) {
+        for (float side = -1.0; side <= 1.0; side += 2.0) {
+            vec3 middle = center + side * shape.axis_u;
+            float approach = dot(middle, ray);
+            float inside = approach * approach - dot(middle, middle) + shape.radius * shape.radius;
+            float distance = approach - sqrt(max(inside, 0.0));
+            vec3 normal = (ray * distance - middle) / shape.radius;
+            if (inside > 0.0 && dot(normal, axis) * side >= 0.0 && dot(normal, ray) < 0.0) {
+                return tube_point_density(shape, ray, distance, normal);
+            }
+        }
+    }
+    return 0.0;
+}
+
+float ray_shape_density(ArealightShape shape, vec3 position, vec3 ray) {
+    vec3 center = shape.center - position;
+    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+        return ray_tube_density(shape, center, ray);
+    }
+    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+        return ray_sphere_density(shape, center, ray);
+    }
+    return ray_ellipse_density(shape, center, ray);
+}
+
+#endif
