@@ -1,6 +1,7 @@
 //! Writes the scenes of `scenes/`: `cargo run -p arealight-scene --example make_scenes [FOLDER]`.
 
 mod demo;
+mod lamps;
 mod room;
 mod screen;
 mod shapes;
@@ -19,6 +20,7 @@ fn main() -> std::io::Result<()> {
         ("room.glb", room::glb()),
         ("demo.glb", demo::glb()),
         ("screen.glb", screen::glb()),
+        ("shapes.glb", lamps::glb()),
     ];
     for (name, bytes) in scenes {
         let path = folder.join(name);

@@ -112,6 +112,38 @@ pub fn sphere(radius: f64, segments: u32, rings: u32) -> Shape {
     lathe(&(0..=rings).map(point).collect::<Vec<_>>(), segments)
 }
 
+/// A flat disk at y = 0 that faces +Y.
+pub fn disk(radius: f64, segments: u32) -> Shape {
+    lathe(&[(DVec2::new(radius, 0.0), DVec2::Y), (DVec2::ZERO, DVec2::Y)], segments)
+}
+
+/// A cylinder around +Y with caps, its middle at the origin.
+pub fn cylinder(radius: f64, height: f64, segments: u32) -> Shape {
+    let point = |x: f64, end: f64, normal: DVec2| (DVec2::new(x, end * 0.5 * height), normal);
+    let profile = [
+        point(0.0, -1.0, DVec2::NEG_Y),
+        point(radius, -1.0, DVec2::NEG_Y),
+        point(radius, -1.0, DVec2::X),
+        point(radius, 1.0, DVec2::X),
+        point(radius, 1.0, DVec2::Y),
+        point(0.0, 1.0, DVec2::Y),
+    ];
+    lathe(&profile, segments)
+}
+
+/// A cylinder around +Y, of a height between half spheres of `rings` rings.
+pub fn capsule(radius: f64, height: f64, segments: u32, rings: u32) -> Shape {
+    let half = |end: f64| {
+        (0..=rings).map(move |i| {
+            let part = f64::from(if end < 0.0 { i } else { rings - i }) / f64::from(rings);
+            let (sin, cos) = (part * PI * 0.5).sin_cos();
+            let direction = DVec2::new(sin, end * cos);
+            (direction * radius + DVec2::Y * (end * 0.5 * height), direction)
+        })
+    };
+    lathe(&half(-1.0).chain(half(1.0)).collect::<Vec<_>>(), segments)
+}
+
 /// A round plate of a radius from y = 0 to `height`, its upper rim rounded.
 pub fn plate(radius: f64, height: f64, rim: f64, segments: u32) -> Shape {
     let mut profile = vec![(DVec2::new(radius, 0.0), DVec2::X)];

@@ -13,6 +13,8 @@ mod textured_lights;
 // The program that writes the project's scenes, whose writer and shapes serve the tests too
 #[path = "../../examples/make_scenes/demo.rs"]
 mod demo;
+#[path = "../../examples/make_scenes/lamps.rs"]
+mod lamps;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;
 #[path = "../../examples/make_scenes/screen.rs"]

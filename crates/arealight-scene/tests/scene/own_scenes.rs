@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{demo, room, screen, sweep, test_card};
+use crate::{demo, lamps, room, screen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -34,6 +34,7 @@ fn the_files_are_what_the_program_makes() {
         ("room.glb", room::glb()),
         ("demo.glb", demo::glb()),
         ("screen.glb", screen::glb()),
+        ("shapes.glb", lamps::glb()),
     ];
     for (name, bytes) in scenes {
         let file = std::fs::read(path(name)).unwrap();
@@ -134,4 +135,27 @@ fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     assert!(ends.iter().zip(screen::ROUGHNESS).all(|(a, b)| (a - b).abs() < 0.016), "{ends:?}");
     // Both sides of the sign show it
     assert!(scene.lights.iter().any(|light| light.two_sided && light.texture.is_some()));
+}
+
+#[test]
+fn the_lamps_are_of_every_shape() {
+    use arealight::{ShapeKind, TubeEnds};
+    let scene = load("shapes.glb");
+    let kinds = |kind| scene.shapes.iter().filter(|light| light.shape.kind() == kind).count();
+    assert_eq!([ShapeKind::Ellipse, ShapeKind::Sphere, ShapeKind::Tube].map(kinds), [3, 2, 3]);
+    assert!(scene.lights.is_empty(), "no lamp is shaded as its mesh");
+    let ends = |light: &arealight::ShapeLight| match light.shape {
+        arealight::Shape::Tube { ends, .. } => Some(ends),
+        _ => None,
+    };
+    let ends: Vec<TubeEnds> = scene.shapes.iter().filter_map(ends).collect();
+    assert_eq!(ends, [TubeEnds::Flat, TubeEnds::Round, TubeEnds::Open]);
+    assert!(scene.effects().contains(Effects::SHAPES));
+    // One of them is cut by the floor
+    assert!(scene.shapes.iter().any(|light| light.shape.bounds()[0].y < -0.2));
+    for roughness in lamps::ROUGHNESS {
+        assert!(
+            scene.materials.iter().any(|m| f64::from(m.material.roughness) == f64::from(roughness as f32))
+        );
+    }
 }
