@@ -16,7 +16,7 @@ pub fn glb() -> Vec<u8> {
     objects(&mut writer);
     lamps(&mut writer);
     key(&mut writer);
-    writer.camera("front", [0.0, 2.5, 7.6], [0.0, 0.75, -0.4], 0.62, 16.0 / 9.0);
+    writer.camera("front", [0.11, 2.5, 7.6], [0.05, 0.75, -0.4], 0.62, 16.0 / 9.0);
     writer.glb()
 }
 
