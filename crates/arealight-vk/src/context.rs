@@ -1,7 +1,9 @@
 //! What the recorder knows of the host: its device, and the pipeline cache it lends.
 
+use crate::debug_names::DebugNames;
 use crate::error::{Error, VulkanCall};
 use crate::light_textures::{FORMAT, USAGE};
+use crate::written_sets::WrittenSets;
 use ash::vk;
 
 /// The host's handles. All stay the host's: nothing here is destroyed, waited for or submitted to.
@@ -29,6 +31,8 @@ pub struct Context {
     pub(crate) limits: DescriptorLimits,
     /// `None` where the device has no such images at all.
     pub(crate) light_texture_limits: Option<ImageLimits>,
+    pub(crate) names: DebugNames,
+    pub(crate) written_sets: WrittenSets,
 }
 
 /// The largest image of a kind.
@@ -78,7 +82,20 @@ impl Context {
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             },
             light_texture_limits: light_texture_limits(host)?,
+            names: DebugNames::default(),
+            written_sets: WrittenSets::default(),
         })
+    }
+
+    /// Has what is made from the context named (`arealight shade`) and what is recorded labelled, for debuggers and the
+    /// validation layer.
+    ///
+    /// # Safety
+    /// The instance is the device's, and was made with `VK_EXT_debug_utils`.
+    #[must_use = "the context is returned"]
+    pub unsafe fn with_debug_utils(mut self, instance: &ash::Instance) -> Self {
+        self.names = DebugNames::new(ash::ext::debug_utils::Device::new(instance, &self.device));
+        self
     }
 
     /// The device's function table.

@@ -30,6 +30,22 @@ pub enum Error {
         /// What is wrong with it, and what would be right.
         message: String,
     },
+    /// An image has a format that the pass does not read, or store to, as it should.
+    #[error("{field}: the format is {format:?}; it must be one of {}", one_of(expected))]
+    WrongFormat {
+        /// The image's field of [`crate::ShadeResources`].
+        field: &'static str,
+        /// Its format.
+        format: vk::Format,
+        /// Those that will do.
+        expected: &'static [vk::Format],
+    },
+    /// A descriptor set points at an image of the recorder's that is gone. Found in debug builds alone.
+    #[error("{field}: the image that the descriptor set points at was destroyed; write the set again")]
+    Destroyed {
+        /// The binding's name in the manifest.
+        field: &'static str,
+    },
     /// A light cannot be used.
     #[error(transparent)]
     Light(#[from] arealight::LightError),
@@ -55,6 +71,10 @@ pub enum Error {
         /// What is missing.
         missing: arealight::Effects,
     },
+}
+
+fn one_of(formats: &[vk::Format]) -> String {
+    formats.iter().map(|format| format!("{format:?}")).collect::<Vec<_>>().join(", ")
 }
 
 /// Names the call that a Vulkan result came from.

@@ -30,17 +30,21 @@
 //! ```
 
 mod context;
+mod debug_names;
 mod error;
+mod formats;
 mod light_textures;
 #[cfg(feature = "gpu-allocator")]
 mod memory;
 mod pass;
 mod shade;
 mod table_image;
+mod written_sets;
 
 pub use ash;
 pub use context::{Context, HostDevice};
 pub use error::Error;
+pub use formats::ShadeFormats;
 pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};

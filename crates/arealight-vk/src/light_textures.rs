@@ -105,6 +105,7 @@ impl LightTextures {
             .initial_layout(vk::ImageLayout::UNDEFINED);
         // SAFETY: the device is valid by the contract of Context::new.
         let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
+        context.names.name(image, "light textures");
         let view = vk::ImageView::null();
         Ok(Self { context: context.clone(), size, layers, load, blur, image, view, level_views: vec![] })
     }
@@ -133,6 +134,7 @@ impl LightTextures {
         unsafe { device.bind_image_memory(self.image, memory, offset) }.call("vkBindImageMemory")?;
         let levels = self.size.levels();
         self.view = self.make_view(0..levels)?;
+        self.context.names.name(self.view, "light textures");
         for level in 0..levels {
             let view = self.make_view(level..level + 1)?;
             self.level_views.push(view);
@@ -314,7 +316,8 @@ impl LightTextures {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] where a layer is not there or is given twice, or sets are missing;
-    /// [`Error::TexturePart`] for a source that cannot be loaded. Then nothing is recorded.
+    /// [`Error::TexturePart`] for a source that cannot be loaded; [`Error::Destroyed`] (in debug builds) where a set points
+    /// at light textures that are gone. Then nothing is recorded.
     pub unsafe fn record_update(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -323,6 +326,9 @@ impl LightTextures {
     ) -> Result<(), Error> {
         // Check all before anything is recorded
         self.check_level_sets(level_sets)?;
+        for set in level_sets.iter().copied().chain(updates.iter().map(|update| update.source_set)) {
+            self.context.written_sets.check(set)?;
+        }
         let layers = self.runs_of_layers(updates)?;
         let constants: Vec<_> =
             updates.iter().map(|update| self.load_constants(update)).collect::<Result<_, _>>()?;
@@ -331,6 +337,8 @@ impl LightTextures {
         }
 
         // SAFETY: the caller vouches for the command buffer and the sets, here and below.
+        let _label = unsafe { self.context.names.label(command_buffer, c"arealight light textures") };
+        // SAFETY: as above.
         let barrier = |before, after| unsafe { self.barrier(command_buffer, before, after) };
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let everything = vk::PipelineStageFlags::ALL_COMMANDS;
@@ -419,6 +427,9 @@ const WRITE: vk::AccessFlags = vk::AccessFlags::SHADER_WRITE;
 
 impl Drop for LightTextures {
     fn drop(&mut self) {
+        for view in self.level_views.iter().chain([&self.view]) {
+            self.context.written_sets.destroy(*view);
+        }
         // SAFETY: by the contract of LightTextures::new no recorded use is pending and the device is alive; a null view
         // is ignored.
         unsafe {

@@ -44,6 +44,16 @@ impl Resource {
         Self::StorageBuffer { buffer, offset: 0, range: vk::WHOLE_SIZE }
     }
 
+    /// The view of an image.
+    pub(crate) fn view(self) -> Option<vk::ImageView> {
+        match self {
+            Self::SampledImage { view, .. }
+            | Self::FilteredImage { view, .. }
+            | Self::StorageImage { view } => Some(view),
+            Self::StorageBuffer { .. } => None,
+        }
+    }
+
     fn kind(self) -> BindingKind {
         match self {
             Self::SampledImage { .. } => BindingKind::SampledImage,
@@ -55,10 +65,8 @@ impl Resource {
 
     fn is_null(self) -> bool {
         match self {
-            Self::SampledImage { view, .. }
-            | Self::FilteredImage { view, .. }
-            | Self::StorageImage { view } => view == vk::ImageView::null(),
             Self::StorageBuffer { buffer, .. } => buffer == vk::Buffer::null(),
+            image => image.view().is_some_and(|view| view == vk::ImageView::null()),
         }
     }
 }
@@ -114,6 +122,10 @@ impl ComputePass {
         }
         pass.make_layouts()?;
         pass.make_pipeline(specialization)?;
+        let names = &context.names;
+        names.name(pass.set_layout, kernel.name);
+        names.name(pass.pipeline_layout, kernel.name);
+        names.name(pass.pipeline, kernel.name);
         Ok(pass)
     }
 
@@ -196,6 +208,10 @@ impl ComputePass {
         Ok(())
     }
 
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
+    }
+
     /// The kernel.
     pub fn kernel(&self) -> &'static Kernel {
         self.kernel
@@ -275,6 +291,7 @@ impl ComputePass {
             .collect();
         // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
         unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
+        self.context.written_sets.write(set, self.kernel, resources);
         Ok(())
     }
 
@@ -287,7 +304,8 @@ impl ComputePass {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] where `constants` is not of the kernel's size or `groups` is beyond the
-    /// device's limit; then nothing is recorded.
+    /// device's limit, [`Error::Destroyed`] (in debug builds) where the set points at an image of the recorder's that
+    /// is gone; then nothing is recorded.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -315,6 +333,7 @@ impl ComputePass {
                 ),
             });
         }
+        self.context.written_sets.check(set)?;
         let device = &self.context.device;
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {

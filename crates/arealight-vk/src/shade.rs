@@ -229,6 +229,9 @@ impl ShadePass {
         };
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
         // SAFETY: the same contract.
-        unsafe { self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), groups) }
+        unsafe {
+            let _label = self.pass.context().names.label(command_buffer, c"arealight shade");
+            self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), groups)
+        }
     }
 }

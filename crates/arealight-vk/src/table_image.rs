@@ -77,6 +77,7 @@ impl TableImage {
             .initial_layout(vk::ImageLayout::UNDEFINED);
         // SAFETY: the device is valid by the contract of Context::new.
         let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
+        context.names.name(image, "table");
         Ok(Self { context: context.clone(), image, view: vk::ImageView::null(), format, size: table.size() })
     }
 
@@ -109,6 +110,7 @@ impl TableImage {
             .subresource_range(all_layers());
         // SAFETY: the image has memory now.
         self.view = unsafe { device.create_image_view(&info, None) }.call("vkCreateImageView")?;
+        self.context.names.name(self.view, "table");
         Ok(())
     }
 
@@ -176,6 +178,7 @@ impl TableImage {
         let readers = vk::PipelineStageFlags::ALL_COMMANDS;
         // SAFETY: the caller vouches for the command buffer and the staging buffer; the image is ours.
         unsafe {
+            let _label = self.context.names.label(command_buffer, c"arealight table upload");
             device.cmd_pipeline_barrier(
                 command_buffer,
                 // After whatever read an earlier table
@@ -225,6 +228,7 @@ impl TableImage {
 
 impl Drop for TableImage {
     fn drop(&mut self) {
+        self.context.written_sets.destroy(self.view);
         // SAFETY: by the contract of TableImage::new no recorded use is pending and the device is alive; a
         // null view is ignored.
         unsafe {

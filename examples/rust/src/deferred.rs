@@ -9,7 +9,8 @@ use arealight::gpu::GpuLight;
 use arealight::plan::{Output, PositionSource, ShadeOptions};
 use arealight::{Effects, Quality};
 use arealight_vk::{
-    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
+    Context, HostDevice, Resource, ShadeFormats, ShadeFrame, ShadePass, ShadeResources, TableFormat,
+    TableImage,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -77,6 +78,7 @@ impl<'a> Deferred<'a> {
             position: PositionSource::Depth,
             output: Output::Add, // to the emission that was drawn
         };
+        g_buffer.formats().check(options)?; // says which image has another format than it should
         // SAFETY: the pass is dropped after the frames, and before the device.
         let shade = unsafe { ShadePass::new(&context, options) }?;
         // doc end
@@ -217,6 +219,17 @@ impl<'a> GBuffer<'a> {
             radiance: gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, radiance)?,
         })
         // doc end
+    }
+
+    /// What views do not tell the pass.
+    fn formats(&self) -> ShadeFormats {
+        ShadeFormats {
+            position: self.depth.format,
+            normal: self.normal_roughness.format,
+            base_color: self.base_color_metalness.format,
+            specular: vk::Format::UNDEFINED,
+            radiance: self.radiance.format,
+        }
     }
 
     /// The drawing into these images.

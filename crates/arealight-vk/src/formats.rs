@@ -1,0 +1,146 @@
+//! Which formats the images of a host may have.
+
+use crate::error::Error;
+use arealight::Effects;
+use arealight::plan::{PositionSource, ShadeOptions};
+use ash::vk::Format;
+
+/// The formats of the images that a host binds to the shade pass, which their views do not tell: check them once, where
+/// the images are made.
+///
+/// ```
+/// use arealight::plan::{PositionSource, ShadeOptions};
+/// use arealight_vk::{ShadeFormats, ash::vk::Format};
+///
+/// let formats = ShadeFormats {
+///     position: Format::D32_SFLOAT,
+///     normal: Format::R16G16B16A16_SFLOAT,
+///     base_color: Format::R8G8B8A8_SRGB,
+///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
+///     radiance: Format::R32G32B32A32_SFLOAT,
+/// };
+/// let options = ShadeOptions {
+///     effects: arealight::Effects::GLOSSY,
+///     position: PositionSource::Depth,
+///     ..ShadeOptions::all()
+/// };
+/// formats.check(options)?;
+/// # Ok::<(), arealight_vk::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ShadeFormats {
+    /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::position`].
+    pub position: Format,
+    /// Of [`crate::ShadeResources::normal`]: signed, with four channels.
+    pub normal: Format,
+    /// Of [`crate::ShadeResources::base_color`]: with four channels.
+    pub base_color: Format,
+    /// Of [`crate::ShadeResources::specular`], which is read only with [`Effects::SPECULAR_INPUT`].
+    pub specular: Format,
+    /// Of [`crate::ShadeResources::radiance`].
+    pub radiance: Format,
+}
+
+const POSITION: &[Format] = &[Format::R32G32B32A32_SFLOAT];
+const DEPTH: &[Format] = &[
+    Format::D32_SFLOAT,
+    Format::D32_SFLOAT_S8_UINT,
+    Format::D24_UNORM_S8_UINT,
+    Format::X8_D24_UNORM_PACK32,
+    Format::D16_UNORM,
+    Format::D16_UNORM_S8_UINT,
+    Format::R32_SFLOAT,
+];
+const NORMAL: &[Format] =
+    &[Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SNORM];
+const COLOR: &[Format] = &[
+    Format::R8G8B8A8_UNORM,
+    Format::R8G8B8A8_SRGB,
+    Format::B8G8R8A8_UNORM,
+    Format::B8G8R8A8_SRGB,
+    Format::A8B8G8R8_UNORM_PACK32,
+    Format::A8B8G8R8_SRGB_PACK32,
+    Format::R16G16B16A16_UNORM,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R32G32B32A32_SFLOAT,
+];
+const RADIANCE: &[Format] = &[Format::R32G32B32A32_SFLOAT];
+
+impl ShadeFormats {
+    /// Checks that a pass of these options reads from every image what it should, and can store to the last.
+    ///
+    /// # Errors
+    /// [`Error::WrongFormat`] names the first image of another format, and the formats that will do.
+    pub fn check(&self, options: ShadeOptions) -> Result<(), Error> {
+        let position = match options.position {
+            PositionSource::Position => POSITION,
+            PositionSource::Depth => DEPTH,
+        };
+        let read_specular = options.effects.contains(Effects::SPECULAR_INPUT);
+        let images = [
+            ("position", self.position, position, true),
+            ("normal", self.normal, NORMAL, true),
+            ("base_color", self.base_color, COLOR, true),
+            ("specular", self.specular, COLOR, read_specular),
+            ("radiance", self.radiance, RADIANCE, true),
+        ];
+        for (field, format, expected, used) in images {
+            if used && !expected.contains(&format) {
+                return Err(Error::WrongFormat { field, format, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RIGHT: ShadeFormats = ShadeFormats {
+        position: Format::R32G32B32A32_SFLOAT,
+        normal: Format::R16G16B16A16_SFLOAT,
+        base_color: Format::R8G8B8A8_SRGB,
+        specular: Format::R8G8B8A8_UNORM,
+        radiance: Format::R32G32B32A32_SFLOAT,
+    };
+
+    fn field(formats: ShadeFormats, options: ShadeOptions) -> &'static str {
+        match formats.check(options).unwrap_err() {
+            Error::WrongFormat { field, .. } => field,
+            other => panic!("{other}"),
+        }
+    }
+
+    #[test]
+    fn formats_that_will_do_pass() {
+        RIGHT.check(ShadeOptions::all()).unwrap();
+        let depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::all() };
+        ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
+        let without = ShadeOptions { effects: Effects::GLOSSY, ..ShadeOptions::all() };
+        ShadeFormats { specular: Format::UNDEFINED, ..RIGHT }.check(without).unwrap();
+    }
+
+    #[test]
+    fn each_wrong_format_is_named_with_those_that_will_do() {
+        let options = ShadeOptions::all();
+        // Rounded positions, unsigned normals, integers, three channels, and what the kernel cannot store to
+        for (formats, expected) in [
+            (ShadeFormats { position: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "position"),
+            (ShadeFormats { position: Format::D32_SFLOAT, ..RIGHT }, "position"),
+            (ShadeFormats { normal: Format::R8G8B8A8_UNORM, ..RIGHT }, "normal"),
+            (ShadeFormats { base_color: Format::R8G8B8A8_UINT, ..RIGHT }, "base_color"),
+            (ShadeFormats { specular: Format::B10G11R11_UFLOAT_PACK32, ..RIGHT }, "specular"),
+            (ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "radiance"),
+        ] {
+            assert_eq!(field(formats, options), expected);
+        }
+        let depth = ShadeOptions { position: PositionSource::Depth, ..options };
+        assert_eq!(field(RIGHT, depth), "position");
+        let error = ShadeFormats { radiance: Format::R8G8B8A8_UNORM, ..RIGHT }.check(options).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "radiance: the format is R8G8B8A8_UNORM; it must be one of R32G32B32A32_SFLOAT"
+        );
+    }
+}

@@ -1,0 +1,91 @@
+//! What descriptor sets point at, kept in debug builds: a set that points at a destroyed image of ours is an error that
+//! names it. A release build keeps nothing.
+
+use crate::error::Error;
+use crate::pass::Resource;
+use arealight::kernels::Kernel;
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The sets that passes of one context have written.
+#[derive(Clone, Default)]
+pub(crate) struct WrittenSets(Arc<Mutex<HashMap<vk::DescriptorSet, Written>>>);
+
+/// What a set was last written with.
+struct Written {
+    /// Views, and the bindings that they are at.
+    views: Vec<(vk::ImageView, &'static str)>,
+    /// The first binding whose image was destroyed since.
+    destroyed: Option<&'static str>,
+}
+
+impl WrittenSets {
+    /// Notes that `set` points at `resources` now.
+    pub(crate) fn write(&self, set: vk::DescriptorSet, kernel: &Kernel, resources: &[Resource]) {
+        if !cfg!(debug_assertions) {
+            return;
+        }
+        let views = kernel.bindings.iter().zip(resources);
+        let views = views.filter_map(|(binding, resource)| Some((resource.view()?, binding.name))).collect();
+        self.lock().insert(set, Written { views, destroyed: None });
+    }
+
+    /// Notes that a view of ours is destroyed. The driver may give its handle to another then, so that the sets are
+    /// marked, not the handle.
+    pub(crate) fn destroy(&self, view: vk::ImageView) {
+        if !cfg!(debug_assertions) {
+            return;
+        }
+        for written in self.lock().values_mut() {
+            let found = written.views.iter().find(|(pointed_at, _)| *pointed_at == view);
+            written.destroyed = written.destroyed.or(found.map(|(_, binding)| *binding));
+        }
+    }
+
+    /// Checks that all is there that a set points at.
+    pub(crate) fn check(&self, set: vk::DescriptorSet) -> Result<(), Error> {
+        if !cfg!(debug_assertions) {
+            return Ok(());
+        }
+        match self.lock().get(&set).and_then(|written| written.destroyed) {
+            Some(field) => Err(Error::Destroyed { field }),
+            None => Ok(()),
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<vk::DescriptorSet, Written>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use arealight::kernels::TEXTURE_BLUR;
+    use ash::vk::Handle as _;
+
+    fn written(view: u64) -> [Resource; 2] {
+        let layout = vk::ImageLayout::GENERAL;
+        [
+            Resource::SampledImage { view: vk::ImageView::from_raw(view), layout },
+            Resource::StorageImage { view: vk::ImageView::from_raw(9) },
+        ]
+    }
+
+    #[test]
+    fn a_set_is_refused_from_the_image_s_end_until_it_is_written_again() {
+        let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
+        assert_eq!(sets.check(set), Ok(()));
+        sets.write(set, &TEXTURE_BLUR, &written(5));
+        sets.destroy(vk::ImageView::from_raw(6));
+        assert_eq!(sets.check(set), Ok(()));
+        sets.destroy(vk::ImageView::from_raw(5));
+        let expected =
+            if cfg!(debug_assertions) { Err(Error::Destroyed { field: "finer_level" }) } else { Ok(()) };
+        assert_eq!(sets.check(set), expected);
+        // The driver gives the handle to a new view
+        sets.write(set, &TEXTURE_BLUR, &written(5));
+        assert_eq!(sets.check(set), Ok(()));
+    }
+}
