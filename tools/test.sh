@@ -101,6 +101,7 @@ step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --excl
 step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
 step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
 step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
+step "packages" cargo run --locked --quiet -p xtask -- packages
 
 printf '\n== summary\n'
 printf '%s\n' "${summary[@]}"

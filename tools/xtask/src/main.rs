@@ -8,6 +8,7 @@
 //! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
 //! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
 //! cargo run -p xtask -- quotes                   # put the code that documents show into them
+//! cargo run -p xtask -- packages                 # is what would be published whole?
 //! ```
 
 mod compile;
@@ -16,6 +17,7 @@ mod library;
 mod lint;
 mod manifest;
 mod matrix;
+mod packages;
 mod quotes;
 mod shaders;
 
@@ -39,6 +41,8 @@ enum Task {
     Includes,
     Matrix(matrix::Arguments),
     Quotes(quotes::Arguments),
+    /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer Rust.
+    Packages,
 }
 
 /// A task that cannot be carried out. Its text says what is wrong, where, and what to do.
@@ -54,6 +58,8 @@ pub(crate) enum TaskError {
     NoSuchKernel { name: String, available: String },
     #[error("cannot run {program}: {source}. On Debian: apt-get install {package}")]
     Program { program: &'static str, package: &'static str, source: std::io::Error },
+    #[error("cargo {arguments} failed:\n{message}")]
+    Cargo { arguments: String, message: String },
     #[error("arealight export failed: {message}")]
     Export { message: String },
 }
@@ -72,6 +78,7 @@ fn main() -> ExitCode {
         Task::Includes => includes::run(&root),
         Task::Matrix(arguments) => matrix::run(&root, &arguments),
         Task::Quotes(arguments) => quotes::run(&root, &arguments),
+        Task::Packages => packages::run(&root),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,
