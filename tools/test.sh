@@ -99,6 +99,8 @@ step "examples in the documentation" cargo test --workspace --doc --locked --qui
 # The command line and the library have the same name, and their pages would collide.
 step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --exclude arealight-cli --no-deps --locked --quiet
 step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
+# A note alone: whoever changes the shade kernel counts again when the change is done
+cargo run --locked --quiet -p xtask -- instructions --check || true
 step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
 step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
 step "packages" cargo run --locked --quiet -p xtask -- packages

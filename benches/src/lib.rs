@@ -3,6 +3,8 @@
 //! | module | holds |
 //! |---|---|
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
+//! | [`effects`] | the time of the shade kernel by effect, and of what is stripped by hand |
+//! | [`instructions`] | what each effect and rung adds in instructions |
 //! | [`cost`] | the time of each rung, as a ratio to the practice |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
@@ -13,7 +15,9 @@
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
 pub mod cost;
+pub mod effects;
 pub mod footprints;
+pub mod instructions;
 pub mod kernel;
 pub mod method;
 pub mod report;

@@ -67,7 +67,8 @@ void main() {
         for (uint index = 0u; index < constants.light_count; index++) {
             radiance += arealight_polygon_radiance(point, load_light(index), EFFECTS, quality);
         }
-        if (arealight_has_shapes(EFFECTS)) {
+        // Not by a function: so compilers drop the shapes' code before they inline it
+        if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u) {
             for (uint index = 0u; index < constants.shape_count; index++) {
                 radiance += arealight_shape_radiance(point, load_shape(index, SHAPE_ANY), EFFECTS, quality);
             }

@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D out_position;
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D out_normal;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D out_base_color;
-layout(set = 0, binding = 8, rgba16f) uniform writeonly image2D out_specular;
+layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D out_specular;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D out_radiance;
 
 layout(push_constant, std430) uniform VisibilityConstants {

@@ -50,9 +50,10 @@ impl Rung {
 
     /// The effects of a pass on this path that has these lobes.
     pub fn effects(self, lobes: Effects) -> Effects {
+        let effects = lobes | Effects::TWO_SIDED | Effects::FAR;
         match self.path {
-            Path::Quad => lobes | Effects::TWO_SIDED,
-            Path::Walk => lobes | Effects::TWO_SIDED | Effects::POLYGON,
+            Path::Quad => effects,
+            Path::Walk => effects | Effects::POLYGON,
         }
     }
 

@@ -50,6 +50,36 @@ fn effects_have_the_same_bits_in_glsl() {
     let effects: Vec<_> = effects.iter().map(|(name, bits)| (name.as_str(), *bits)).collect();
     assert_constants(EFFECTS_GLSL, "AREALIGHT_EFFECT_", &effects);
 }
+/// The names that follow `prefix` in a text, each as often as it is there.
+fn names_after<'a>(text: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
+    text.split(prefix).skip(1).map(|rest| {
+        let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+        &rest[..end]
+    })
+}
+
+#[test]
+fn every_effect_is_asked_for_and_no_other() {
+    let shaders = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders");
+    let mut uses: BTreeMap<String, usize> =
+        Effects::all().iter().map(|effect| (effect.names()[0].to_uppercase(), 0)).collect();
+    for folder in ["include/arealight", "kernels"] {
+        for entry in std::fs::read_dir(shaders.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let source = std::fs::read_to_string(&path).unwrap();
+            // What is said in comments, as AREALIGHT_EFFECT_*, asks for nothing
+            let code: Vec<_> = source.lines().filter_map(|line| line.split("//").next()).collect();
+            for name in names_after(&code.join("\n"), "AREALIGHT_EFFECT_") {
+                let count = uses.get_mut(name).unwrap_or_else(|| panic!("{}: {name}", path.display()));
+                *count += 1;
+            }
+        }
+    }
+    // Once where it is defined, and where it matters
+    assert!(uses.values().all(|count| *count >= 2), "{uses:?}");
+    let twin: Vec<_> = names_after("a & A_ONE) | A_TWO_2;", "A_").collect();
+    assert_eq!(twin, ["ONE", "TWO_2"]);
+}
 
 #[test]
 fn flags_have_the_same_bits_in_glsl() {

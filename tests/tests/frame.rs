@@ -55,7 +55,7 @@ fn half_texels(image: &Image) -> Vec<Vec4> {
 fn points(view: &View<'_>, light: &PolygonLight) -> Vec<Option<EvalPoint>> {
     let g_buffer = view.renderer.g_buffer();
     let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
-    let (colors, speculars) = (half_texels(&g_buffer.base_color), half_texels(&g_buffer.specular));
+    let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
         let material = arealight::Material {

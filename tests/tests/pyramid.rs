@@ -343,7 +343,7 @@ fn what_is_not_there_is_named() {
     };
     let lights = [PolygonLight { texture: None, ..screen.clone() }, screen];
     let error = engine.check_layers(&lights).unwrap_err();
-    assert_eq!(error.to_string(), "light 'screen': texture layer 1 is not there: 0 are loaded");
+    assert_eq!(error.to_string(), "light 'screen': texture: layer 1 is not there: there are 0");
     engine.check_layers(&lights[..1]).unwrap();
 
     let size = PyramidSize::new(64, 64).unwrap();

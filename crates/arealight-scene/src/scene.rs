@@ -152,6 +152,14 @@ impl Bounds {
         if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
     }
 
+    /// Its eight corners; infinite for an empty box.
+    pub fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let high = |bit: usize| i >> bit & 1 == 1;
+            DVec3::select(glam::BVec3::new(high(0), high(1), high(2)), self.max, self.min)
+        })
+    }
+
     /// The length of the diagonal; zero for an empty box.
     pub fn diagonal(&self) -> f64 {
         if self.is_empty() { 0.0 } else { self.min.distance(self.max) }

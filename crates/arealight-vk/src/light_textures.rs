@@ -190,6 +190,15 @@ impl LightTextures {
         self.size
     }
 
+    /// Checks that the layer of every light that shows an image is there, before lights are uploaded with
+    /// [`crate::ShadePass::pack_lights`]: the pass does not know what will be bound.
+    ///
+    /// # Errors
+    /// [`Error::Light`] names the first light whose layer is not.
+    pub fn check_lights(&self, lights: &[arealight::PolygonLight]) -> Result<(), Error> {
+        lights.iter().try_for_each(|light| light.check_texture_layer(self.layers)).map_err(Error::from)
+    }
+
     /// How many layers there are.
     pub fn layers(&self) -> u32 {
         self.layers

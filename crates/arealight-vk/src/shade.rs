@@ -125,7 +125,8 @@ impl ShadePass {
     }
 
     /// Packs lights for this pass, relative to `origin`; upload both arrays to the buffers of
-    /// [`ShadeResources`].
+    /// [`ShadeResources`]. Where lights show images, [`crate::LightTextures::check_lights`] says whether their layers are
+    /// there.
     ///
     /// # Errors
     /// [`Error::Light`] for a light that cannot be shaded, [`Error::EffectsTooSmall`] for one that calls for

@@ -23,6 +23,10 @@ bitflags::bitflags! {
         const POLYGON = 1 << 4;
         /// Some light shows an image ([`PolygonLight::texture`](crate::PolygonLight::texture)).
         const TEXTURED = 1 << 5;
+        /// Some light may be so small as seen from some surface that its centre alone stands for it
+        /// ([`Quality::one_point`](crate::Quality::one_point), which without this effect is as if it were not
+        /// set): it is [`Effects::FAR_DISTANCE`] of its radii away. Without it the light is shaded in full.
+        const FAR = 1 << 6;
         /// Some light is a disk or an ellipse ([`Shape::Ellipse`](crate::Shape::Ellipse)).
         const ELLIPSE = 1 << 8;
         /// Some light is a sphere ([`Shape::Sphere`](crate::Shape::Sphere)).
@@ -32,9 +36,21 @@ bitflags::bitflags! {
     }
 }
 
+/// A word that names no effect.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("'{name}' is no effect; there are {}", Effects::all())]
+pub struct UnknownEffect {
+    /// The word.
+    pub name: String,
+}
+
 impl Effects {
     /// Every kind of light that is no polygon.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
+
+    /// A light nearer than so many of its radii is never shaded from its centre alone: less than the root of 8e4 in
+    /// `arealight_is_far`, since no lobe's space makes a light look smaller against its distance than it is.
+    pub const FAR_DISTANCE: f64 = 282.0;
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -45,6 +61,7 @@ impl Effects {
             (Self::SPECULAR_INPUT, "specular_input"),
             (Self::POLYGON, "polygon"),
             (Self::TEXTURED, "textured"),
+            (Self::FAR, "far"),
             (Self::ELLIPSE, "ellipse"),
             (Self::SPHERE, "sphere"),
             (Self::TUBE, "tube"),
@@ -78,6 +95,23 @@ impl std::fmt::Display for Effects {
     }
 }
 
+impl std::str::FromStr for Effects {
+    type Err = UnknownEffect;
+
+    /// The set of names with commas between them, as [`Display`](std::fmt::Display) writes it; `none` is the empty one.
+    fn from_str(text: &str) -> Result<Self, UnknownEffect> {
+        let text = text.trim();
+        if text == "none" {
+            return Ok(Self::empty());
+        }
+        let effect = |name: &str| {
+            let found = Self::all().iter().find(|effect| effect.names() == [name]);
+            found.ok_or_else(|| UnknownEffect { name: name.to_owned() })
+        };
+        text.split(',').map(|name| effect(name.trim())).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +133,17 @@ mod tests {
         assert_eq!(Effects::all().names().len(), Effects::all().iter().count());
         assert_eq!(Effects::empty().to_string(), "none");
         assert_eq!((Effects::DIFFUSE | Effects::TWO_SIDED).to_string(), "diffuse, two_sided");
+    }
+
+    #[test]
+    fn a_set_is_read_as_it_is_written() {
+        for set in [Effects::all(), Effects::empty(), Effects::DIFFUSE | Effects::TEXTURED] {
+            assert_eq!(set.to_string().parse(), Ok(set));
+        }
+        for bad in ["", "diffuse,", "Diffuse", "diffuse glossy", "none, diffuse"] {
+            let error = bad.parse::<Effects>().unwrap_err();
+            assert!(error.to_string().contains("diffuse, glossy"), "{bad}: {error}");
+        }
     }
 
     #[test]

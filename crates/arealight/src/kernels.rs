@@ -326,7 +326,7 @@ pub static VISIBILITY: Kernel = Kernel {
             "g_normal of the shade kernel (rgba32f)",
         ),
         write("out_base_color", BindingKind::StorageImage, Access::Write, "g_base_color (rgba16f)"),
-        write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba16f)"),
+        write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba32f)"),
         write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
     ],
     constants: &[],

@@ -45,7 +45,7 @@ pub mod shape;
 pub mod table;
 pub mod texture_part;
 
-pub use effects::Effects;
+pub use effects::{Effects, UnknownEffect};
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
 pub use light_texture::{LightTexture, TextureError, TextureMap};

@@ -61,6 +61,16 @@ pub enum LightError {
         /// What is wrong.
         reason: TextureError,
     },
+    /// It shows a layer that the lights' textures do not have.
+    #[error("light '{light}': texture: layer {layer} is not there: there are {layers}")]
+    NoTextureLayer {
+        /// The light's name.
+        light: String,
+        /// The layer that it refers to.
+        layer: u32,
+        /// How many layers there are.
+        layers: u32,
+    },
     /// More vertices or lights than a 32-bit index reaches.
     #[error("{count} light vertices: at most {} fit one buffer", u32::MAX)]
     TooMany {
@@ -151,13 +161,35 @@ impl PolygonLight {
         flat && convex
     }
 
-    /// What the light calls for.
+    /// Checks that a light that shows an image has its layer among `layers`.
+    ///
+    /// # Errors
+    /// [`LightError::NoTextureLayer`] where it has not: the device would show another.
+    pub fn check_texture_layer(&self, layers: u32) -> Result<(), LightError> {
+        match &self.texture {
+            Some(texture) if texture.layer >= layers => {
+                Err(LightError::NoTextureLayer { light: self.name.clone(), layer: texture.layer, layers })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// What the light itself calls for. [`Effects::FAR`] depends on where surfaces are:
+    /// [`PolygonLight::may_be_far`].
     pub fn effects(&self) -> Effects {
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, self.two_sided);
         effects.set(Effects::POLYGON, !self.is_convex_quad());
         effects.set(Effects::TEXTURED, self.texture.is_some());
         effects
+    }
+
+    /// Whether a surface as far as `distance` from the light's center may see it as
+    /// [far](Effects::FAR). Conservative: false only where none does.
+    pub fn may_be_far(&self, distance: f64) -> bool {
+        let center = self.center();
+        let radius = self.vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
+        distance.is_nan() || distance > Effects::FAR_DISTANCE * radius
     }
 
     /// Vertex indices of triangles that cover the polygon once, three a triangle, in the polygon's

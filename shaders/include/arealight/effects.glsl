@@ -16,6 +16,8 @@ const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
 const uint AREALIGHT_EFFECT_POLYGON = 16u;
 // Some light shows an image.
 const uint AREALIGHT_EFFECT_TEXTURED = 32u;
+// Some light may be far enough for AREALIGHT_FORM_FACTOR_ONE_POINT, which is ignored without.
+const uint AREALIGHT_EFFECT_FAR = 64u;
 // Some light is a disk or an ellipse.
 const uint AREALIGHT_EFFECT_ELLIPSE = 256u;
 // Some light is a sphere.

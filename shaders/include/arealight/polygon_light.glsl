@@ -133,8 +133,8 @@ ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, Ar
                                   ArealightQuality quality) {
     // A far light of which the surface hides a part is no matter of one point
     bool is_whole = quality.horizon != AREALIGHT_HORIZON_BOTH || view.normal_height > seen.radius;
-    if ((quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0 && is_whole
-        && arealight_is_far(view.center, view.extent)) {
+    if ((effects & AREALIGHT_EFFECT_FAR) != 0u && (quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0
+        && is_whole && arealight_is_far(view.center, view.extent)) {
         return arealight_one_point(view.center, seen.facing * lobe.space.determinant);
     }
     if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
@@ -227,7 +227,7 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight 
 #if AREALIGHT_LIGHT_TEXTURES
     bool textured = (effects & AREALIGHT_EFFECT_TEXTURED) != 0u && light.image.layer != AREALIGHT_NO_IMAGE;
     ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
-    if (textured && quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO) {
+    if (quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && textured) {
         return lobe.albedo * arealight_lobe_parts(view, lobe.gain, image, light, seen, quad, effects, quality);
     }
 #endif
@@ -247,7 +247,8 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight 
 // as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
 vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
                                 ArealightQuality quality) {
-    light.two_sided = light.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
+    // What is fixed comes first in each condition: compilers drop the rest
+    light.two_sided = (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u && light.two_sided;
     // The vertices are read once for all lobes
     ArealightSeenLight seen = arealight_see(point.position, light);
     ArealightQuad quad = ArealightQuad(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));

@@ -31,6 +31,7 @@ rung falls short of its promises in bench stability or misses a bar in bench tex
 enum Command {
     Render(commands::render::Arguments),
     Eval(commands::eval::Arguments),
+    Effects(commands::effects::Arguments),
     Fit(commands::fit::Arguments),
     Inspect(commands::inspect::Arguments),
     Bench(commands::bench::Arguments),
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         None => commands::render::run(&commands::render::Arguments::default_scene()),
         Some(Command::Render(arguments)) => commands::render::run(&arguments),
         Some(Command::Eval(arguments)) => commands::eval::run(&arguments),
+        Some(Command::Effects(arguments)) => commands::effects::run(&arguments),
         Some(Command::Fit(arguments)) => commands::fit::run(&arguments),
         Some(Command::Inspect(arguments)) => commands::inspect::run(&arguments),
         Some(Command::Bench(arguments)) => commands::bench::run(&arguments),

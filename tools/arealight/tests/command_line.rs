@@ -46,7 +46,9 @@ fn help_and_version() {
     let folder = tempfile::tempdir().unwrap();
     let help = run(folder.path(), &["--help"]);
     assert!(help.status.success());
-    for command in ["render", "eval", "fit", "inspect", "devices", "Exit codes", "eval --tolerance"] {
+    for command in
+        ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "eval --tolerance"]
+    {
         assert!(text(&help.stdout).contains(command), "{command}");
     }
     assert!(run(folder.path(), &["--version"]).status.success());
@@ -58,6 +60,13 @@ fn wrong_arguments_are_exit_code_2() {
     let room = scene("room.glb");
     refuse(folder.path(), &["render", &room, "--size", "12"], 2, &["--size", "1280x720"]);
     refuse(folder.path(), &["render", &room, "--reference", "0"], 2, &["--reference"]);
+    refuse(
+        folder.path(),
+        &["render", &room, "--effects", "shiny"],
+        2,
+        &["--effects", "'shiny' is no effect", "two_sided"],
+    );
+    refuse(folder.path(), &["effects"], 2, &["SCENE"]);
     refuse(folder.path(), &["render", &room, "-o", "picture.bmp"], 2, &["picture.bmp", ".png or .exr"]);
     refuse(folder.path(), &["render", &room, "--camera", "nobody"], 2, &["--camera", "nobody"]);
     refuse(folder.path(), &["paint"], 2, &["paint"]);
@@ -263,6 +272,45 @@ fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stderr).contains("no area lights"), "{}", text(&output.stderr));
     assert!(folder.path().join("out/empty.png").is_file());
+}
+
+#[test]
+fn effects_are_told_with_who_calls_for_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["effects", &scene("screen.glb"), "--json"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).expect("--json prints JSON");
+    let effects = summary["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), arealight::Effects::all().iter().count());
+    let effect = |name: &str| effects.iter().find(|e| e["effect"] == name).unwrap();
+    assert!(effect("textured")["reason"].as_str().unwrap().starts_with("light '"), "{summary:#}");
+    assert_eq!(effect("textured")["required"], true);
+    let count = |name: &str, key: &str| effect(name)[key].as_u64().unwrap();
+    assert!(count("textured", "instructions_with") > count("textured", "instructions_without"));
+    let output = run(folder.path(), &["effects", &scene("sweep.glb")]);
+    let told = text(&output.stdout);
+    for words in ["diffuse", "material '", "This scene's set: diffuse, glossy\n"] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+}
+
+#[test]
+fn a_stated_set_that_is_too_small_is_refused_by_the_light() {
+    if !device() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let screen = scene("screen.glb");
+    let render = |effects| vec!["render", screen.as_str(), "--size", "16x9", "--effects", effects];
+    let words = ["--effects: light '", "calls for the effects: textured"];
+    refuse(folder.path(), &render("diffuse,glossy,two_sided,polygon"), 2, &words);
+    for (effects, warned) in [("all", false), ("diffuse,two_sided,polygon,textured", true)] {
+        let output = run(folder.path(), &render(effects));
+        let said = text(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        assert_eq!(said.contains("--effects is without glossy: material '"), warned, "{said}");
+        assert!(text(&output.stdout).contains("stated   "), "{}", text(&output.stdout));
+    }
 }
 
 #[test]

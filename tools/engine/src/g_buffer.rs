@@ -34,13 +34,14 @@ impl GBuffer {
                 usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED,
             })
         };
-        // Normals in float32: in float16 a mirror shows their steps
+        // Normals in float32: in float16 a mirror shows their steps. Reflectances too, so that the usual one is what the
+        // shade kernel takes without reading it
         let (full, half) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT);
         Ok(Self {
             position: image("position", full)?,
             normal: image("normal", full)?,
             base_color: image("base colour", half)?,
-            specular: image("specular", half)?,
+            specular: image("specular", full)?,
             radiance: image("radiance", full)?,
         })
     }

@@ -29,10 +29,15 @@ pub use textures::{SourceImage, SourceTexels};
 
 use arealight::LightTable;
 use arealight::kernels::Kernel;
+use arealight::plan::ShadeOptions;
 use arealight_host::Buffer;
-use arealight_vk::{Context, Resource, TableFormat};
+use arealight_vk::{Context, Resource, ShadePass, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::rc::Rc;
 use table::UploadedTable;
 
 /// A failure of the engine.
@@ -60,16 +65,6 @@ pub enum EngineError {
         bytes: u64,
         /// The device's `maxStorageBufferRange`.
         limit: u64,
-    },
-    /// A light shows a texture that is not loaded.
-    #[error("light '{light}': texture layer {layer} is not there: {layers} are loaded")]
-    NoTextureLayer {
-        /// The light.
-        light: String,
-        /// The layer that it refers to.
-        layer: u32,
-        /// How many there are.
-        layers: u32,
     },
     /// A level of the lights' textures is not there.
     #[error(
@@ -110,6 +105,7 @@ pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
     textures: Option<TextureArray>,
+    shade_passes: RefCell<HashMap<ShadeOptions, Rc<Kept<ShadePass>>>>,
     passes: Passes,
 }
 
@@ -121,7 +117,7 @@ impl Engine {
     pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
         let passes = Passes::new(host)?;
         let table = UploadedTable::new(passes.host(), passes.context(), table, format)?;
-        Ok(Self { table, textures: None, passes })
+        Ok(Self { table, textures: None, shade_passes: RefCell::default(), passes })
     }
 
     /// The device.
@@ -137,6 +133,22 @@ impl Engine {
     /// The recorder's context, to make passes from.
     pub fn context(&self) -> &Context {
         self.passes.context()
+    }
+
+    /// The shade pass of these options; made once, and kept.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device cannot make it.
+    pub fn shade_pass(&self, options: ShadeOptions) -> Result<Rc<Kept<ShadePass>>, EngineError> {
+        let mut made = self.shade_passes.borrow_mut();
+        match made.entry(options) {
+            Entry::Occupied(found) => Ok(Rc::clone(found.get())),
+            Entry::Vacant(place) => {
+                // SAFETY: As in Passes::pass.
+                let pass = unsafe { ShadePass::new(self.context(), options) }?;
+                Ok(Rc::clone(place.insert(Rc::new(Kept::new(self.host(), pass)))))
+            }
+        }
     }
 
     /// The light table, as a pass takes it.

@@ -1,15 +1,13 @@
 //! What a camera sees of a scene, lit by its polygon lights and its disks, spheres and tubes.
 
-use crate::kept::Kept;
 use crate::{BoundPass, Engine, EngineError, GBuffer};
-use arealight::gpu::GpuShape;
-use arealight::gpu::{ReferenceConstants, VisibilityConstants};
-use arealight::kernels::{REFERENCE, VISIBILITY};
+use arealight::gpu::{GpuShape, ReferenceConstants, ShadeConstants, VisibilityConstants};
+use arealight::kernels::{Kernel, REFERENCE, VISIBILITY};
 use arealight::plan::{Output, PositionSource, ShadeOptions};
 use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality, ShapeLight};
 use arealight_host::{Buffer, DescriptorPool, Usage};
 use arealight_scene::SceneBuffers;
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
 use std::time::Duration;
@@ -117,9 +115,7 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let options =
             ShadeOptions { effects, quality, position: PositionSource::Position, output: Output::Add };
-        // SAFETY: As in Engine::pass.
-        let pass = unsafe { ShadePass::new(self.engine.context(), options) }?;
-        let pass = Kept::new(self.engine.host(), pass);
+        let pass = self.engine.shade_pass(options)?;
         pass.check_lights(self.lights)?;
         pass.check_shapes(self.shapes)?;
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
@@ -153,6 +149,43 @@ impl<'a> SceneRenderer<'a> {
             // of the frame's size.
             unsafe { pass.record(commands, set, &frame) }?;
             Ok(())
+        })
+    }
+
+    /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one to compare
+    /// with.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shade_by(
+        &mut self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        let resources = [
+            self.engine.table(),
+            Resource::buffer(self.light_buffer.handle()),
+            Resource::buffer(self.vertex_buffer.handle()),
+            position,
+            normal,
+            base_color,
+            specular,
+            Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            self.engine.light_textures(),
+            Resource::buffer(self.shape_buffer.handle()),
+        ];
+        let pass = self.engine.pass(kernel, specialization, &resources)?;
+        let constants = ShadeConstants {
+            position_from_clip: glam::Mat4::IDENTITY.to_cols_array_2d(),
+            camera: self.camera.camera,
+            light_count: self.lights.len() as u32,
+            shape_count: self.shapes.len() as u32,
+        };
+        self.engine.host().try_submit_timed(|commands| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            pass.record(commands, &constants, self.items())
         })
     }
 

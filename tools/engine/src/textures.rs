@@ -93,16 +93,10 @@ impl Engine {
     /// Checks that every light's texture is there.
     ///
     /// # Errors
-    /// [`EngineError::NoTextureLayer`] names the first light whose is not.
+    /// [`arealight::LightError::NoTextureLayer`] names the first light whose is not.
     pub fn check_layers(&self, lights: &[PolygonLight]) -> Result<(), EngineError> {
         let layers = self.texture_layers();
-        for light in lights {
-            if let Some(texture) = light.texture.as_ref().filter(|texture| texture.layer >= layers) {
-                let (light, layer) = (light.name.clone(), texture.layer);
-                return Err(EngineError::NoTextureLayer { light, layer, layers });
-            }
-        }
-        Ok(())
+        Ok(lights.iter().try_for_each(|light| light.check_texture_layer(layers))?)
     }
 
     /// A level of a layer: [`PyramidSize::extent`] texels, row after row.

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod devices;
+pub mod effects;
 pub mod eval;
 pub mod export;
 pub mod fit;

@@ -6,7 +6,7 @@ use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
-use arealight::{Effects, Quality};
+use arealight::{Effects, Quality, UnknownEffect};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -44,6 +44,10 @@ pub struct Arguments {
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
+    /// The effects that the shader is made for: `required` (what the scene calls for), `all`, or a list such as
+    /// diffuse,glossy
+    #[arg(long, value_name = "SET", default_value = "required")]
+    effects: EffectChoice,
     #[command(flatten)]
     quality: QualityArguments,
     /// Print the summary as JSON
@@ -63,6 +67,7 @@ impl Arguments {
             reference: None,
             exposure: 0.0,
             supersample: 2,
+            effects: EffectChoice::Required,
             quality: QualityArguments::default(),
             json: false,
         }
@@ -87,6 +92,42 @@ impl Arguments {
         let stem = stem.unwrap_or_else(|| scene.name.clone().into());
         let suffix = if self.reference.is_some() { "-reference.png" } else { ".png" };
         self.output.clone().unwrap_or_else(|| Path::new("out").join(format!("{}{suffix}", stem.display())))
+    }
+}
+
+/// Whose word it is what the shader is made for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum EffectChoice {
+    /// The scan's.
+    Required,
+    /// The user's.
+    Stated(Effects),
+}
+
+impl std::str::FromStr for EffectChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "required" => Ok(Self::Required),
+            "all" => Ok(Self::Stated(Effects::all())),
+            list => list.parse().map(Self::Stated).map_err(|error: UnknownEffect| error.to_string()),
+        }
+    }
+}
+
+impl EffectChoice {
+    /// The set for `scene`. One that a surface needs more than gives another picture than the scene's: it is for the
+    /// user to state, and said.
+    fn effects(self, scene: &Scene, path: &Path) -> Effects {
+        let Self::Stated(effects) = self else { return scene.effects() };
+        for call in arealight_scene::required_effects(scene) {
+            // Lights that need more are refused by the engine; a far light without its effect is shaded in full
+            if !effects.contains(call.effect) && call.effect != Effects::FAR {
+                eprintln!("warning: {}: --effects is without {call}", path.display());
+            }
+        }
+        effects
     }
 }
 
@@ -121,13 +162,20 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let table = arguments.quality.table()?;
     let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
     engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
-    let effects = scene.effects();
+    let effects = arguments.effects.effects(&scene, &path);
     let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
     let device = engine.host().device_name();
-    let summary =
-        Summary { arguments, scene: &scene, camera: &camera, device, outcome: &outcome, output: &output };
+    let summary = Summary {
+        arguments,
+        scene: &scene,
+        effects,
+        camera: &camera,
+        device,
+        outcome: &outcome,
+        output: &output,
+    };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
@@ -209,6 +257,7 @@ fn prepare(output: &Path) -> Result<(), Failure> {
 struct Summary<'a> {
     arguments: &'a Arguments,
     scene: &'a Scene,
+    effects: Effects,
     camera: &'a Camera,
     device: String,
     outcome: &'a Outcome,
@@ -217,7 +266,7 @@ struct Summary<'a> {
 
 impl Summary<'_> {
     fn to_text(&self) -> String {
-        let Self { arguments, scene, camera, device, outcome, output } = self;
+        let Self { arguments, scene, effects, camera, device, outcome, output } = self;
         let (width, height) = (arguments.size[0], arguments.size[1]);
         let vertices: usize = scene.lights.iter().map(|light| light.vertices.len()).sum();
         let mut lines = vec![format!(
@@ -229,6 +278,9 @@ impl Summary<'_> {
         )];
         for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
             lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
+        }
+        if arguments.effects != EffectChoice::Required {
+            lines.push(format!("stated   {effects}"));
         }
         lines.push(format!("device   {device}"));
         let method = match arguments.reference_samples() {
@@ -251,7 +303,7 @@ impl Summary<'_> {
     }
 
     fn to_json(&self) -> String {
-        let Self { arguments, scene, camera, device, outcome, output } = self;
+        let Self { arguments, scene, effects: set, camera, device, outcome, output } = self;
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let calls = arealight_scene::required_effects(scene);
         let effects: Vec<_> = calls
@@ -264,6 +316,7 @@ impl Summary<'_> {
             "lights": scene.lights.len(),
             "camera": camera.name,
             "effects": effects,
+            "effects_shaded_with": set.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
             "reference_samples": arguments.reference_samples(),
@@ -286,6 +339,14 @@ fn milliseconds(time: Option<Duration>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn effects_are_stated_or_required() {
+        assert_eq!("required".parse(), Ok(EffectChoice::Required));
+        assert_eq!("all".parse(), Ok(EffectChoice::Stated(Effects::all())));
+        assert_eq!("glossy,far".parse(), Ok(EffectChoice::Stated(Effects::GLOSSY | Effects::FAR)));
+        assert!("shiny".parse::<EffectChoice>().unwrap_err().contains("'shiny' is no effect"));
+    }
 
     #[test]
     fn sizes_are_two_numbers_within_limits() {

@@ -1,0 +1,35 @@
+//! What effects cost that no pixel uses, and whether absent ones cost nothing, in one run over a frame of the sweep,
+//! which has quads alone:
+//! `cargo bench -p arealight-benches --bench effects`. Prints a Markdown table.
+
+use arealight_benches::effects::{markdown, measure};
+use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use glam::Vec3;
+use std::path::Path;
+
+const ROUNDS: usize = 60;
+const SIZE: [u32; 2] = [320, 180];
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Under `cargo test` a benchmark is only to be seen to run
+    let rounds = if std::env::args().any(|argument| argument == "--bench") { ROUNDS } else { 1 };
+    let host = match Host::new(HostOptions::default()) {
+        Ok(host) => host,
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            return Ok(());
+        }
+    };
+    let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
+    let scene = Scene::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/sweep.glb"))?;
+    let camera =
+        scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).ok_or("the sweep has a camera")?;
+    let buffers = SceneBuffers::new(&scene, camera.position)?;
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(&engine, &buffers, &scene.lights, constants, SIZE)?;
+    let costs = measure(&mut renderer, rounds)?;
+    let device = engine.host().device_name();
+    println!("{device}, the sweep, {} x {}, {rounds} rounds\n\n{}", SIZE[0], SIZE[1], markdown(&costs));
+    Ok(())
+}

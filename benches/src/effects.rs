@@ -1,0 +1,133 @@
+//! What effects cost on a device: the shade kernel with one set of effects after another over one frame, beside kernels
+//! that were stripped by hand.
+//!
+//! The machines that this runs on are shared: every method is run in turn, round after round, forwards and
+//! backwards, and read as a ratio to the yardstick in the same round.
+
+use crate::cost::quantile;
+use arealight::kernels::{Kernel, SHADE};
+use arealight::{Effects, Quality};
+use arealight_engine::{EngineError, SceneRenderer};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+/// The shade kernel, stripped by hand to diffuse and glossy lobes of one-sided quads without images, or to the
+/// diffuse lobe; on the first rungs, positions from an image, adding.
+pub static SHADE_STRIPPED: Kernel = Kernel {
+    name: "shade_stripped",
+    spirv: include_bytes!("../spirv/shade_stripped.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: SHADE.push_constant_size,
+    bindings: SHADE.bindings,
+    constants: &[DIFFUSE_ONLY],
+};
+
+const DIFFUSE_ONLY: u32 = 0;
+
+/// What is timed.
+#[derive(Debug, Clone)]
+enum Method {
+    Stripped { diffuse_only: bool },
+    Shade { effects: Effects, quality: Quality },
+}
+
+/// A method's time.
+#[derive(Debug, Clone, Serialize)]
+pub struct EffectCost {
+    /// What ran.
+    pub name: String,
+    /// What it is a ratio to.
+    pub yardstick: String,
+    /// Seconds a frame: the median over the rounds. Only ratios mean something on a shared machine.
+    pub seconds: f64,
+    /// The median over the rounds of the ratio to the yardstick in the same round.
+    pub ratio: f64,
+    /// The quartiles of that ratio.
+    pub quartiles: [f64; 2],
+}
+
+struct Run {
+    name: String,
+    method: Method,
+    yardstick: usize,
+    seconds: Vec<f64>,
+}
+
+impl Run {
+    /// One frame; GPU time, or wall time where the queue has no timestamps.
+    fn once(&self, renderer: &mut SceneRenderer<'_>) -> Result<f64, EngineError> {
+        let start = Instant::now();
+        let took = match self.method {
+            Method::Stripped { diffuse_only } => {
+                renderer.shade_by(&SHADE_STRIPPED, &[(DIFFUSE_ONLY, u32::from(diffuse_only))])
+            }
+            Method::Shade { effects, quality } => renderer.shade(effects, quality),
+        }?;
+        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
+    }
+}
+
+/// Every method: what it is a ratio to comes before it.
+fn runs() -> Vec<Run> {
+    let run = |name: String, method, yardstick| Run { name, method, yardstick, seconds: Vec::new() };
+    let shade = |effects, quality| Method::Shade { effects, quality };
+    let both = Effects::DIFFUSE | Effects::GLOSSY;
+    let exact = Quality::default();
+    let one_point = Quality { one_point: true, ..exact };
+    let mut runs = vec![
+        run("both lobes, stripped by hand".into(), Method::Stripped { diffuse_only: false }, 0),
+        run(both.to_string(), shade(both, exact), 0),
+        run("diffuse lobe, stripped by hand".into(), Method::Stripped { diffuse_only: true }, 2),
+        run(Effects::DIFFUSE.to_string(), shade(Effects::DIFFUSE, exact), 2),
+        run(format!("{both}; one point without far"), shade(both, one_point), 1),
+    ];
+    for added in (Effects::all() - both).iter() {
+        let quality = if added == Effects::FAR { one_point } else { exact };
+        let note = if added == Effects::FAR { "; one point" } else { "" };
+        runs.push(run(format!("{}{note}", both | added), shade(both | added, quality), 1));
+    }
+    runs.push(run("every effect".into(), shade(Effects::all(), exact), 1));
+    runs
+}
+
+/// Measures every method over the renderer's frame in `rounds` rounds, after one that warms up. The scene calls for no
+/// effect but the lobes, so that each is one that no pixel uses.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn measure(renderer: &mut SceneRenderer<'_>, rounds: usize) -> Result<Vec<EffectCost>, EngineError> {
+    let mut runs = runs();
+    let count = runs.len();
+    for round in 0..=rounds {
+        for place in 0..count {
+            // There and back, so that nobody always runs after the same one
+            let run = &mut runs[if round % 2 == 0 { place } else { count - 1 - place }];
+            let seconds = run.once(renderer)?;
+            if round > 0 {
+                run.seconds.push(seconds);
+            }
+        }
+    }
+    let cost = |run: &Run| {
+        let yardstick = &runs[run.yardstick];
+        let ratios: Vec<f64> = run.seconds.iter().zip(&yardstick.seconds).map(|(a, b)| a / b).collect();
+        EffectCost {
+            name: run.name.clone(),
+            yardstick: yardstick.name.clone(),
+            seconds: quantile(&run.seconds, 0.5),
+            ratio: quantile(&ratios, 0.5),
+            quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
+        }
+    };
+    Ok(runs.iter().map(cost).collect())
+}
+
+/// The costs as a Markdown table.
+pub fn markdown(costs: &[EffectCost]) -> String {
+    let mut text = String::from("| effects | as a ratio to | time | quartiles |\n|---|---|---|---|\n");
+    for EffectCost { name, yardstick, ratio, quartiles: [low, high], .. } in costs {
+        let _ = writeln!(text, "| {name} | {yardstick} | {ratio:.3} | {low:.3} to {high:.3} |");
+    }
+    text
+}

@@ -1,0 +1,108 @@
+//! Effects are switches of what is computed, never of what comes out: one that no pixel uses changes no bit of a
+//! picture, and the set of a scene shows what the set of all does.
+
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Quality};
+use arealight_engine::SceneRenderer;
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use glam::{Vec3, Vec4};
+use std::path::Path;
+
+const SIZE: [u32; 2] = [64, 36];
+
+/// A view of a scene, and what a set of effects shows of it.
+struct View<'a> {
+    engine: &'a TestEngine,
+    scene: &'a Scene,
+    buffers: SceneBuffers,
+    camera: Camera,
+}
+
+impl<'a> View<'a> {
+    fn new(engine: &'a TestEngine, scene: &'a Scene) -> Self {
+        let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
+        let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
+        Self { engine, scene, buffers, camera }
+    }
+
+    /// The picture's bits.
+    fn shade(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+        let constants = self.buffers.constants(&self.camera, SIZE, Vec3::ZERO);
+        let mut renderer =
+            SceneRenderer::new(self.engine, &self.buffers, &self.scene.lights, constants, SIZE).unwrap();
+        renderer.shade(effects, quality).unwrap();
+        renderer
+            .radiance()
+            .unwrap()
+            .into_iter()
+            .map(|texel: Vec4| texel.to_array().map(f32::to_bits))
+            .collect()
+    }
+}
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+    Scene::load(path).expect("our own scenes load")
+}
+
+/// How many pixels differ in any bit, and the largest difference of a channel, over the brightest channel.
+fn difference(a: &[[u32; 4]], b: &[[u32; 4]]) -> (usize, f32) {
+    let channels = || a.as_flattened().iter().zip(b.as_flattened());
+    let numbers = || channels().map(|(a, b)| (f32::from_bits(*a), f32::from_bits(*b)));
+    let brightest = numbers().fold(0.0, |most: f32, (a, _)| most.max(a));
+    let largest = numbers().fold(0.0, |most: f32, (a, b)| most.max((a - b).abs()));
+    (a.iter().zip(b).filter(|(a, b)| a != b).count(), largest / brightest)
+}
+
+#[test]
+fn an_effect_that_no_pixel_uses_changes_no_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let view = View::new(&engine, &scene);
+    let required = scene.effects();
+    // Those of shapes have tests of their own, and pipelines that take long to make
+    let unused = Effects::all() - Effects::SHAPES - required;
+    let one_point = Quality { one_point: true, ..Quality::default() };
+    let dear = Quality {
+        form_factor: FormFactor::ExactDifference,
+        horizon: Horizon::Both,
+        fresnel: Fresnel::Split,
+        footprint: Footprint::Ellipse,
+        ..Quality::default()
+    };
+    // Pipelines take their time: each effect once, and all but one of them at once on rungs that bring code of their own
+    let mut sets: Vec<_> = unused.iter().map(|effect| (effect, one_point)).collect();
+    sets.push((unused - Effects::POLYGON, dear));
+    let mut wrong = Vec::new();
+    for (added, quality) in sets {
+        let (pixels, largest) =
+            difference(&view.shade(required, quality), &view.shade(required | added, quality));
+        // The walk goes around a light in another order than the quad: the sum of its edges is rounded
+        // otherwise, by 2^-24 for each of four edges and the horizon's arc in two lobes
+        let allowed = if added == Effects::POLYGON { 10.0 * f32::EPSILON / 2.0 } else { 0.0 };
+        if largest > allowed || (pixels > 0 && allowed == 0.0) {
+            wrong.push(format!("{quality:?}, {added}: {pixels} pixels, {largest:e} at most"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // The twin: one that pixels use changes most of them
+    let (pixels, _) = difference(
+        &view.shade(required, Quality::default()),
+        &view.shade(required - Effects::GLOSSY, Quality::default()),
+    );
+    assert!(pixels > 1000, "{pixels}");
+}
+
+#[test]
+fn the_set_of_every_polygon_effect_shows_what_the_required_one_does() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("room.glb");
+    let view = View::new(&engine, &scene);
+    let required = scene.effects();
+    // With shapes too: shape_frames.rs
+    let all = Effects::all() - Effects::SHAPES;
+    assert!(required != all && required.contains(Effects::POLYGON | Effects::TWO_SIDED), "{required}");
+    let quality = Quality { one_point: true, ..Quality::default() };
+    let (pixels, largest) = difference(&view.shade(required, quality), &view.shade(all, quality));
+    assert_eq!(pixels, 0, "{largest:e}");
+}
