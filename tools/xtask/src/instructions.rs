@@ -209,7 +209,7 @@ fn no_tool(source: std::io::Error) -> TaskError {
 /// The tool's version.
 fn tool() -> Result<String, TaskError> {
     let output = Command::new(SPIRV_OPT).arg("--version").output().map_err(no_tool)?;
-    let text = String::from_utf8_lossy(&output.stdout);
+    let text = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
     Ok(text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default().to_owned())
 }
 
