@@ -30,6 +30,7 @@ has_program() { command -v "$1" >/dev/null; }
 has_loader() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
 has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
 has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
+has_header() { any_file "/usr/include/$1" "/usr/local/include/$1"; }
 has_c_library() { any_file "/usr/lib/$(uname -m)-linux-gnu/crt1.o" /usr/lib64/crt1.o /usr/lib/crt1.o; }
 has_library() {
     [[ -n "${SHADERC_LIB_DIR:-}" ]] || any_file "/usr/lib/$(uname -m)-linux-gnu/$1" "/usr/lib64/$1" "/usr/lib/$1"
@@ -67,6 +68,10 @@ if [[ "$mode" == test ]]; then
     need spirv-tools "another part of it, and the SPIR-V validator" has_library libSPIRV-Tools-opt.a
     need glslang-tools "a second shader compiler, for the GLSL library's check" has_program glslangValidator
     need glslc "the first as a program, for the same" has_program glslc
+    need libvulkan-dev "Vulkan's headers, for the host in C++" has_header vulkan/vulkan.h
+    need pkg-config "finds the C library" has_program pkg-config
+    need cmake "finds it too" has_program cmake
+    need make "builds what CMake says" has_program make
 fi
 
 if [[ ${#missing[@]} -eq 0 ]]; then

@@ -7,12 +7,14 @@
 //! cargo run -p xtask -- shaders --check          # are they fresh?
 //! cargo run -p xtask -- instructions             # what each effect and rung adds to the shade kernel
 //! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
+//! cargo run -p xtask -- header                   # crates/arealight-capi -> its include/arealight.h
 //! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
 //! cargo run -p xtask -- quotes                   # put the code that documents show into them
 //! cargo run -p xtask -- packages                 # is what would be published whole?
 //! ```
 
 mod compile;
+mod header;
 mod includes;
 mod instructions;
 mod library;
@@ -43,6 +45,7 @@ enum Task {
     Instructions(instructions::Arguments),
     /// Compile each file of the GLSL library on its own, and check the library's rules.
     Includes,
+    Header(header::Arguments),
     Matrix(matrix::Arguments),
     Quotes(quotes::Arguments),
     /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer Rust.
@@ -66,6 +69,8 @@ pub(crate) enum TaskError {
     Program { program: &'static str, package: &'static str, source: std::io::Error },
     #[error("cargo {arguments} failed:\n{message}")]
     Cargo { arguments: String, message: String },
+    #[error("crates/arealight-capi: cannot make the header: {message}")]
+    Header { message: String },
     #[error("arealight export failed: {message}")]
     Export { message: String },
 }
@@ -83,6 +88,7 @@ fn main() -> ExitCode {
         Task::Shaders(arguments) => shaders::run(&root, &arguments),
         Task::Instructions(arguments) => instructions::run(&root, &arguments),
         Task::Includes => includes::run(&root),
+        Task::Header(arguments) => header::run(&root, &arguments),
         Task::Matrix(arguments) => matrix::run(&root, &arguments),
         Task::Quotes(arguments) => quotes::run(&root, &arguments),
         Task::Packages => packages::run(&root),

@@ -7,12 +7,13 @@ use std::path::Path;
 use std::process::Command;
 
 /// What packages must hold beside their sources, which compiling would not miss everywhere.
-const NEEDED: [(&str, &[&str]); 2] = [
+const NEEDED: [(&str, &[&str]); 3] = [
     (
         "arealight",
         &["spirv/shade.spv", "spirv/texture_load.spv", "spirv/texture_blur.spv", "spirv/manifest.json"],
     ),
     ("arealight-table", &["tables/ggx.exr"]),
+    ("arealight-capi", &["include/arealight.h", "arealight.pc.in", "cmake/arealight-config.cmake"]),
 ];
 
 /// What every package must hold.

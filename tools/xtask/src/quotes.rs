@@ -2,7 +2,7 @@
 //!
 //! In a document, `<!-- from PATH -->` stands on the line before a fenced block that shows a file (from the checkout's
 //! root), and `<!-- from PATH: NAME -->` before one that shows a part of it: the lines between a comment `// doc: NAME`
-//! and the next `// doc end`, with their common indentation taken away.
+//! (or `# doc: NAME`) and the next `// doc end`, with their common indentation taken away.
 
 use crate::TaskError;
 use std::path::{Path, PathBuf};
@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 /// Documents, from the checkout's root; of a folder, every .md file in it.
 const DOCUMENTS: [&str; 2] = ["README.md", "docs"];
 
-const BEGIN: &str = "// doc: ";
-const END: &str = "// doc end";
+const BEGIN: &str = "doc: ";
+const END: &str = "doc end";
 
 /// Put the code that documents quote into them, from the files that they name.
 #[derive(clap::Args)]
@@ -108,16 +108,20 @@ fn requote(document: &str, read: impl Fn(&str) -> Option<String>) -> Result<Quot
 fn excerpt(source: &str, read: impl Fn(&str) -> Option<String>) -> Result<String, String> {
     let (path, part) = source.split_once(": ").map_or((source, None), |(path, part)| (path, Some(part)));
     let text = read(path).ok_or_else(|| format!("cannot read {path}"))?;
-    let is_mark = |line: &&str| line.trim().starts_with(BEGIN) || line.trim() == END;
+    let comment = |line: &str| {
+        let line = line.trim();
+        line.strip_prefix("//").or_else(|| line.strip_prefix('#')).map_or("", str::trim_start).to_owned()
+    };
+    let is_mark = |line: &&str| comment(line).starts_with(BEGIN) || comment(line) == END;
     let lines: Vec<&str> = match part {
         None => text.lines().filter(|line| !is_mark(line)).collect(),
         Some(part) => {
             let mut lines = text.lines();
-            let begins = |line: &str| line.trim().strip_prefix(BEGIN) == Some(part);
+            let begins = |line: &str| comment(line).strip_prefix(BEGIN) == Some(part);
             if !lines.by_ref().any(begins) {
-                return Err(format!("{path} has no line `{BEGIN}{part}`"));
+                return Err(format!("{path} has no line `// {BEGIN}{part}`"));
             }
-            let taken: Vec<&str> = lines.by_ref().take_while(|line| line.trim() != END).collect();
+            let taken: Vec<&str> = lines.by_ref().take_while(|line| comment(line) != END).collect();
             taken.into_iter().filter(|line| !is_mark(line)).collect()
         }
     };
@@ -130,7 +134,7 @@ fn excerpt(source: &str, read: impl Fn(&str) -> Option<String>) -> Result<String
 mod tests {
     use super::*;
 
-    const SOURCE: &str = "one\n    // doc: inner\n    two {\n        three\n    // doc end\nfour\n";
+    const SOURCE: &str = "one\n    // doc: inner\n    two {\n        three\n    # doc end\nfour\n";
 
     fn read(path: &str) -> Option<String> {
         (path == "a.rs").then(|| SOURCE.to_owned())

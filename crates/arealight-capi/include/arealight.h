@@ -1,0 +1,705 @@
+// Arealight: analytic area lights, recorded into your Vulkan command buffer.
+//
+// Made from crates/arealight-capi by `cargo run -p xtask -- header`: change it there.
+//
+// The library owns nothing of yours: it never submits, waits, or allocates memory or descriptor sets of Vulkan, and makes no
+// barrier for your images. vulkan.h is not needed: handles that are pointers everywhere (VkInstance, VkPhysicalDevice,
+// VkDevice, VkCommandBuffer) are void *, all others uint64_t.
+//
+// Conventions: SI radiometry, linear Rec. 709. Right-handed; matrices are column-major. Positions are relative to an
+// origin near the camera that you choose; lights are packed with the same. A light's front is where its vertices run
+// counter-clockwise.
+//
+// Every function that returns an ArealightResult checks what it can, writes nothing and records nothing where it fails, and leaves a
+// message for arealight_last_error. An object is used by one thread at a time.
+
+#ifndef AREALIGHT_H
+#define AREALIGHT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
+#define AREALIGHT_EFFECT_DIFFUSE 1
+
+// The GGX lobe: some surface reflects specularly.
+#define AREALIGHT_EFFECT_GLOSSY 2
+
+// Some light lights both of its sides.
+#define AREALIGHT_EFFECT_TWO_SIDED 4
+
+// Some surface has a dielectric reflectance of its own: ArealightResources.specular is read.
+#define AREALIGHT_EFFECT_SPECULAR_INPUT 8
+
+// Some light is concave, not quite flat, or has more than four vertices.
+#define AREALIGHT_EFFECT_POLYGON 16
+
+// Some light shows an image: ArealightResources.light_textures is read.
+#define AREALIGHT_EFFECT_TEXTURED 32
+
+// Some light may be so far that its center alone stands for it: ArealightPassOptions.one_point counts only with this.
+#define AREALIGHT_EFFECT_FAR 64
+
+// Some light is a disk or an ellipse.
+#define AREALIGHT_EFFECT_ELLIPSE 256
+
+// Some light is a sphere.
+#define AREALIGHT_EFFECT_SPHERE 512
+
+// Some light is a cylinder or a capsule.
+#define AREALIGHT_EFFECT_TUBE 1024
+
+// Every effect: right for any lights, at the highest cost.
+#define AREALIGHT_EFFECTS_ALL 1919
+
+// Form factors to float32's own precision, 1e-6.
+#define AREALIGHT_FORM_FACTOR_EXACT 0
+
+// 2.7e-5 of each edge's share, fewer instructions.
+#define AREALIGHT_FORM_FACTOR_FAST 1
+
+// As EXACT, and relative precision for lights that look small.
+#define AREALIGHT_FORM_FACTOR_EXACT_DIFFERENCE 2
+
+// As FAST, likewise.
+#define AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE 3
+
+// Polygons are clipped at the horizon of the lobe's cosine space.
+#define AREALIGHT_HORIZON_COSINE 0
+
+// And at the surface's horizon: nothing leaks from behind the surface.
+#define AREALIGHT_HORIZON_BOTH 1
+
+// Nowhere: the host knows that it need not be.
+#define AREALIGHT_HORIZON_BARE 2
+
+// One integral a glossy lobe.
+#define AREALIGHT_FRESNEL_BY_F0 0
+
+// Two: exact in the reflectance and its colour.
+#define AREALIGHT_FRESNEL_SPLIT 1
+
+// The glossy lobe is the table's.
+#define AREALIGHT_LOBES_TABLE 0
+
+// Formulas instead, without a texture, at 1.2 to 1.35 times the error.
+#define AREALIGHT_LOBES_FORMULA 1
+
+// A light's image is looked up with one round fetch a lobe.
+#define AREALIGHT_FOOTPRINT_ROUND 0
+
+// With four along the longer axis.
+#define AREALIGHT_FOOTPRINT_ELLIPSE 1
+
+// With two by two parts of the light, two fetches each.
+#define AREALIGHT_FOOTPRINT_SPLIT_TWO 2
+
+// With four by four parts.
+#define AREALIGHT_FOOTPRINT_SPLIT_FOUR 3
+
+// ArealightResources.position holds positions; w = 0 where there is no surface.
+#define AREALIGHT_POSITION_IMAGE 0
+
+// It holds depth as stored; exactly 0 or 1 where there is no surface.
+#define AREALIGHT_POSITION_DEPTH 1
+
+// Radiance replaces what is in the image.
+#define AREALIGHT_OUTPUT_OVERWRITE 0
+
+// Radiance is added to it.
+#define AREALIGHT_OUTPUT_ADD 1
+
+// The table is kept in 32-bit floats, 16 bytes a texel.
+#define AREALIGHT_TABLE_RGBA32F 0
+
+// In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.
+#define AREALIGHT_TABLE_RGBA16F 1
+
+// A flat ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
+#define AREALIGHT_SHAPE_ELLIPSE 0
+
+// A sphere about `center`.
+#define AREALIGHT_SHAPE_SPHERE 1
+
+// A tube about `center`, whose axis goes from `center - axis_u` to `center + axis_u`.
+#define AREALIGHT_SHAPE_TUBE 2
+
+// The lateral surface of a tube alone shines.
+#define AREALIGHT_TUBE_OPEN 0
+
+// Flat caps shine too.
+#define AREALIGHT_TUBE_FLAT 1
+
+// Half spheres about both ends do: a capsule.
+#define AREALIGHT_TUBE_ROUND 2
+
+// The range of an ArealightBuffer from its offset to its end.
+#define AREALIGHT_WHOLE_SIZE UINT64_MAX
+
+// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
+// with. They must be equal; arealight_create refuses another.
+#define AREALIGHT_ABI_VERSION 1
+
+// What became of a call. Whatever is not AREALIGHT_RESULT_OK comes with a message: arealight_last_error.
+typedef enum ArealightResult {
+    // Done.
+    AREALIGHT_RESULT_OK = 0,
+    // An argument is null, out of range, NaN, or of an object that is not alive; the message names it.
+    AREALIGHT_RESULT_ERROR_ARGUMENT = 1,
+    // The host was compiled for another version of the library.
+    AREALIGHT_RESULT_ERROR_ABI_VERSION = 2,
+    // The device or its Vulkan lacks something; the message names it.
+    AREALIGHT_RESULT_ERROR_MISSING_FEATURE = 3,
+    // A call of Vulkan failed; the message names it and its result.
+    AREALIGHT_RESULT_ERROR_VULKAN = 4,
+    // A light cannot be shaded; the message names it and its field.
+    AREALIGHT_RESULT_ERROR_LIGHT = 5,
+    // A light calls for effects that the pass was made without; the message names both.
+    AREALIGHT_RESULT_ERROR_EFFECTS = 6,
+    // The bytes hold no light table, or one of another version.
+    AREALIGHT_RESULT_ERROR_TABLE = 7,
+    // An array of the host is too small; the size that is needed was written.
+    AREALIGHT_RESULT_ERROR_TOO_SMALL = 8,
+    // A fault of the library, which is worth a report. The object of the call is good only for being destroyed.
+    AREALIGHT_RESULT_ERROR_INTERNAL = 9,
+} ArealightResult;
+
+// The library on a device of the host, with a light table.
+typedef struct Arealight Arealight;
+
+// A shade pass, specialised for effects and a quality.
+typedef struct ArealightPass ArealightPass;
+
+// A function of Vulkan, as vkGetInstanceProcAddr returns it.
+typedef void (*ArealightFunction)(void);
+
+// vkGetInstanceProcAddr or vkGetDeviceProcAddr, by a cast.
+typedef ArealightFunction (*ArealightProcAddr)(void *handle, const char *name);
+
+// The host's Vulkan. All handles stay the host's, and outlive what is made from them.
+typedef struct ArealightHost {
+    // AREALIGHT_ABI_VERSION.
+    uint32_t abi_version;
+    // VkApplicationInfo.apiVersion that the instance was made with: Vulkan 1.1 or later.
+    uint32_t api_version;
+    // vkGetInstanceProcAddr
+    ArealightProcAddr get_instance_proc_addr;
+    // vkGetDeviceProcAddr
+    ArealightProcAddr get_device_proc_addr;
+    // VkInstance
+    void *instance;
+    // VkPhysicalDevice
+    void *physical_device;
+    // VkDevice, with a queue that computes. No optional feature or extension is needed.
+    void *device;
+    // VkPipelineCache that pipelines are made with, or 0. Not used elsewhere while a pass is being made.
+    uint64_t pipeline_cache;
+} ArealightHost;
+
+// Which light table.
+typedef struct ArealightTable {
+    // A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for the table of
+    // GGX that is built in.
+    const uint8_t *bytes;
+    // How many bytes.
+    size_t size;
+    // One of AREALIGHT_TABLE_*.
+    uint32_t format;
+    // 0
+    uint32_t reserved;
+} ArealightTable;
+
+// What memory the table needs.
+typedef struct ArealightMemory {
+    // VkMemoryRequirements of the image.
+    uint64_t size;
+    // VkMemoryRequirements of the image.
+    uint64_t alignment;
+    // Bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    uint64_t staging_size;
+    // VkMemoryRequirements of the image.
+    uint32_t memory_type_bits;
+    // 0
+    uint32_t reserved;
+} ArealightMemory;
+
+// How the table gets to the device.
+typedef struct ArealightUpload {
+    // VkDeviceMemory for ArealightMemory; it is freed after arealight_destroy.
+    uint64_t memory;
+    // Where in it.
+    uint64_t memory_offset;
+    // The staging buffer's memory at staging_offset, mapped; the texels are written there.
+    void *staging_data;
+    // Bytes from there on: ArealightMemory.staging_size or more.
+    uint64_t staging_size;
+    // VkBuffer; it lives until the commands have run.
+    uint64_t staging_buffer;
+    // Where in it, a multiple of 16.
+    uint64_t staging_offset;
+    // VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
+    void *command_buffer;
+} ArealightUpload;
+
+// What a pass is specialised for. All zero is the exact rung without an effect.
+typedef struct ArealightPassOptions {
+    // AREALIGHT_EFFECT_* that the scene calls for. More only costs time; less is an error when lights are packed.
+    uint32_t effects;
+    // One of AREALIGHT_FORM_FACTOR_*.
+    uint32_t form_factor;
+    // One of AREALIGHT_HORIZON_*.
+    uint32_t horizon;
+    // One of AREALIGHT_FRESNEL_*.
+    uint32_t fresnel;
+    // One of AREALIGHT_LOBES_*.
+    uint32_t lobes;
+    // 1: far lights are taken from their center alone where that is within 1e-4. With AREALIGHT_EFFECT_FAR.
+    uint32_t one_point;
+    // One of AREALIGHT_FOOTPRINT_*.
+    uint32_t footprint;
+    // One of AREALIGHT_POSITION_*.
+    uint32_t position;
+    // One of AREALIGHT_OUTPUT_*.
+    uint32_t output;
+    // 0
+    uint32_t reserved;
+} ArealightPassOptions;
+
+// What a descriptor set of a pass is made with.
+typedef struct ArealightSetLayout {
+    // VkDescriptorSetLayout, the pass's own.
+    uint64_t layout;
+    // Descriptors that a set takes from its pool: VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE.
+    uint32_t sampled_images;
+    // VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER
+    uint32_t combined_image_samplers;
+    // VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+    uint32_t storage_images;
+    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
+    uint32_t storage_buffers;
+} ArealightSetLayout;
+
+// A range of a buffer of the host, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT.
+typedef struct ArealightBuffer {
+    // VkBuffer
+    uint64_t buffer;
+    // A multiple of minStorageBufferOffsetAlignment.
+    uint64_t offset;
+    // Bytes, or AREALIGHT_WHOLE_SIZE.
+    uint64_t range;
+} ArealightBuffer;
+
+// An image of the host, in the layout that it has when the pass runs.
+typedef struct ArealightImage {
+    // VkImageView
+    uint64_t view;
+    // VkImageLayout
+    uint32_t layout;
+    // 0
+    uint32_t reserved;
+} ArealightImage;
+
+// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are left as they
+// are.
+typedef struct ArealightResources {
+    // ArealightPackedLights.lights; without lights, any buffer of 128 bytes or more.
+    struct ArealightBuffer lights;
+    // ArealightPackedLights.vertices, likewise.
+    struct ArealightBuffer light_vertices;
+    // What arealight_pass_pack_shapes made. May be 0 in a pass without AREALIGHT_EFFECT_ELLIPSE, _SPHERE and _TUBE.
+    struct ArealightBuffer shapes;
+    // Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f).
+    struct ArealightImage position;
+    // Shading normal in xyz, of any length; perceptual roughness in w (rgba16f, rgba32f for mirrors).
+    struct ArealightImage normal;
+    // Linear base colour in rgb, metalness in a (rgba8).
+    struct ArealightImage base_color;
+    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT.
+    struct ArealightImage specular;
+    // The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
+    // AREALIGHT_EFFECT_TEXTURED.
+    struct ArealightImage light_textures;
+    // Where radiance goes: a storage image (rgba32f) in VK_IMAGE_LAYOUT_GENERAL.
+    struct ArealightImage radiance;
+} ArealightResources;
+
+// What differs from frame to frame.
+typedef struct ArealightFrame {
+    // Of the radiance image, in pixels; those of the G-buffer are of the same size.
+    uint32_t width;
+    // Likewise.
+    uint32_t height;
+    // The camera's position relative to the origin of positions and lights.
+    float camera[3];
+    // How many lights of their buffer are shaded.
+    uint32_t light_count;
+    // How many disks, spheres and tubes of theirs.
+    uint32_t shape_count;
+    // 0
+    uint32_t reserved;
+    // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
+    // be null with AREALIGHT_POSITION_IMAGE.
+    const float *position_from_clip;
+} ArealightFrame;
+
+// A flat polygon that emits constant radiance, or shows an image. Convex or concave, without crossing edges.
+typedef struct ArealightLight {
+    // For messages, UTF-8; may be null.
+    const char *name;
+    // World positions, three numbers a vertex: seen from the front, counter-clockwise.
+    const double *vertices;
+    // Null, or two texture coordinates a vertex, in [0, 1], an affine function of the positions: the light shows
+    // `texture_layer` of the light textures.
+    const double *texture_coordinates;
+    // From 3 on.
+    uint32_t vertex_count;
+    // Read only with texture coordinates.
+    uint32_t texture_layer;
+    // Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
+    float radiance[3];
+    // 1: the back emits too.
+    uint32_t two_sided;
+} ArealightLight;
+
+// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
+typedef struct ArealightPackedLights {
+    // Where the lights go, aligned to 4 bytes; null to ask for the sizes alone.
+    void *lights;
+    // Where the vertices go, likewise.
+    void *vertices;
+    // In: bytes at `lights`. Out: bytes that are needed, 128 a light.
+    uint64_t lights_size;
+    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
+    uint64_t vertices_size;
+} ArealightPackedLights;
+
+// A disk, sphere or tube of constant radiance, in world positions.
+typedef struct ArealightShape {
+    // For messages, UTF-8; may be null.
+    const char *name;
+    // One of AREALIGHT_SHAPE_*.
+    uint32_t kind;
+    // Of a tube: one of AREALIGHT_TUBE_*.
+    uint32_t ends;
+    // The middle.
+    double center[3];
+    // Of an ellipse and a tube.
+    double axis_u[3];
+    // Of an ellipse.
+    double axis_v[3];
+    // Of a sphere and a tube, above zero.
+    double radius;
+    // Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
+    float radiance[3];
+    // 1: the back of an ellipse, or the inside of a sphere, emits too.
+    uint32_t two_sided;
+} ArealightShape;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty where none
+// has. Valid until the next call of this thread that fails.
+const char *arealight_last_error(void);
+
+// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
+enum ArealightResult arealight_create(const struct ArealightHost *host,
+                                      const struct ArealightTable *table,
+                                      struct Arealight **out);
+
+// What memory the table needs.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
+
+// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
+// once; the commands run before any that shade.
+//
+// The host sees to it:
+// Pointers are null or valid, and `upload` is as ArealightUpload says.
+enum ArealightResult arealight_table_upload(struct Arealight *arealight,
+                                            const struct ArealightUpload *upload);
+
+// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
+// nothing.
+//
+// The host sees to it:
+// No commands that shade are pending, the device is alive, and no other thread uses the object.
+enum ArealightResult arealight_destroy(struct Arealight *arealight);
+
+// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
+                                           const struct ArealightPassOptions *options,
+                                           struct ArealightPass **out);
+
+// What descriptor sets of the pass are made with.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_set_layout(const struct ArealightPass *pass,
+                                               struct ArealightSetLayout *out);
+
+// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
+// which was uploaded.
+//
+// The host sees to it:
+// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+enum ArealightResult arealight_pass_write_set(const struct ArealightPass *pass,
+                                              const struct Arealight *arealight,
+                                              uint64_t set,
+                                              const struct ArealightResources *resources);
+
+// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
+//
+// The host sees to it:
+// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
+// set was written, with images of the frame's size and buffers of
+// `frame.light_count` lights and `frame.shape_count` shapes.
+enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
+                                           void *command_buffer,
+                                           uint64_t set,
+                                           const struct ArealightFrame *frame);
+
+// Destroys a pass, before or after the object that it was made from. Null is nothing.
+//
+// The host sees to it:
+// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
+
+// Packs lights for the pass, relative to `origin` (three numbers, in world positions), into arrays of the host, which
+// uploads them to its buffers. With null arrays, only says how large they must be.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say.
+enum ArealightResult arealight_pass_pack_lights(const struct ArealightPass *pass,
+                                                const struct ArealightLight *lights,
+                                                uint32_t light_count,
+                                                const double *origin,
+                                                struct ArealightPackedLights *packed);
+
+// Packs disks, spheres and tubes for the pass, relative to `origin`, into an array of the host, 64 bytes each and aligned to 4.
+// `*size` is the array's in bytes, and becomes what is needed. With a null array, only says so.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say.
+enum ArealightResult arealight_pass_pack_shapes(const struct ArealightPass *pass,
+                                                const struct ArealightShape *shapes,
+                                                uint32_t shape_count,
+                                                const double *origin,
+                                                void *packed,
+                                                uint64_t *size);
+
+// AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
+uint32_t arealight_abi_version(void);
+
+// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
+enum ArealightResult arealight_create(const struct ArealightHost *host,
+                                      const struct ArealightTable *table,
+                                      struct Arealight **out);
+
+// What memory the table needs.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
+
+// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
+// once; the commands run before any that shade.
+//
+// The host sees to it:
+// Pointers are null or valid, and `upload` is as ArealightUpload says.
+enum ArealightResult arealight_table_upload(struct Arealight *arealight,
+                                            const struct ArealightUpload *upload);
+
+// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
+// nothing.
+//
+// The host sees to it:
+// No commands that shade are pending, the device is alive, and no other thread uses the object.
+enum ArealightResult arealight_destroy(struct Arealight *arealight);
+
+// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty where none
+// has. Valid until the next call of this thread that fails.
+const char *arealight_last_error(void);
+
+// Packs lights for the pass, relative to `origin` (three numbers, in world positions), into arrays of the host, which
+// uploads them to its buffers. With null arrays, only says how large they must be.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say.
+enum ArealightResult arealight_pass_pack_lights(const struct ArealightPass *pass,
+                                                const struct ArealightLight *lights,
+                                                uint32_t light_count,
+                                                const double *origin,
+                                                struct ArealightPackedLights *packed);
+
+// Packs disks, spheres and tubes for the pass, relative to `origin`, into an array of the host, 64 bytes each and aligned to 4.
+// `*size` is the array's in bytes, and becomes what is needed. With a null array, only says so.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say.
+enum ArealightResult arealight_pass_pack_shapes(const struct ArealightPass *pass,
+                                                const struct ArealightShape *shapes,
+                                                uint32_t shape_count,
+                                                const double *origin,
+                                                void *packed,
+                                                uint64_t *size);
+
+// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
+                                           const struct ArealightPassOptions *options,
+                                           struct ArealightPass **out);
+
+// What descriptor sets of the pass are made with.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_set_layout(const struct ArealightPass *pass,
+                                               struct ArealightSetLayout *out);
+
+// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
+// which was uploaded.
+//
+// The host sees to it:
+// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+enum ArealightResult arealight_pass_write_set(const struct ArealightPass *pass,
+                                              const struct Arealight *arealight,
+                                              uint64_t set,
+                                              const struct ArealightResources *resources);
+
+// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
+//
+// The host sees to it:
+// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
+// set was written, with images of the frame's size and buffers of
+// `frame.light_count` lights and `frame.shape_count` shapes.
+enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
+                                           void *command_buffer,
+                                           uint64_t set,
+                                           const struct ArealightFrame *frame);
+
+// Destroys a pass, before or after the object that it was made from. Null is nothing.
+//
+// The host sees to it:
+// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+// Structs are laid out as the library's.
+#if UINTPTR_MAX == UINT64_MAX
+#ifdef __cplusplus
+#define AREALIGHT_ASSERT(condition) static_assert(condition, #condition)
+#else
+#define AREALIGHT_ASSERT(condition) _Static_assert(condition, #condition)
+#endif
+AREALIGHT_ASSERT(sizeof(ArealightHost) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightHost, abi_version) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightHost, api_version) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightHost, get_instance_proc_addr) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightHost, get_device_proc_addr) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightHost, instance) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightHost, physical_device) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightHost, device) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightHost, pipeline_cache) == 48);
+AREALIGHT_ASSERT(sizeof(ArealightTable) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightTable, bytes) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTable, size) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTable, format) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightTable, reserved) == 20);
+AREALIGHT_ASSERT(sizeof(ArealightMemory) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightMemory, size) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightMemory, alignment) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightMemory, staging_size) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightMemory, memory_type_bits) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightMemory, reserved) == 28);
+AREALIGHT_ASSERT(sizeof(ArealightUpload) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, memory) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, memory_offset) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_data) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, effects) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, fresnel) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, one_point) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, reserved) == 36);
+AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, combined_image_samplers) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightLight, vertices) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightLight, texture_coordinates) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightLight, vertex_count) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightLight, texture_layer) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightLight, radiance) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 44);
+AREALIGHT_ASSERT(sizeof(ArealightShape) == 112);
+AREALIGHT_ASSERT(offsetof(ArealightShape, name) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightShape, kind) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightShape, ends) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightShape, center) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightShape, axis_u) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightShape, axis_v) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightShape, radius) == 88);
+AREALIGHT_ASSERT(offsetof(ArealightShape, radiance) == 96);
+AREALIGHT_ASSERT(offsetof(ArealightShape, two_sided) == 108);
+AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights_size) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices_size) == 24);
+AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightResources, position) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightResources, normal) == 88);
+AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
+AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 136);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 152);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, light_count) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, shape_count) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 32);
+#undef AREALIGHT_ASSERT
+#endif
+
+#endif  /* AREALIGHT_H */

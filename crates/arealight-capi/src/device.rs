@@ -1,0 +1,214 @@
+//! From the host's handles to a table on its device.
+
+use crate::failure::{ArealightResult, Failure, call};
+use crate::types::{
+    AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F, ArealightHost, ArealightMemory, ArealightTable,
+    ArealightUpload,
+};
+use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
+use arealight::LightTable;
+use arealight_table::TableFile;
+use arealight_vk::ash::vk::{self, Handle as _};
+use arealight_vk::{Context, HostDevice, TableFormat, TableImage};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The library on a device of the host, with a light table.
+pub struct Arealight {
+    context: Context,
+    format: TableFormat,
+    table: LightTable,
+    image: Mutex<Image>,
+}
+
+struct Image {
+    table: TableImage,
+    has_memory: bool,
+}
+
+impl Arealight {
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
+    }
+
+    fn image(&self) -> MutexGuard<'_, Image> {
+        // What a panic leaves behind is still the image
+        self.image.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The table as a pass reads it, and in place of light textures; `None` before it has memory.
+    pub(crate) fn table_resources(&self) -> Option<[arealight_vk::Resource; 2]> {
+        let image = self.image();
+        image.has_memory.then(|| [image.table.resource(), image.table.in_place_of_textures()])
+    }
+}
+
+/// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
+///
+/// # Safety
+/// Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_create(
+    host: *const ArealightHost,
+    table: *const ArealightTable,
+    out: *mut *mut Arealight,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        unsafe { arguments::write(out, std::ptr::null_mut(), "out") }?;
+        // The version comes first in every version
+        // SAFETY: as above.
+        let version = *unsafe { arguments::read(host.cast::<u32>(), "host") }?;
+        if version != AREALIGHT_ABI_VERSION {
+            let message = format!(
+                "host.abi_version: {version}, but this library has {AREALIGHT_ABI_VERSION}; compile the host with the \
+                 header that came with the library"
+            );
+            return Err(Failure::new(ArealightResult::ErrorAbiVersion, message));
+        }
+        // SAFETY: as above.
+        let (host, (table, format)) = unsafe { (arguments::read(host, "host")?, read_table(table)?) };
+        if host.api_version < vk::API_VERSION_1_1 {
+            let message = format!(
+                "host.api_version: {}.{}, but every kernel needs Vulkan 1.1: set VkApplicationInfo.apiVersion",
+                vk::api_version_major(host.api_version),
+                vk::api_version_minor(host.api_version)
+            );
+            return Err(Failure::new(ArealightResult::ErrorMissingFeature, message));
+        }
+
+        // SAFETY: the caller vouches for the handles; the device outlives what is made.
+        let arealight = unsafe {
+            let (instance, device) = loader::load(host)?;
+            let context = Context::new(&HostDevice {
+                instance: &instance,
+                physical_device: vk::PhysicalDevice::from_raw(host.physical_device as u64),
+                device: &device,
+                pipeline_cache: vk::PipelineCache::from_raw(host.pipeline_cache),
+            })?;
+            let image = Image { table: TableImage::new(&context, &table, format)?, has_memory: false };
+            Arealight { context, format, table, image: Mutex::new(image) }
+        };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, handles::give(arealight), "out") }
+    })
+}
+
+/// # Safety
+/// `table` is null or valid, with its bytes.
+unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableFormat), Failure> {
+    if table.is_null() {
+        return Ok((arealight_table::ggx(), TableFormat::Rgba32Float));
+    }
+    // SAFETY: the same contract.
+    let table = unsafe { arguments::read(table, "table") }?;
+    let format = match table.format {
+        AREALIGHT_TABLE_RGBA32F => TableFormat::Rgba32Float,
+        AREALIGHT_TABLE_RGBA16F => TableFormat::Rgba16Float,
+        other => return Err(Failure::argument(format!("table.format: {other} is no AREALIGHT_TABLE_*"))),
+    };
+    if table.bytes.is_null() && table.size == 0 {
+        return Ok((arealight_table::ggx(), format));
+    }
+    // SAFETY: the same contract.
+    let bytes = unsafe { arguments::array(table.bytes, table.size, "table.bytes") }?;
+    let wrong = |error| Failure::new(ArealightResult::ErrorTable, format!("table.bytes: {error}"));
+    Ok((TableFile::read(bytes).map_err(wrong)?.table, format))
+}
+
+/// What memory the table needs.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_table_memory(
+    arealight: *const Arealight,
+    out: *mut ArealightMemory,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let arealight = unsafe { handles::borrow(arealight, "arealight") }?;
+        let needed = arealight.image().table.memory_requirements();
+        let memory = ArealightMemory {
+            size: needed.size,
+            alignment: needed.alignment,
+            staging_size: arealight.staging_size(),
+            memory_type_bits: needed.memory_type_bits,
+            reserved: 0,
+        };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, memory, "out") }
+    })
+}
+
+impl Arealight {
+    fn staging_size(&self) -> u64 {
+        self.format.bytes(&self.table).len() as u64
+    }
+}
+
+/// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
+/// once; the commands run before any that shade.
+///
+/// # Safety
+/// Pointers are null or valid, and `upload` is as ArealightUpload says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_table_upload(
+    arealight: *mut Arealight,
+    upload: *const ArealightUpload,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (arealight, upload) =
+            unsafe { (handles::borrow(arealight, "arealight")?, arguments::read(upload, "upload")?) };
+        for (is_null, field) in [
+            (upload.memory == 0, "memory"),
+            (upload.staging_data.is_null(), "staging_data"),
+            (upload.staging_buffer == 0, "staging_buffer"),
+            (upload.command_buffer.is_null(), "command_buffer"),
+        ] {
+            if is_null {
+                return Err(Failure::argument(format!("upload.{field}: is null")));
+            }
+        }
+        let bytes = arealight.format.bytes(&arealight.table);
+        if upload.staging_size < bytes.len() as u64 {
+            let message =
+                format!("upload.staging_size: {}, but {} are needed", upload.staging_size, bytes.len());
+            return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
+        }
+        if upload.staging_offset % 16 != 0 {
+            let message = format!("upload.staging_offset: {} is no multiple of 16", upload.staging_offset);
+            return Err(Failure::argument(message));
+        }
+        let mut image = arealight.image();
+        if image.has_memory {
+            return Err(Failure::argument(
+                "arealight: its table was uploaded already; make another for another table",
+            ));
+        }
+
+        // SAFETY: the caller vouches for memory, buffer and command buffer; the mapped memory is large enough.
+        unsafe {
+            image.table.bind_memory(vk::DeviceMemory::from_raw(upload.memory), upload.memory_offset)?;
+            image.has_memory = true;
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), upload.staging_data.cast(), bytes.len());
+            image.table.record_upload(
+                vk::CommandBuffer::from_raw(upload.command_buffer as u64),
+                vk::Buffer::from_raw(upload.staging_buffer),
+                upload.staging_offset,
+            );
+        }
+        Ok(())
+    })
+}
+
+/// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
+/// nothing.
+///
+/// # Safety
+/// No commands that shade are pending, the device is alive, and no other thread uses the object.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_destroy(arealight: *mut Arealight) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { handles::take(arealight, "arealight") }.map(drop))
+}

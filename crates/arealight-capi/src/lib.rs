@@ -1,0 +1,45 @@
+//! Arealight's recorder for hosts in C and C++.
+//!
+//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embedding.md walks through it.
+//! Here is how it is done:
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`types`] | what crosses the boundary: structs and constants |
+//! | [`device`] | from the host's handles to a table on its device |
+//! | [`pass`] | the shade pass |
+//! | [`lights`] | lights, packed for it |
+//! | `arguments` | pointers of the host, checked as far as they can be |
+//! | `failure` | results, messages, and panics that stay inside |
+//! | `handles` | which objects are alive |
+//! | `loader` | Vulkan's functions from the host's two |
+//!
+//! Nothing unwinds into the host; each function that can fail says by a result that it did, and
+//! [`arealight_last_error`] why.
+
+#![allow(clippy::doc_markdown, reason = "the comments become those of a C header, where backticks are noise")]
+
+mod arguments;
+pub mod device;
+mod failure;
+mod handles;
+pub mod lights;
+mod loader;
+pub mod pass;
+pub mod types;
+
+pub use device::*;
+pub use failure::{ArealightResult, arealight_last_error};
+pub use lights::*;
+pub use pass::*;
+pub use types::*;
+
+/// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
+/// with. They must be equal; arealight_create refuses another.
+pub const AREALIGHT_ABI_VERSION: u32 = 1;
+
+/// AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
+#[unsafe(no_mangle)]
+pub extern "C" fn arealight_abi_version() -> u32 {
+    AREALIGHT_ABI_VERSION
+}

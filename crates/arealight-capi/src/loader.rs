@@ -1,0 +1,88 @@
+//! Vulkan's functions, from the two of the host that find them.
+
+use crate::failure::{ArealightResult, Failure};
+use crate::types::{ArealightHost, ArealightProcAddr};
+use arealight_vk::ash;
+use arealight_vk::ash::vk::{self, Handle as _};
+use std::ffi::{CStr, c_void};
+
+/// Functions that the recorder calls: one that is missing is said here, not when it is called.
+const INSTANCE: [&CStr; 3] = [
+    c"vkGetPhysicalDeviceProperties",
+    c"vkGetPhysicalDeviceFormatProperties",
+    c"vkGetPhysicalDeviceImageFormatProperties",
+];
+const DEVICE: [&CStr; 23] = [
+    c"vkBindImageMemory",
+    c"vkCmdBindDescriptorSets",
+    c"vkCmdBindPipeline",
+    c"vkCmdCopyBufferToImage",
+    c"vkCmdDispatch",
+    c"vkCmdPipelineBarrier",
+    c"vkCmdPushConstants",
+    c"vkCreateComputePipelines",
+    c"vkCreateDescriptorSetLayout",
+    c"vkCreateImage",
+    c"vkCreateImageView",
+    c"vkCreatePipelineLayout",
+    c"vkCreateSampler",
+    c"vkCreateShaderModule",
+    c"vkDestroyDescriptorSetLayout",
+    c"vkDestroyImage",
+    c"vkDestroyImageView",
+    c"vkDestroyPipeline",
+    c"vkDestroyPipelineLayout",
+    c"vkDestroySampler",
+    c"vkDestroyShaderModule",
+    c"vkGetImageMemoryRequirements",
+    c"vkUpdateDescriptorSets",
+];
+
+/// The function tables of the host's instance and device.
+///
+/// # Safety
+/// The handles are valid, and the functions find those of Vulkan for them.
+///
+/// # Errors
+/// [`Failure`] names a handle that is null, or the function that was not found.
+pub unsafe fn load(host: &ArealightHost) -> Result<(ash::Instance, ash::Device), Failure> {
+    for (handle, name) in [
+        (host.instance, "host.instance"),
+        (host.physical_device, "host.physical_device"),
+        (host.device, "host.device"),
+    ] {
+        if handle.is_null() {
+            return Err(Failure::argument(format!("{name}: is null")));
+        }
+    }
+    let find_instance = finder(host.get_instance_proc_addr, host.instance, "host.get_instance_proc_addr")?;
+    let find_device = finder(host.get_device_proc_addr, host.device, "host.get_device_proc_addr")?;
+    for (find, names, field) in [
+        (&find_instance as &dyn Fn(&CStr) -> *const c_void, &INSTANCE[..], "get_instance_proc_addr"),
+        (&find_device, &DEVICE[..], "get_device_proc_addr"),
+    ] {
+        if let Some(missing) = names.iter().find(|name| find(name).is_null()) {
+            let message = format!("host.{field}: does not find {}", missing.to_string_lossy());
+            return Err(Failure::new(ArealightResult::ErrorMissingFeature, message));
+        }
+    }
+    // SAFETY: the caller vouches for handles and functions.
+    unsafe {
+        let instance = vk::Instance::from_raw(host.instance as u64);
+        let device = vk::Device::from_raw(host.device as u64);
+        Ok((ash::Instance::load_with(find_instance, instance), ash::Device::load_with(find_device, device)))
+    }
+}
+
+fn finder(
+    function: ArealightProcAddr,
+    handle: *mut c_void,
+    field: &str,
+) -> Result<impl Fn(&CStr) -> *const c_void, Failure> {
+    let function = function.ok_or_else(|| Failure::argument(format!("{field}: is null")))?;
+    Ok(move |name: &CStr| {
+        // SAFETY: the caller of `load` vouches for the function; the name is a string of C.
+        let found = unsafe { function(handle, name.as_ptr()) };
+        found.map_or(std::ptr::null(), |found| found as *const c_void)
+    })
+}

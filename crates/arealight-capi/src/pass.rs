@@ -1,0 +1,297 @@
+//! The shade pass.
+
+use crate::device::Arealight;
+use crate::failure::{ArealightResult, Failure, call};
+use crate::types::{
+    ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
+    ArealightSetLayout,
+};
+use crate::{arguments, handles};
+use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight_vk::ash::vk::{self, Handle as _};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use glam::{Mat4, Vec3};
+use std::ffi::c_void;
+
+/// A shade pass, specialised for effects and a quality.
+pub struct ArealightPass {
+    pass: ShadePass,
+}
+
+impl ArealightPass {
+    pub(crate) fn shade(&self) -> &ShadePass {
+        &self.pass
+    }
+}
+
+/// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_create(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    out: *mut *mut ArealightPass,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (arealight, options) = unsafe {
+            arguments::write(out, std::ptr::null_mut(), "out")?;
+            (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
+        };
+        let options = shade_options(options)?;
+        // SAFETY: the pass is destroyed by the host, which follows the contract of arealight_pass_destroy.
+        let pass = unsafe { ShadePass::new(arealight.context(), options) }?;
+        // SAFETY: as above.
+        unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
+    })
+}
+
+fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
+    let effects = Effects::from_bits(options.effects).ok_or_else(|| {
+        let unknown = options.effects & !Effects::all().bits();
+        Failure::argument(format!("options.effects: {unknown:#x} are no AREALIGHT_EFFECT_*"))
+    })?;
+    let quality = Quality {
+        form_factor: rung(
+            options.form_factor,
+            &[FormFactor::Exact, FormFactor::Fast, FormFactor::ExactDifference, FormFactor::FastDifference],
+            "form_factor",
+        )?,
+        horizon: rung(options.horizon, &[Horizon::Cosine, Horizon::Both, Horizon::Bare], "horizon")?,
+        fresnel: rung(options.fresnel, &[Fresnel::ByF0, Fresnel::Split], "fresnel")?,
+        lobes: rung(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
+        one_point: rung(options.one_point, &[false, true], "one_point")?,
+        footprint: rung(
+            options.footprint,
+            &[Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour],
+            "footprint",
+        )?,
+    };
+    Ok(ShadeOptions {
+        effects,
+        quality,
+        position: rung(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
+        output: rung(options.output, &[Output::Overwrite, Output::Add], "output")?,
+    })
+}
+
+/// The rung that a number stands for: its place among them.
+fn rung<T: Copy>(number: u32, rungs: &[T], field: &str) -> Result<T, Failure> {
+    rungs.get(number as usize).copied().ok_or_else(|| {
+        Failure::argument(format!("options.{field}: {number} must be from 0 to {}", rungs.len() - 1))
+    })
+}
+
+/// What descriptor sets of the pass are made with.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_set_layout(
+    pass: *const ArealightPass,
+    out: *mut ArealightSetLayout,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let pass = &unsafe { handles::borrow(pass, "pass") }?.pass;
+        let sizes = pass.pool_sizes(1);
+        let count = |kind| sizes.iter().find(|size| size.ty == kind).map_or(0, |size| size.descriptor_count);
+        let layout = ArealightSetLayout {
+            layout: pass.set_layout().as_raw(),
+            sampled_images: count(vk::DescriptorType::SAMPLED_IMAGE),
+            combined_image_samplers: count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER),
+            storage_images: count(vk::DescriptorType::STORAGE_IMAGE),
+            storage_buffers: count(vk::DescriptorType::STORAGE_BUFFER),
+        };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, layout, "out") }
+    })
+}
+
+/// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
+/// which was uploaded.
+///
+/// # Safety
+/// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_write_set(
+    pass: *const ArealightPass,
+    arealight: *const Arealight,
+    set: u64,
+    resources: *const ArealightResources,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (pass, arealight, resources) = unsafe {
+            (
+                &handles::borrow(pass, "pass")?.pass,
+                handles::borrow(arealight, "arealight")?,
+                arguments::read(resources, "resources")?,
+            )
+        };
+        if set == 0 {
+            return Err(Failure::argument("set: is null"));
+        }
+        let [table, in_place_of_textures] = arealight.table_resources().ok_or_else(|| {
+            Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
+        })?;
+        // What is not read needs only be there
+        let effects = pass.options().effects;
+        let read = |effect, image: ArealightImage| effects.contains(effect) || image.view != 0;
+        let specular = match resources.specular {
+            image if read(Effects::SPECULAR_INPUT, image) => sampled(image),
+            _ => sampled(resources.position),
+        };
+        let light_textures = match resources.light_textures {
+            image if read(Effects::TEXTURED, image) => filtered(image),
+            _ => in_place_of_textures,
+        };
+        let resources = ShadeResources {
+            table,
+            lights: buffer(resources.lights),
+            light_vertices: buffer(resources.light_vertices),
+            position: sampled(resources.position),
+            normal: sampled(resources.normal),
+            base_color: sampled(resources.base_color),
+            specular,
+            radiance: Resource::StorageImage { view: vk::ImageView::from_raw(resources.radiance.view) },
+            light_textures,
+            shapes: match resources.shapes {
+                shapes if effects.intersects(Effects::SHAPES) || shapes.buffer != 0 => buffer(shapes),
+                _ => buffer(resources.lights),
+            },
+        };
+        // SAFETY: the caller vouches for the set and the resources.
+        Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
+    })
+}
+
+fn sampled(image: ArealightImage) -> Resource {
+    let layout = vk::ImageLayout::from_raw(image.layout.cast_signed());
+    Resource::SampledImage { view: vk::ImageView::from_raw(image.view), layout }
+}
+
+fn filtered(image: ArealightImage) -> Resource {
+    let layout = vk::ImageLayout::from_raw(image.layout.cast_signed());
+    Resource::FilteredImage { view: vk::ImageView::from_raw(image.view), layout }
+}
+
+fn buffer(buffer: ArealightBuffer) -> Resource {
+    let ArealightBuffer { buffer, offset, range } = buffer;
+    Resource::StorageBuffer { buffer: vk::Buffer::from_raw(buffer), offset, range }
+}
+
+/// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
+///
+/// # Safety
+/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
+/// set was written, with images of the frame's size and buffers of
+/// `frame.light_count` lights and `frame.shape_count` shapes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_record(
+    pass: *const ArealightPass,
+    command_buffer: *mut c_void,
+    set: u64,
+    frame: *const ArealightFrame,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (pass, frame) =
+            unsafe { (&handles::borrow(pass, "pass")?.pass, arguments::read(frame, "frame")?) };
+        for (is_null, argument) in [(command_buffer.is_null(), "command_buffer"), (set == 0, "set")] {
+            if is_null {
+                return Err(Failure::argument(format!("{argument}: is null")));
+            }
+        }
+        let matrix = frame.position_from_clip;
+        let matrix = (!matrix.is_null()).then_some(matrix);
+        // SAFETY: as above.
+        let matrix = matrix.map(|matrix| unsafe { arguments::array(matrix, 16, "frame.position_from_clip") });
+        let frame = ShadeFrame {
+            size: [frame.width, frame.height],
+            camera: Vec3::from_array(frame.camera),
+            position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
+            light_count: frame.light_count,
+            shape_count: frame.shape_count,
+        };
+        let (command_buffer, set) =
+            (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
+        // SAFETY: the caller vouches for the command buffer and the set.
+        Ok(unsafe { pass.record(command_buffer, set, &frame) }?)
+    })
+}
+
+/// Destroys a pass, before or after the object that it was made from. Null is nothing.
+///
+/// # Safety
+/// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_destroy(pass: *mut ArealightPass) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { handles::take(pass, "pass") }.map(drop))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::types as c;
+
+    #[test]
+    fn constants_are_those_of_the_vocabulary() {
+        for (number, effect) in [
+            (c::AREALIGHT_EFFECT_DIFFUSE, Effects::DIFFUSE),
+            (c::AREALIGHT_EFFECT_GLOSSY, Effects::GLOSSY),
+            (c::AREALIGHT_EFFECT_TWO_SIDED, Effects::TWO_SIDED),
+            (c::AREALIGHT_EFFECT_SPECULAR_INPUT, Effects::SPECULAR_INPUT),
+            (c::AREALIGHT_EFFECT_POLYGON, Effects::POLYGON),
+            (c::AREALIGHT_EFFECT_TEXTURED, Effects::TEXTURED),
+            (c::AREALIGHT_EFFECT_FAR, Effects::FAR),
+            (c::AREALIGHT_EFFECT_ELLIPSE, Effects::ELLIPSE),
+            (c::AREALIGHT_EFFECT_SPHERE, Effects::SPHERE),
+            (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
+            (c::AREALIGHT_EFFECTS_ALL, Effects::all()),
+        ] {
+            assert_eq!(number, effect.bits(), "{effect}");
+        }
+        let options = |form_factor, horizon, footprint| ArealightPassOptions {
+            form_factor,
+            horizon,
+            footprint,
+            ..ArealightPassOptions::default()
+        };
+        let made = |options: ArealightPassOptions| shade_options(&options).unwrap().quality;
+        let quality = made(options(c::AREALIGHT_FORM_FACTOR_FAST, c::AREALIGHT_HORIZON_BOTH, 0));
+        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Fast, Horizon::Both));
+        let quality = made(options(
+            c::AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE,
+            c::AREALIGHT_HORIZON_BARE,
+            c::AREALIGHT_FOOTPRINT_SPLIT_FOUR,
+        ));
+        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::FastDifference, Horizon::Bare));
+        assert_eq!(quality.footprint, Footprint::SplitFour);
+        // Zero is the default of everything
+        assert_eq!(made(ArealightPassOptions::default()), Quality::default());
+    }
+
+    #[test]
+    fn options_out_of_range_are_named() {
+        let zero = ArealightPassOptions::default();
+        for (wrong, field) in [
+            (ArealightPassOptions { effects: 1 << 30, ..zero }, "options.effects"),
+            (ArealightPassOptions { form_factor: 4, ..zero }, "options.form_factor"),
+            (ArealightPassOptions { horizon: 3, ..zero }, "options.horizon"),
+            (ArealightPassOptions { fresnel: 2, ..zero }, "options.fresnel"),
+            (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
+            (ArealightPassOptions { one_point: 2, ..zero }, "options.one_point"),
+            (ArealightPassOptions { footprint: 4, ..zero }, "options.footprint"),
+            (ArealightPassOptions { position: 2, ..zero }, "options.position"),
+            (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),
+        ] {
+            let message = shade_options(&wrong).err().unwrap().message;
+            assert!(message.starts_with(field), "{message}");
+        }
+    }
+}

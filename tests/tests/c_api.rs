@@ -1,0 +1,409 @@
+//! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
+
+use arealight_capi::{
+    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TUBE,
+    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightFunction,
+    ArealightHost, ArealightLight, ArealightMemory, ArealightPackedLights, ArealightPass,
+    ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout, ArealightShape,
+    ArealightTable, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
+    arealight_last_error, arealight_pass_create, arealight_pass_destroy, arealight_pass_pack_lights,
+    arealight_pass_pack_shapes, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
+    arealight_table_memory, arealight_table_upload,
+};
+use arealight_host::testing::{TestHost, device_or_skip};
+use ash::vk::{self, Handle as _};
+use std::ffi::{CStr, c_char, c_void};
+use std::ptr::{null, null_mut};
+
+/// Asserts that a call failed with `expected`, and a message that has `words`.
+#[track_caller]
+fn refused(result: ArealightResult, expected: ArealightResult, words: &str) {
+    // SAFETY: the message is this thread's, and lives until its next failure.
+    let message = unsafe { CStr::from_ptr(arealight_last_error()) }.to_str().unwrap();
+    assert_eq!(result, expected, "{message}");
+    assert!(message.contains(words), "`{words}` is not in: {message}");
+}
+
+#[track_caller]
+fn good(result: ArealightResult) {
+    // SAFETY: as above.
+    assert_eq!(result, ArealightResult::Ok, "{:?}", unsafe { CStr::from_ptr(arealight_last_error()) });
+}
+
+unsafe extern "system" fn finds_nothing(_: *mut c_void, _: *const c_char) -> ArealightFunction {
+    None
+}
+
+/// A host without a device: what it says is checked before anything of Vulkan is called.
+fn no_host() -> ArealightHost {
+    ArealightHost {
+        abi_version: AREALIGHT_ABI_VERSION,
+        api_version: vk::API_VERSION_1_1,
+        get_instance_proc_addr: Some(finds_nothing),
+        get_device_proc_addr: Some(finds_nothing),
+        // Not null; nothing looks behind them
+        instance: null_mut::<c_void>().wrapping_add(8),
+        physical_device: null_mut::<c_void>().wrapping_add(8),
+        device: null_mut::<c_void>().wrapping_add(8),
+        pipeline_cache: 0,
+    }
+}
+
+#[test]
+fn hosts_that_are_none_are_refused_by_field() {
+    use ArealightResult::{ErrorAbiVersion, ErrorArgument, ErrorMissingFeature, ErrorTable};
+    assert_eq!(arealight_abi_version(), AREALIGHT_ABI_VERSION);
+    let mut out = null_mut();
+    // SAFETY: the pointers are null or valid, here and below.
+    let create =
+        |host: &ArealightHost, out: &mut *mut Arealight| unsafe { arealight_create(host, null(), out) };
+    // SAFETY: as above.
+    refused(unsafe { arealight_create(null(), null(), &raw mut out) }, ErrorArgument, "host: is null");
+    let host = no_host();
+    // SAFETY: as above.
+    refused(unsafe { arealight_create(&raw const host, null(), null_mut()) }, ErrorArgument, "out: is null");
+
+    let other = AREALIGHT_ABI_VERSION + 1;
+    for (wrong, result, words) in [
+        (ArealightHost { abi_version: other, ..no_host() }, ErrorAbiVersion, "host.abi_version: 2"),
+        (ArealightHost { api_version: vk::API_VERSION_1_0, ..no_host() }, ErrorMissingFeature, "Vulkan 1.1"),
+        (
+            ArealightHost { get_instance_proc_addr: None, ..no_host() },
+            ErrorArgument,
+            "host.get_instance_proc_addr",
+        ),
+        (
+            ArealightHost { get_device_proc_addr: None, ..no_host() },
+            ErrorArgument,
+            "host.get_device_proc_addr",
+        ),
+        (ArealightHost { instance: null_mut(), ..no_host() }, ErrorArgument, "host.instance"),
+        (ArealightHost { physical_device: null_mut(), ..no_host() }, ErrorArgument, "host.physical_device"),
+        (ArealightHost { device: null_mut(), ..no_host() }, ErrorArgument, "host.device"),
+        (no_host(), ErrorMissingFeature, "does not find vkGetPhysicalDeviceProperties"),
+    ] {
+        out = null_mut::<Arealight>().wrapping_add(1);
+        refused(create(&wrong, &mut out), result, words);
+        assert!(out.is_null(), "what is not made is null");
+    }
+
+    // Tables that are none
+    let noise = b"noise";
+    let table = ArealightTable { bytes: noise.as_ptr(), size: noise.len(), format: 0, reserved: 0 };
+    for (wrong, result, words) in [
+        (table, ErrorTable, "neither OpenEXR nor KTX2 nor DDS"),
+        (ArealightTable { format: 2, ..table }, ErrorArgument, "table.format: 2"),
+        (ArealightTable { bytes: null(), ..table }, ErrorArgument, "table.bytes: is null"),
+    ] {
+        // SAFETY: as above.
+        refused(unsafe { arealight_create(&raw const host, &raw const wrong, &raw mut out) }, result, words);
+    }
+}
+
+#[test]
+fn null_objects_are_refused_and_destroying_nothing_is_fine() {
+    use ArealightResult::ErrorArgument;
+    let (arealight, pass) = (null_mut::<Arealight>(), null_mut::<ArealightPass>());
+    // SAFETY: the pointers are null.
+    unsafe {
+        refused(arealight_table_memory(arealight, null_mut()), ErrorArgument, "arealight: is null");
+        refused(arealight_table_upload(arealight, null()), ErrorArgument, "arealight: is null");
+        refused(arealight_pass_set_layout(pass, null_mut()), ErrorArgument, "pass: is null");
+        refused(
+            arealight_pass_pack_lights(pass, null(), 0, null(), null_mut()),
+            ErrorArgument,
+            "pass: is null",
+        );
+        refused(arealight_pass_write_set(pass, arealight, 0, null()), ErrorArgument, "pass: is null");
+        refused(arealight_pass_record(pass, null_mut(), 0, null()), ErrorArgument, "pass: is null");
+        refused(arealight_pass_create(arealight, null(), null_mut()), ErrorArgument, "out: is null");
+        good(arealight_destroy(arealight));
+        good(arealight_pass_destroy(pass));
+    }
+}
+
+/// The library on a device of the tests.
+struct Fixture {
+    host: TestHost,
+    /// Keeps the loader, whose functions the library has.
+    _entry: ash::Entry,
+    arealight: *mut Arealight,
+}
+
+impl Fixture {
+    fn new() -> Option<Self> {
+        let host = device_or_skip()?;
+        // SAFETY: the system's loader is what the host of the tests was opened with.
+        let entry = unsafe { ash::Entry::load() }.unwrap();
+        let (find_instance, find_device) =
+            (entry.static_fn().get_instance_proc_addr, host.instance().fp_v1_0().get_device_proc_addr);
+        // SAFETY: both sides are functions of C that take a handle, which is a pointer, and a string.
+        let info = unsafe {
+            ArealightHost {
+                get_instance_proc_addr: Some(std::mem::transmute::<
+                    vk::PFN_vkGetInstanceProcAddr,
+                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
+                >(find_instance)),
+                get_device_proc_addr: Some(std::mem::transmute::<
+                    vk::PFN_vkGetDeviceProcAddr,
+                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
+                >(find_device)),
+                instance: host.instance().handle().as_raw() as *mut c_void,
+                physical_device: host.physical_device().as_raw() as *mut c_void,
+                device: host.device().handle().as_raw() as *mut c_void,
+                ..no_host()
+            }
+        };
+        let mut arealight = null_mut();
+        // SAFETY: the handles are the host's, which outlives the library's object.
+        good(unsafe { arealight_create(&raw const info, null(), &raw mut arealight) });
+        Some(Self { host, _entry: entry, arealight })
+    }
+
+    fn pass(&self, effects: u32) -> *mut ArealightPass {
+        let options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
+        let mut pass = null_mut();
+        // SAFETY: the pointers are valid.
+        good(unsafe { arealight_pass_create(self.arealight, &raw const options, &raw mut pass) });
+        pass
+    }
+}
+
+impl Drop for Fixture {
+    fn drop(&mut self) {
+        // SAFETY: nothing is pending on the device.
+        good(unsafe { arealight_destroy(self.arealight) });
+    }
+}
+
+const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+
+const CORNERS: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+
+fn light() -> ArealightLight {
+    ArealightLight {
+        name: c"lamp".as_ptr(),
+        vertices: TRIANGLE.as_ptr(),
+        texture_coordinates: null(),
+        vertex_count: 3,
+        texture_layer: 0,
+        radiance: [1.0; 3],
+        two_sided: 0,
+    }
+}
+
+const NO_ARRAYS: ArealightPackedLights =
+    ArealightPackedLights { lights: null_mut(), vertices: null_mut(), lights_size: 0, vertices_size: 0 };
+
+/// Packs one light about the origin.
+fn pack(
+    pass: *mut ArealightPass,
+    light: &ArealightLight,
+    arrays: &mut ArealightPackedLights,
+) -> ArealightResult {
+    // SAFETY: the light and the arrays are as they say; a pass that is none is what is tested.
+    unsafe { arealight_pass_pack_lights(pass, light, 1, [0.0; 3].as_ptr(), arrays) }
+}
+
+#[test]
+fn lights_that_cannot_be_shaded_are_named() {
+    use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight, ErrorTooSmall};
+    let Some(fixture) = Fixture::new() else { return };
+    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let mut arrays = NO_ARRAYS;
+    let nan = [f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    for (wrong, result, words) in [
+        (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "light 'lamp': vertices: 2 given"),
+        (ArealightLight { vertices: nan.as_ptr(), ..light() }, ErrorLight, "light 'lamp': vertices[0]"),
+        (ArealightLight { radiance: [f32::NAN; 3], ..light() }, ErrorLight, "light 'lamp': radiance"),
+        (
+            ArealightLight { radiance: [-1.0; 3], name: null(), ..light() },
+            ErrorLight,
+            "light 'lights[0]': radiance",
+        ),
+        (ArealightLight { vertices: null(), ..light() }, ErrorArgument, "lights[0].vertices: is null"),
+        (ArealightLight { two_sided: 7, ..light() }, ErrorArgument, "lights[0].two_sided: 7"),
+        (
+            ArealightLight { two_sided: 1, ..light() },
+            ErrorEffects,
+            "light 'lamp' calls for the effects: two_sided",
+        ),
+        (ArealightLight { texture_coordinates: CORNERS.as_ptr(), ..light() }, ErrorEffects, "textured"),
+    ] {
+        refused(pack(pass, &wrong, &mut arrays), result, words);
+    }
+    // SAFETY: the pointers are null or valid.
+    unsafe {
+        let infinite = [f64::INFINITY, 0.0, 0.0];
+        let packed = arealight_pass_pack_lights(pass, null(), 0, infinite.as_ptr(), &raw mut arrays);
+        refused(packed, ErrorArgument, "origin");
+        refused(
+            arealight_pass_pack_lights(pass, null(), 0, null(), &raw mut arrays),
+            ErrorArgument,
+            "origin: is null",
+        );
+    }
+
+    // Sizes first; then arrays, which may be too small
+    good(pack(pass, &light(), &mut arrays));
+    assert_eq!((arrays.lights_size, arrays.vertices_size), (128, 48));
+    let (mut lights, mut vertices) = ([0u32; 32], [0.0f32; 12]);
+    let (to_lights, to_vertices) = (lights.as_mut_ptr().cast(), vertices.as_mut_ptr().cast());
+    arrays = ArealightPackedLights {
+        lights: to_lights,
+        vertices: to_vertices,
+        lights_size: 128,
+        vertices_size: 47,
+    };
+    refused(pack(pass, &light(), &mut arrays), ErrorTooSmall, "packed.vertices_size: 47, but 48 are needed");
+    good(pack(pass, &light(), &mut arrays));
+    assert_eq!((lights[0], lights[11]), (1f32.to_bits(), 3), "its radiance and its number of vertices");
+
+    // Shapes likewise
+    let mut size = 0;
+    let sphere = ArealightShape {
+        name: c"moon".as_ptr(),
+        kind: AREALIGHT_SHAPE_SPHERE,
+        ends: 0,
+        center: [0.0; 3],
+        axis_u: [0.0; 3],
+        axis_v: [0.0; 3],
+        radius: 1.0,
+        radiance: [1.0; 3],
+        two_sided: 0,
+    };
+    let round = fixture.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
+    let mut pack_shape = |pass, shape: &ArealightShape, size: &mut u64| {
+        let to = if *size > 0 { lights.as_mut_ptr().cast() } else { null_mut() };
+        // SAFETY: `lights` has 128 bytes; no more are said.
+        unsafe { arealight_pass_pack_shapes(pass, shape, 1, [0.0; 3].as_ptr(), to, size) }
+    };
+    for (wrong, result, words) in [
+        (ArealightShape { kind: 3, ..sphere }, ErrorArgument, "shapes[0].kind: 3"),
+        (
+            ArealightShape { kind: AREALIGHT_SHAPE_TUBE, ends: 3, ..sphere },
+            ErrorArgument,
+            "shapes[0].ends: 3",
+        ),
+        (ArealightShape { kind: AREALIGHT_SHAPE_TUBE, ..sphere }, ErrorLight, "light 'moon': p0 and p1"),
+        (
+            ArealightShape { radius: -1.0, name: null(), ..sphere },
+            ErrorLight,
+            "light 'shapes[0]': radius: -1",
+        ),
+        (ArealightShape { two_sided: 2, ..sphere }, ErrorArgument, "shapes[0].two_sided: 2"),
+    ] {
+        refused(pack_shape(round, &wrong, &mut size), result, words);
+    }
+    refused(pack_shape(pass, &sphere, &mut size), ErrorEffects, "light 'moon' calls for the effects: sphere");
+    good(pack_shape(round, &sphere, &mut size));
+    assert_eq!(size, 64);
+    size = 63;
+    refused(pack_shape(round, &sphere, &mut size), ErrorTooSmall, "size: 63, but 64 are needed");
+    good(pack_shape(round, &sphere, &mut size));
+    // SAFETY: the passes are this thread's.
+    unsafe {
+        good(arealight_pass_destroy(round));
+        good(arealight_pass_destroy(pass));
+    }
+    refused(pack(pass, &light(), &mut arrays), ErrorArgument, "pass: is no ArealightPass that is alive");
+}
+
+#[test]
+fn calls_out_of_order_are_refused() {
+    use ArealightResult::{ErrorArgument, ErrorTooSmall};
+    let Some(fixture) = Fixture::new() else { return };
+    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let (arealight, resources) = (fixture.arealight, ArealightResources::default());
+    let frame = |width| ArealightFrame {
+        width,
+        height: 8,
+        camera: [0.0; 3],
+        light_count: 0,
+        shape_count: 0,
+        reserved: 0,
+        position_from_clip: null(),
+    };
+    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
+    unsafe {
+        // A pass is no library, and the other way round
+        refused(
+            arealight_table_memory(pass.cast(), null_mut()),
+            ErrorArgument,
+            "is no Arealight that is alive",
+        );
+        refused(arealight_pass_destroy(arealight.cast()), ErrorArgument, "is no ArealightPass that is alive");
+        // A set before the table is there, or no set
+        let write = |set| arealight_pass_write_set(pass, arealight, set, &raw const resources);
+        refused(write(0), ErrorArgument, "set: is null");
+        refused(write(8), ErrorArgument, "call arealight_table_upload first");
+        let mut layout = ArealightSetLayout {
+            layout: 0,
+            sampled_images: 0,
+            combined_image_samplers: 0,
+            storage_images: 0,
+            storage_buffers: 0,
+        };
+        good(arealight_pass_set_layout(pass, &raw mut layout));
+        assert!(layout.layout != 0 && layout.sampled_images > 0 && layout.storage_images == 1);
+        // A frame that cannot be recorded
+        let commands = null_mut::<c_void>().wrapping_add(8);
+        let record =
+            |commands, set, frame: &ArealightFrame| arealight_pass_record(pass, commands, set, frame);
+        refused(record(null_mut(), 8, &frame(8)), ErrorArgument, "command_buffer: is null");
+        refused(record(commands, 0, &frame(8)), ErrorArgument, "set: is null");
+        refused(record(commands, 8, &frame(0)), ErrorArgument, "size");
+        let blind = ArealightFrame { camera: [f32::NAN; 3], ..frame(8) };
+        refused(record(commands, 8, &blind), ErrorArgument, "camera");
+    }
+
+    // An upload that lacks something
+    let mut memory =
+        ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
+    // SAFETY: the pointer is valid.
+    good(unsafe { arealight_table_memory(arealight, &raw mut memory) });
+    assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 3 * 16);
+    let whole = ArealightUpload {
+        memory: 8,
+        memory_offset: 0,
+        staging_data: null_mut::<c_void>().wrapping_add(8),
+        staging_size: memory.staging_size,
+        staging_buffer: 8,
+        staging_offset: 0,
+        command_buffer: null_mut::<c_void>().wrapping_add(8),
+    };
+    for (wrong, result, words) in [
+        (ArealightUpload { memory: 0, ..whole }, ErrorArgument, "upload.memory: is null"),
+        (ArealightUpload { staging_data: null_mut(), ..whole }, ErrorArgument, "upload.staging_data"),
+        (ArealightUpload { staging_buffer: 0, ..whole }, ErrorArgument, "upload.staging_buffer"),
+        (ArealightUpload { command_buffer: null_mut(), ..whole }, ErrorArgument, "upload.command_buffer"),
+        (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 196608"),
+        (ArealightUpload { staging_offset: 8, ..whole }, ErrorArgument, "upload.staging_offset: 8"),
+    ] {
+        // SAFETY: what is refused is not looked at.
+        refused(unsafe { arealight_table_upload(arealight, &raw const wrong) }, result, words);
+    }
+
+    // SAFETY: the pass is this thread's, and is not alive the second time.
+    unsafe {
+        good(arealight_pass_destroy(pass));
+        refused(arealight_pass_destroy(pass), ErrorArgument, "was it destroyed?");
+    }
+    assert!(fixture.host.validation_messages().is_empty());
+}
+
+#[test]
+fn a_pass_outlives_what_made_it() {
+    let Some(mut fixture) = Fixture::new() else { return };
+    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
+    // The fixture destroys nothing then
+    let arealight = std::mem::replace(&mut fixture.arealight, null_mut());
+    // SAFETY: nothing is pending; the device outlives both.
+    unsafe {
+        good(arealight_destroy(arealight));
+        good(arealight_pass_destroy(pass));
+        let mut out = null_mut();
+        let gone = arealight_pass_create(arealight, null(), &raw mut out);
+        refused(gone, ArealightResult::ErrorArgument, "arealight: is no Arealight that is alive");
+    }
+}

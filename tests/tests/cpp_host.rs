@@ -1,0 +1,242 @@
+//! The host in C++ (examples/cpp) is compiled, runs under validation, and draws what the recorder draws from Rust, to the
+//! last bit.
+
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, PolygonLight, Shape, ShapeLight};
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_tests::TestEngine;
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use bytemuck::Pod;
+use glam::{DVec3, Vec3};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const SIZE: [u32; 2] = [256, 160];
+
+/// The lights' origin, where the camera is.
+const CAMERA: DVec3 = DVec3::new(1000.0, 1.5, -2000.0);
+
+/// Where the shared library is that this test was built with.
+fn libraries() -> PathBuf {
+    std::env::current_exe().unwrap().parent().unwrap().to_owned()
+}
+
+/// Compiles the host against it.
+fn compile(folder: &Path) -> PathBuf {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let program = folder.join("host");
+    let output = Command::new("c++")
+        // Numbers as they are written, as in Rust: no product and sum is fused
+        .args([
+            "-std=c++14",
+            "-O1",
+            "-ffp-contract=off",
+            "-Wall",
+            "-Wextra",
+            "-Wno-missing-field-initializers",
+            "-Werror",
+        ])
+        .arg("-I")
+        .arg(root.join("crates/arealight-capi/include"))
+        .arg(root.join("examples/cpp/host.cpp"))
+        .arg("-L")
+        .arg(libraries())
+        .args(["-larealight_capi", "-lvulkan"])
+        .arg("-o")
+        .arg(&program)
+        .output()
+        .expect("a C++ compiler");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "needs libvulkan-dev (tools/setup.sh test):\n{said}");
+    program
+}
+
+fn run(program: &Path, picture: &Path, validation: &str, more: &[&str]) -> Output {
+    let mut command = Command::new(program);
+    // Cargo has its own, where an earlier build may be
+    command.env("LD_LIBRARY_PATH", libraries());
+    command.arg(picture).args(["--validate", validation]).args(more).output().expect("the program starts")
+}
+
+/// The radiance that a Portable Float Map holds: three channels, rows from the top.
+fn read_picture(path: &Path) -> Vec<[f32; 3]> {
+    let bytes = std::fs::read(path).unwrap();
+    let header = format!("PF\n{} {}\n-1.0\n", SIZE[0], SIZE[1]);
+    let texels = bytes.strip_prefix(header.as_bytes()).expect("the header");
+    let texel = |bytes: &[u8]| [0, 4, 8].map(|i| f32::from_le_bytes(bytes[i..i + 4].try_into().unwrap()));
+    let rows: Vec<&[u8]> = texels.chunks_exact(SIZE[0] as usize * 12).collect();
+    assert_eq!(rows.len(), SIZE[1] as usize);
+    rows.into_iter().rev().flat_map(|row| row.chunks_exact(12).map(texel)).collect()
+}
+
+/// The lights of the host.
+fn lights() -> [PolygonLight; 3] {
+    let light = |name: &str, vertices: &[[f64; 3]], radiance, two_sided| PolygonLight {
+        name: name.into(),
+        vertices: vertices.iter().map(|vertex| DVec3::from_array(*vertex)).collect(),
+        radiance: Vec3::from_array(radiance),
+        two_sided,
+        texture: None,
+    };
+    let window = [[994.0, 0.2, -2011.0], [998.0, 0.2, -2012.0], [998.0, 3.2, -2012.0], [994.0, 3.2, -2011.0]];
+    let sign = [[1003.0, 0.1, -2010.0], [1006.0, 0.1, -2008.0], [1004.5, 2.1, -2009.0]];
+    let arrow = [
+        [999.0, 0.5, -2009.0],
+        [1002.0, 0.5, -2009.0],
+        [1002.0, 2.0, -2009.0],
+        [1000.5, 1.0, -2009.0],
+        [999.0, 2.0, -2009.0],
+    ];
+    [
+        light("window", &window, [3.0, 3.5, 4.0], false),
+        light("sign", &sign, [6.0, 1.0, 0.5], true),
+        light("arrow", &arrow, [0.5, 5.0, 1.0], false),
+    ]
+}
+
+/// Its lamp.
+fn lamp() -> ShapeLight {
+    ShapeLight {
+        name: "lamp".into(),
+        radiance: Vec3::new(8.0, 6.0, 2.0),
+        two_sided: false,
+        shape: Shape::Sphere { center: DVec3::new(996.0, 0.5, -2007.0), radius: 0.3 },
+    }
+}
+
+/// The host's G-buffer.
+#[derive(Default)]
+struct Surfaces {
+    position: Vec<[f32; 4]>,
+    /// With roughness.
+    normal: Vec<[f32; 4]>,
+    /// With metalness.
+    base_color: Vec<[u8; 4]>,
+}
+
+fn surfaces() -> Surfaces {
+    let mut surfaces = Surfaces::default();
+    let [width, height] = SIZE.map(|side| side as f32);
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let right = (x as f32 + 0.5) / width * 2.0 - 1.0;
+            let up = 0.4 - (y as f32 + 0.5) / height;
+            let hit = up < 0.0;
+            let distance = if hit { 1.5 / -up } else { 0.0 };
+            surfaces.position.push([
+                right * distance,
+                up * distance,
+                -1.5 * distance,
+                f32::from(u8::from(hit)),
+            ]);
+            surfaces.normal.push([0.0, 1.0, 0.0, 0.05 + 0.9 * (x as f32 / width)]);
+            surfaces.base_color.push([200, 180, 150, if y / 16 % 2 == 1 { 255 } else { 0 }]);
+        }
+    }
+    surfaces
+}
+
+fn filled<T: Pod>(image: Image, texels: &[T]) -> Image {
+    image.upload(texels, Usage::COMPUTE_READ).unwrap();
+    image
+}
+
+/// The same picture by the recorder's Rust interface.
+fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
+    let image = |name, format, usage| {
+        let description = ImageDescription { name, extent: SIZE, layers: 1, format, usage };
+        engine.host().image(&description).unwrap()
+    };
+    let surfaces = surfaces();
+    let (float, sampled) = (vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+    let position = filled(image("position", float, sampled), &surfaces.position);
+    let normal = filled(image("normal", float, sampled), &surfaces.normal);
+    let base_color = filled(image("base colour", vk::Format::R8G8B8A8_UNORM, sampled), &surfaces.base_color);
+    let radiance = image("radiance", float, vk::ImageUsageFlags::STORAGE);
+
+    let effects =
+        Effects::DIFFUSE | Effects::GLOSSY | Effects::TWO_SIDED | Effects::POLYGON | Effects::SPHERE;
+    // SAFETY: submissions are waited for before the pass is dropped.
+    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions { effects, ..ShadeOptions::all() }) };
+    let pass = pass.unwrap();
+    let packed = pass.pack_lights(lights, CAMERA).unwrap();
+    let shapes = pass.pack_shapes(&[lamp()], CAMERA).unwrap();
+    let shape_buffer = engine.host().storage_buffer("shapes", &shapes).unwrap();
+    let light_buffer = engine.host().storage_buffer("lights", &packed.lights).unwrap();
+    let vertex_buffer = engine.host().storage_buffer("light vertices", &packed.vertices).unwrap();
+    let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+    let of =
+        |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
+    let resources = ShadeResources {
+        table: engine.table(),
+        lights: Resource::buffer(light_buffer.handle()),
+        light_vertices: Resource::buffer(vertex_buffer.handle()),
+        position: of(&position),
+        normal: of(&normal),
+        base_color: of(&base_color),
+        specular: of(&position),
+        radiance: Resource::StorageImage { view: radiance.view() },
+        light_textures: engine.light_textures(),
+        shapes: Resource::buffer(shape_buffer.handle()),
+    };
+    let frame = ShadeFrame {
+        size: SIZE,
+        camera: Vec3::ZERO,
+        position_from_clip: None,
+        light_count: packed.lights.len() as u32,
+        shape_count: 1,
+    };
+    // SAFETY: the set is new, and what it points to lives until the submission was waited for.
+    unsafe {
+        let set = pool.allocate(pass.set_layout()).unwrap();
+        pass.write_set(set, &resources).unwrap();
+        let recorded = engine.host().submit(|commands| {
+            radiance.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+            pass.record(commands, set, &frame).unwrap();
+        });
+        recorded.unwrap();
+    }
+    let texels: Vec<[f32; 4]> = radiance.download(Usage::COMPUTE_WRITE).unwrap();
+    texels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()
+}
+
+/// How many texels differ in any bit.
+fn differing(a: &[[f32; 3]], b: &[[f32; 3]]) -> usize {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).filter(|(a, b)| a.map(f32::to_bits) != b.map(f32::to_bits)).count()
+}
+
+#[test]
+fn cpp_draws_what_rust_draws_to_the_last_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let program = compile(folder.path());
+    let picture = folder.path().join("picture.pfm");
+    for validation in ["synchronization", "gpu-assisted"] {
+        let output = run(&program, &picture, validation, &[]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let (cpp, rust) = (read_picture(&picture), draw(&engine, &lights()));
+    assert_eq!(differing(&cpp, &rust), 0);
+
+    // The picture shows something, and a light that is a little brighter shows in it
+    let lit = rust.iter().filter(|texel| texel.iter().any(|channel| *channel > 0.1)).count();
+    assert!(lit > 5000, "{lit} texels are lit");
+    let mut others = lights();
+    others[2].radiance.y = others[2].radiance.y.next_up();
+    let changed = differing(&cpp, &draw(&engine, &others));
+    assert!(changed > 1000, "{changed} texels differ");
+}
+
+#[test]
+fn a_mistake_of_the_cpp_host_fails_it() {
+    // Skipped where the other is
+    let Some(_engine) = TestEngine::new() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let program = compile(folder.path());
+    let output = run(&program, &folder.path().join("picture.pfm"), "core", &["--mistake"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("VUID-") && said.contains("error: the validation layer has"), "{said}");
+}

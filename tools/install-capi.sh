@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Installs the C library: header, shared and static library, and what pkg-config and CMake find it by.
+#
+#   tools/install-capi.sh PREFIX           builds it for release
+#   tools/install-capi.sh PREFIX --debug   takes the debug build, which the tests have
+set -euo pipefail
+
+if [[ $# -lt 1 || $# -gt 2 || ( $# -eq 2 && "$2" != --debug ) ]]; then
+    echo "usage: tools/install-capi.sh PREFIX [--debug]" >&2
+    exit 2
+fi
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+export PATH="$PATH:${HOME:-/root}/.cargo/bin"
+crate="$root/crates/arealight-capi"
+mkdir -p "$1"
+prefix="$(cd "$1" && pwd)"
+
+profile=release
+options=(--release)
+if [[ "${2:-}" == --debug ]]; then
+    profile=debug
+    options=()
+fi
+cargo build --manifest-path "$root/Cargo.toml" --locked --quiet "${options[@]}" -p arealight-capi
+built="${CARGO_TARGET_DIR:-$root/target}/$profile"
+version="$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' "$root/Cargo.toml")"
+fill() { sed -e "s|@PREFIX@|$prefix|" -e "s|@VERSION@|$version|"; }
+
+install -Dm644 -t "$prefix/include" "$crate/include/arealight.h"
+install -Dm644 -t "$prefix/lib" "$built/libarealight_capi.a"
+install -Dm755 -t "$prefix/lib" "$built/libarealight_capi.so"
+mkdir -p "$prefix/lib/pkgconfig" "$prefix/lib/cmake/arealight"
+fill <"$crate/arealight.pc.in" >"$prefix/lib/pkgconfig/arealight.pc"
+fill <"$crate/cmake/arealight-config-version.cmake.in" >"$prefix/lib/cmake/arealight/arealight-config-version.cmake"
+install -m644 -t "$prefix/lib/cmake/arealight" "$crate/cmake/arealight-config.cmake"
+echo "installed arealight $version to $prefix"

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Installs the C library to a scratch folder, and builds and runs the host in C++ against it: found by pkg-config and by CMake,
+# shared and static. All must draw the same picture. (That it is the one that Rust draws, tests/tests/cpp_host.rs shows.)
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+scratch="$(mktemp -d)"
+trap 'rm -rf "$scratch"' EXIT
+
+"$root/tools/install-capi.sh" "$scratch/prefix" --debug
+export PKG_CONFIG_PATH="$scratch/prefix/lib/pkgconfig" LD_LIBRARY_PATH="$scratch/prefix/lib"
+
+# shellcheck disable=SC2046 # flags are words
+c++ -std=c++14 -ffp-contract=off "$root/examples/cpp/host.cpp" -o "$scratch/host" \
+    $(pkg-config --cflags --libs arealight vulkan)
+cmake -S "$root/examples/cpp" -B "$scratch/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" >"$scratch/cmake.log" ||
+    { cat "$scratch/cmake.log"; exit 1; }
+cmake --build "$scratch/build" >"$scratch/cmake.log" || { cat "$scratch/cmake.log"; exit 1; }
+# A version that is not installed must not be found
+mkdir "$scratch/later"
+sed 's/find_package(arealight 0.1 /find_package(arealight 0.99 /' "$root/examples/cpp/CMakeLists.txt" \
+    >"$scratch/later/CMakeLists.txt"
+if cmake -S "$scratch/later" -B "$scratch/later/build" -DCMAKE_PREFIX_PATH="$scratch/prefix" >"$scratch/cmake.log" 2>&1 ||
+    ! grep -q 'version "0.99"' "$scratch/cmake.log"; then
+    echo "error: CMake takes any version of Arealight" >&2
+    exit 1
+fi
+
+"$scratch/host" "$scratch/pkg-config.pfm" --validate core
+"$scratch/build/host" "$scratch/shared.pfm"
+env -u LD_LIBRARY_PATH "$scratch/build/host_static" "$scratch/static.pfm"
+cmp "$scratch/pkg-config.pfm" "$scratch/shared.pfm"
+cmp "$scratch/pkg-config.pfm" "$scratch/static.pfm"
+echo "three builds of the host draw the same picture"
