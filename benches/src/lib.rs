@@ -10,6 +10,9 @@
 //! | [`footprints`] | the errors and the time of looking one up |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
+//! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
+//! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
+//! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
@@ -21,5 +24,8 @@ pub mod instructions;
 pub mod kernel;
 pub mod method;
 pub mod report;
+pub mod shape_cost;
+pub mod shape_stability;
+pub mod shapes;
 pub mod stability;
 pub mod textures;

@@ -4,6 +4,7 @@ use super::Ends;
 use crate::failure::Failure;
 use crate::progress;
 use arealight_benches::method::{METHODS, Method};
+use arealight_benches::shape_stability;
 use arealight_benches::stability::{self, Options};
 use arealight_oracle::hard::family::{FAMILIES, Family};
 use std::process::ExitCode;
@@ -31,6 +32,9 @@ pub struct Arguments {
     /// Only this rung or yardstick; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = method)]
     rung: Vec<&'static Method>,
+    /// Disks, spheres and tubes in the polygons' place.
+    #[arg(long, conflicts_with_all = ["family", "rung", "seed"])]
+    shapes: bool,
     #[command(flatten)]
     ends: Ends,
 }
@@ -51,6 +55,9 @@ fn chosen<T>(asked: &[&'static T], all: &'static [T]) -> Vec<&'static T> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    if arguments.shapes {
+        return run_shapes(arguments);
+    }
     let options = Options {
         samples: arguments.samples,
         seed: arguments.seed,
@@ -66,6 +73,32 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What is promised of shapes, for the document.
+const SHAPE_PROMISES: &str = "\
+Each result is held against float64, by its bits: a finite number in [0, 1]; a backward error (the distance to the values of shapes \
+whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights an error of at most 1e-5 of what they send at \
+most, of far tubes (by the difference form) 1e-4. Beside the disks is the published disk, its discriminant kept from being \
+negative, on the same device: how many of its results are not finite, and the largest error of those that are.";
+
+fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let host = arguments.ends.host()?;
+    let bar = progress::bar(arguments.samples * shape_stability::family_count(), "shapes");
+    let rows = shape_stability::run(&host, arguments.samples, &|count| bar.inc(count));
+    bar.finish_and_clear();
+    let rows = rows.map_err(|error| Failure::Device(error.to_string()))?;
+
+    let table = shape_stability::markdown(&rows);
+    let document = format!(
+        "# Hard disks, spheres and tubes\n\nMade by `arealight bench stability --shapes --samples {} --markdown FILE` on \
+         {}.\n\n{SHAPE_PROMISES}\n\n{table}",
+        arguments.samples,
+        host.device_name()
+    );
+    arguments.ends.report(&rows, &document, &table)?;
+    let kept = rows.iter().all(shape_stability::ShapeRow::is_kept);
+    Ok(if kept { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 #[cfg(test)]

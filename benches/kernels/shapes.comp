@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-// Form factors of disks, spheres and tubes over a list of arguments, so that tests can hold them to what their comments
-// say; and the published disk as a yardstick.
+// Form factors of disks, spheres and tubes over a list of arguments, so that tests and benchmarks can hold them to what their
+// comments say, and measure what they cost; and yardsticks of the disk: the published one, a sphere's horizon, polygons.
 
 layout(local_size_x = 64) in;
 
@@ -10,6 +10,8 @@ layout(constant_id = 0) const int FUNCTION = 0;
 layout(constant_id = 1) const int RUNG = 0;
 // 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
+// How often each is evaluated, ever farther to the side: for its cost, in which memory traffic is lost
+layout(constant_id = 3) const int REPEATS = 1;
 
 const int FUNCTION_ELLIPSE = 0;
 const int FUNCTION_ELLIPSE_BARE = 1;
@@ -20,6 +22,10 @@ const int FUNCTION_ARCTANGENT = 5;
 const int FUNCTION_PUBLISHED = 6;
 const int FUNCTION_TUBE = 7;
 const int FUNCTION_LOBE = 8;
+const int FUNCTION_PUBLISHED_CHEAP = 9;
+const int FUNCTION_SPHERE_HORIZON = 10;
+const int FUNCTION_POLYGON = 11;
+const int FUNCTION_NOTHING = 12;
 
 #include "arealight/shapes.glsl"
 #include "published_disk.glsl"
@@ -69,12 +75,32 @@ float lobe_of(ShapeArguments given, bool sphere) {
     return arealight_lobe_shape(lobe, vec3(0.0, 0.0, 1.0), seen, shape, false, 0xffffffffu, quality).x;
 }
 
-void main() {
-    uint index = gl_GlobalInvocationID.x;
-    if (index >= constants.count) {
-        return;
+// The whole ellipse's form factor, exactly, and a sphere's horizon.
+float sphere_horizon(ShapeArguments given) {
+    vec3 vector = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+    float whole = length(vector);
+    return whole > 0.0 ? published_horizon(min(whole, 1.0), vector.z / whole) : 0.0;
+}
+
+// An inscribed polygon of CHOICE vertices, grown until it has the ellipse's area.
+float polygon_of(ShapeArguments given) {
+    float angle = 2.0 * AREALIGHT_PI / float(CHOICE);
+    vec2 step = vec2(cos(angle), sin(angle));
+    float growth = sqrt(angle / step.y);
+    ArealightAnchor anchor = arealight_anchor(given.a.xyz, length(given.b.xyz) + length(given.c.xyz), RUNG);
+    ArealightWalk walk = arealight_walk_begin();
+    vec2 place = vec2(growth, 0.0);
+    ArealightVertex from = arealight_vertex(anchor, place.x * given.b.xyz + place.y * given.c.xyz, RUNG);
+    for (int index = 0; index < CHOICE; index++) {
+        place = vec2(place.x * step.x - place.y * step.y, place.x * step.y + place.y * step.x);
+        ArealightVertex to = arealight_vertex(anchor, place.x * given.b.xyz + place.y * given.c.xyz, RUNG);
+        arealight_walk_edge(walk, anchor, from, to, RUNG);
+        from = to;
     }
-    ShapeArguments given = arguments[index];
+    return arealight_form_factor(arealight_walk_end(walk, anchor, RUNG), true);
+}
+
+vec4 evaluate(ShapeArguments given, int tube_ends) {
     bool two_sided = given.d.w != 0.0;
     vec4 result = vec4(0.0);
     if (FUNCTION == FUNCTION_ELLIPSE) {
@@ -91,7 +117,7 @@ void main() {
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
         result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
     } else if (FUNCTION == FUNCTION_TUBE) {
-        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, ends[index]);
+        ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, tube_ends);
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
@@ -100,8 +126,30 @@ void main() {
                  : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH, RUNG);
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
-    } else {
+    } else if (FUNCTION == FUNCTION_PUBLISHED) {
         result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+    } else if (FUNCTION == FUNCTION_PUBLISHED_CHEAP) {
+        result.x = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG).y;
+    } else if (FUNCTION == FUNCTION_SPHERE_HORIZON) {
+        result.x = sphere_horizon(given);
+    } else if (FUNCTION == FUNCTION_POLYGON) {
+        result.x = polygon_of(given);
+    } else {
+        result.x = given.a.x + given.b.y + given.c.z;
     }
-    results[index] = result;
+    return result;
+}
+
+void main() {
+    uint index = gl_GlobalInvocationID.x;
+    if (index >= constants.count) {
+        return;
+    }
+    ShapeArguments given = arguments[index];
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < REPEATS; i++) {
+        sum += evaluate(given, ends[index]);
+        given.a.xy += vec2(1.0 / 1024.0);
+    }
+    results[index] = sum / float(REPEATS);
 }

@@ -1,0 +1,235 @@
+//! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the ways to a disk how
+//! far off they are: by the library's rungs and by yardsticks.
+//!
+//! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them in the same round:
+//! here to the bare rung of a disk.
+
+use crate::cost::quantile;
+use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
+use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
+use arealight_host::{Buffer, Host};
+use arealight_oracle::ellipse::hard::Family;
+use arealight_oracle::ellipse::{Ellipse, form_factor};
+use arealight_oracle::tube::{Ends, Tube};
+use arealight_vk::Resource;
+use glam::DMat3;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::time::Instant;
+
+/// A way to a shape's form factor.
+#[derive(Debug, Clone, Copy)]
+struct ShapeMethod {
+    name: &'static str,
+    function: ShapeFunction,
+    rung: u32,
+    choice: u32,
+    kind: Kind,
+}
+
+/// What it is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Disk,
+    /// A disk, of which its error is told.
+    JudgedDisk,
+    Sphere,
+    Tube(Ends),
+}
+
+const FAST: u32 = 1;
+const DIFFERENCE: u32 = 2;
+/// The published disk with its discriminant kept from being negative.
+const CLAMPED: u32 = 1;
+
+const fn method(
+    name: &'static str,
+    function: ShapeFunction,
+    rung: u32,
+    choice: u32,
+    kind: Kind,
+) -> ShapeMethod {
+    ShapeMethod { name, function, rung, choice, kind }
+}
+
+/// The method that the others are ratios to comes first.
+const METHODS: &[ShapeMethod] = &[
+    method("disk, bare", ShapeFunction::EllipseBare, 0, 0, Kind::Disk),
+    method("an empty loop", ShapeFunction::Nothing, 0, 0, Kind::Disk),
+    method("disk, exact", ShapeFunction::Ellipse, 0, 0, Kind::JudgedDisk),
+    method("disk, fast", ShapeFunction::Ellipse, FAST, 0, Kind::JudgedDisk),
+    method("disk, exact, difference", ShapeFunction::Ellipse, DIFFERENCE, 0, Kind::JudgedDisk),
+    method("published disk, a sphere's horizon", ShapeFunction::Published, CLAMPED, 0, Kind::JudgedDisk),
+    method("published disk, cheap horizon", ShapeFunction::PublishedCheap, CLAMPED, 0, Kind::JudgedDisk),
+    method("disk, a sphere's horizon", ShapeFunction::SphereHorizon, 0, 0, Kind::JudgedDisk),
+    method("polygon of 8", ShapeFunction::Polygon, 0, 8, Kind::JudgedDisk),
+    method("polygon of 16", ShapeFunction::Polygon, 0, 16, Kind::JudgedDisk),
+    method("polygon of 32", ShapeFunction::Polygon, 0, 32, Kind::JudgedDisk),
+    method("sphere, Lambert's lobe", ShapeFunction::Sphere, 0, 0, Kind::Sphere),
+    method("pipe, exact", ShapeFunction::Tube, 0, 0, Kind::Tube(Ends::Open)),
+    method("capsule, exact", ShapeFunction::Tube, 0, 0, Kind::Tube(Ends::Round)),
+    method("pipe, difference", ShapeFunction::Tube, DIFFERENCE, 0, Kind::Tube(Ends::Open)),
+    method("pipe, both horizons", ShapeFunction::Tube, 0, 1, Kind::Tube(Ends::Open)),
+];
+
+/// A method's cost, and its error over disks that cross the horizon.
+#[derive(Debug, Clone, Serialize)]
+pub struct ShapeCost {
+    /// The method.
+    pub method: &'static str,
+    /// The median over the rounds of the ratio to the bare disk in the same round.
+    pub ratio: f64,
+    /// The quartiles of that ratio.
+    pub quartiles: [f64; 2],
+    /// The root of the mean square and the largest of the errors that are finite, and how many are not: of ways to a disk.
+    pub error: Option<ShapeError>,
+}
+
+/// How far off results are.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct ShapeError {
+    /// Root of the mean square.
+    pub rms: f64,
+    /// The largest.
+    pub largest: f64,
+    /// Results that are NaN or infinite.
+    pub not_finite: usize,
+}
+
+const WORK_ITEMS: usize = 4096;
+const REPEATS: u32 = 64;
+
+/// The disks, across the horizon.
+fn disks() -> Vec<Ellipse> {
+    let family = Family::find("crossing").unwrap_or(&arealight_oracle::ellipse::hard::FAMILIES[0]);
+    (0..WORK_ITEMS as u64).map(|index| family.case(index)).collect()
+}
+
+/// The shapes of a kind: about each disk's center, as long as its longer axis, as thick as the shorter one.
+fn arguments(kind: Kind) -> Vec<ShapeArguments> {
+    let of_disk = |disk: &Ellipse| {
+        let radius = 0.5 * disk.axis_v.length().min(disk.center.length());
+        match kind {
+            Kind::Disk | Kind::JudgedDisk => ellipse_arguments(disk),
+            Kind::Sphere => {
+                let mut given = ellipse_arguments(disk);
+                given[0][3] = radius as f32;
+                given
+            }
+            Kind::Tube(ends) => {
+                let (start, end) = (disk.center - disk.axis_u, disk.center + disk.axis_u);
+                tube_arguments(&Tube { start, end, radius, ends }, &DMat3::IDENTITY)
+            }
+        }
+    };
+    disks().iter().map(of_disk).collect()
+}
+
+struct Run {
+    pass: SharedPass,
+    set: BoundSet,
+    results: Buffer,
+    seconds: Vec<f64>,
+    _inputs: [Buffer; 2],
+}
+
+impl Run {
+    fn new(passes: &Passes, method: &ShapeMethod, repeats: u32) -> Result<Self, EngineError> {
+        let host = passes.host();
+        let ends = if let Kind::Tube(ends) = method.kind { ends as u32 } else { 0 };
+        let inputs = [
+            host.storage_buffer("arguments", &arguments(method.kind))?,
+            host.storage_buffer("ends", &[ends; WORK_ITEMS])?,
+        ];
+        let results = host.storage_buffer("results", &vec![[f32::NAN; 4]; WORK_ITEMS])?;
+        let constants = [(0, method.function as u32), (1, method.rung), (2, method.choice), (3, repeats)];
+        let pass = passes.pass(&SHAPES, &constants)?;
+        let resources = [&inputs[0], &inputs[1], &results].map(|buffer| Resource::buffer(buffer.handle()));
+        // SAFETY: This keeps the buffers until its submissions are waited for.
+        let set = unsafe { passes.bind(&pass, &resources) }?;
+        Ok(Self { pass, set, results, seconds: Vec::new(), _inputs: inputs })
+    }
+
+    /// One dispatch; GPU time, or wall time where the queue has no timestamps.
+    fn once(&self, host: &Host) -> Result<f64, EngineError> {
+        let start = Instant::now();
+        let took = host.try_submit_timed(|commands| {
+            // SAFETY: `commands` is being recorded, outside a render pass.
+            unsafe { self.set.record(&self.pass, commands, &(WORK_ITEMS as u32), [WORK_ITEMS as u32, 1, 1]) }
+        })?;
+        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
+    }
+}
+
+/// Measures every method in `rounds` rounds, after one that warms up.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn measure(host: &Host, rounds: usize) -> Result<Vec<ShapeCost>, EngineError> {
+    let passes = Passes::new(host.clone())?;
+    let mut runs =
+        METHODS.iter().map(|method| Run::new(&passes, method, REPEATS)).collect::<Result<Vec<_>, _>>()?;
+    for round in 0..=rounds {
+        for run in &mut runs {
+            let seconds = run.once(host)?;
+            if round > 0 {
+                run.seconds.push(seconds);
+            }
+        }
+    }
+    let bare = runs[0].seconds.clone();
+    let truth: Vec<f64> = disks().iter().map(|disk| form_factor(disk).abs()).collect();
+    let cost = |(method, run): (&ShapeMethod, &Run)| {
+        let ratios: Vec<f64> = run.seconds.iter().zip(&bare).map(|(a, b)| a / b).collect();
+        let error = match method.kind {
+            Kind::JudgedDisk => Some(error(host, &passes, method, &truth)?),
+            _ => None,
+        };
+        Ok(ShapeCost {
+            method: method.name,
+            ratio: quantile(&ratios, 0.5),
+            quartiles: [quantile(&ratios, 0.25), quantile(&ratios, 0.75)],
+            error,
+        })
+    };
+    METHODS.iter().zip(&runs).map(cost).collect()
+}
+
+/// The errors of a method, evaluated once a disk.
+fn error(
+    host: &Host,
+    passes: &Passes,
+    method: &ShapeMethod,
+    truth: &[f64],
+) -> Result<ShapeError, EngineError> {
+    let run = Run::new(passes, method, 1)?;
+    run.once(host)?;
+    let results: Vec<[f32; 4]> = run.results.download()?;
+    let errors: Vec<f64> =
+        results.iter().zip(truth).map(|(found, truth)| (f64::from(found[0]) - truth).abs()).collect();
+    let finite = || errors.iter().filter(|error| error.is_finite());
+    Ok(ShapeError {
+        rms: (finite().map(|error| error * error).sum::<f64>() / finite().count().max(1) as f64).sqrt(),
+        largest: finite().fold(0.0, |largest, error| largest.max(*error)),
+        not_finite: errors.len() - finite().count(),
+    })
+}
+
+/// The costs as a Markdown table.
+pub fn markdown(costs: &[ShapeCost]) -> String {
+    let mut text = String::from(
+        "| form factor | time, bare disk = 1 | quartiles | RMS error | largest error |\n|---|---|---|---|---|\n",
+    );
+    for cost in costs {
+        let [low, high] = cost.quartiles;
+        let error = cost.error.map_or_else(
+            || "| |".to_owned(),
+            |error| match error.not_finite {
+                0 => format!("{:.0e} | {:.0e} |", error.rms, error.largest),
+                count => format!("{:.0e} | {:.0e}, {count} not finite |", error.rms, error.largest),
+            },
+        );
+        let _ = writeln!(text, "| {} | {:.2} | {low:.2} to {high:.2} | {error}", cost.method, cost.ratio);
+    }
+    text
+}

@@ -1,0 +1,103 @@
+//! The kernel that evaluates disks, spheres and tubes, and its arguments: for the tests and the benchmarks.
+
+use arealight::kernels::{Access, Binding, Kernel};
+use arealight_oracle::ellipse::Ellipse;
+use arealight_oracle::tube::Tube;
+use glam::{DMat3, DVec3};
+
+/// Form factors of shapes over a list of arguments.
+pub static SHAPES: Kernel = Kernel {
+    name: "shapes",
+    spirv: include_bytes!("../spirv/shapes.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        Binding::storage_buffer("arguments", Access::Read, "vec4[4] a call"),
+        Binding::storage_buffer("ends", Access::Read, "int a call: arealight::TubeEnds"),
+        Binding::storage_buffer("results", Access::Write, "vec4 a call"),
+    ],
+    constants: &[0, 1, 2, 3],
+};
+
+/// The functions that the kernel calls: its first specialisation constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum ShapeFunction {
+    /// `arealight_ellipse_form_factor` of a center a and axes b and c, two-sided where d.w is not 0.
+    Ellipse = 0,
+    /// `arealight_ellipse_bare`, likewise.
+    EllipseBare = 1,
+    /// `arealight_ellipse_vector_form_factor` of a center a and axes b and c.
+    EllipseVector = 2,
+    /// `arealight_sphere_form_factor` of a center a and a radius a.w, two-sided where d.w is not 0.
+    Sphere = 3,
+    /// The form factor of the silhouette of a sphere of a center a and a radius a.w, under the matrix of columns b, c and d.
+    Silhouette = 4,
+    /// `arealight_arctangent` of a.y and a.x.
+    Arctangent = 5,
+    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The rung is
+    /// whether its discriminant is clamped.
+    Published = 6,
+    /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth
+    /// components of c, d and b.
+    Tube = 7,
+    /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center and the radius b.x:
+    /// see the kernel for the lobe's matrix.
+    Lobe = 8,
+    /// As `Published`, with the cheap horizon alone.
+    PublishedCheap = 9,
+    /// The whole ellipse, exactly, with a sphere's horizon.
+    SphereHorizon = 10,
+    /// A polygon of the ellipse's area, whose number of vertices is the third specialisation constant.
+    Polygon = 11,
+    /// None: what the kernel itself costs.
+    Nothing = 12,
+}
+
+/// What a call is given.
+pub type ShapeArguments = [[f32; 4]; 4];
+
+fn narrow(v: DVec3, w: f64) -> [f32; 4] {
+    [v.x as f32, v.y as f32, v.z as f32, w as f32]
+}
+
+/// An ellipse's arguments, which are two-sided.
+pub fn ellipse_arguments(ellipse: &Ellipse) -> ShapeArguments {
+    [
+        narrow(ellipse.center, 0.0),
+        narrow(ellipse.axis_u, 0.0),
+        narrow(ellipse.axis_v, 0.0),
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+}
+
+/// A sphere's arguments, under a matrix.
+pub fn sphere_arguments(center: DVec3, radius: f64, matrix: &DMat3) -> ShapeArguments {
+    [
+        narrow(center, radius),
+        narrow(matrix.x_axis, 0.0),
+        narrow(matrix.y_axis, 0.0),
+        narrow(matrix.z_axis, 1.0),
+    ]
+}
+
+/// A tube's arguments, under a matrix. Its center and half its axis should be of float32.
+pub fn tube_arguments(tube: &Tube, matrix: &DMat3) -> ShapeArguments {
+    let last = matrix.row(2);
+    [
+        narrow((tube.start + tube.end) * 0.5, tube.radius),
+        narrow((tube.end - tube.start) * 0.5, last.z),
+        narrow(matrix.row(0), last.x),
+        narrow(matrix.row(1), last.y),
+    ]
+}
+
+/// The arguments of a disk before a lobe: its matrix has these two first rows, and a third one across them of length `alpha`.
+pub fn lobe_arguments(ellipse: &Ellipse, rows: [DVec3; 2], alpha: f64) -> ShapeArguments {
+    [
+        narrow(ellipse.center, rows[0].x),
+        narrow(ellipse.axis_u, rows[0].y),
+        narrow(ellipse.axis_v, rows[0].z),
+        narrow(rows[1], alpha),
+    ]
+}
