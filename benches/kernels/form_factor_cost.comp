@@ -69,27 +69,6 @@ float library(vec3 center, ArealightQuad quad) {
     return arealight_form_factor(library_arcs(center, quad), false);
 }
 
-// The practice's, as its users write it for four vertices; see yardsticks.glsl for the source.
-vec3 practice_edge(vec3 a, vec3 b) {
-    float x = dot(a, b);
-    float y = abs(x);
-    float numerator = 0.8543985 + (0.4965155 + 0.0145206 * y) * y;
-    float denominator = 3.4175940 + (4.1616724 + y) * y;
-    float weight = numerator / denominator;
-    weight = x > 0.0 ? weight : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - weight;
-    return cross(a, b) * weight;
-}
-
-float practice(ArealightQuad quad) {
-    vec3 v0 = normalize(quad.v0);
-    vec3 v1 = normalize(quad.v1);
-    vec3 v2 = normalize(quad.v2);
-    vec3 v3 = normalize(quad.v3);
-    vec3 sum = practice_edge(v0, v1) + practice_edge(v1, v2) + practice_edge(v2, v3) + practice_edge(v3, v0);
-    float l = length(sum);
-    return max((l * l - sum.z) / (l + 1.0), 0.0);
-}
-
 ArealightQuad yardstick;
 
 vec3 yardstick_vertex(uint index) {
@@ -110,7 +89,8 @@ void main() {
         // Moving the quad costs three additions a vertex; the library's adds its center to its offsets anyway
         vec3 shift = vec3(1.0, 1.0, 0.5) * (float(i) / 512.0);
         if (METHOD == METHOD_PRACTICE) {
-            sum += practice(moved(quad, shift));
+            ArealightQuad there = moved(quad, shift);
+            sum += yardstick_practice_quad(there.v0, there.v1, there.v2, there.v3);
         } else if (METHOD == METHOD_TEXTBOOK) {
             yardstick = moved(quad, shift);
             sum += yardstick_textbook(4u);

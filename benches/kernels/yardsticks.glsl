@@ -43,6 +43,17 @@ float yardstick_textbook(uint count) {
     return abs(sum) * 0.15915494;
 }
 
+// An edge of the practice: theta / sin(theta) / 2 pi, times the product of the unit vectors to its ends.
+vec3 yardstick_practice_edge(vec3 a, vec3 b) {
+    float x = dot(a, b);
+    float y = abs(x);
+    float numerator = 0.8543985 + (0.4965155 + 0.0145206 * y) * y;
+    float denominator = 3.4175940 + (4.1616724 + y) * y;
+    float weight = numerator / denominator;
+    weight = x > 0.0 ? weight : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - weight;
+    return cross(a, b) * weight;
+}
+
 // The practice of real-time engines (Hill and Heitz 2016): nothing is clipped; theta / sin(theta) is a rational
 // function of the cosine, guarded where the ends are opposite; and the sum's vector is taken for a sphere's, whose
 // horizon is that of (l^2 + z) / (l + 1).
@@ -56,20 +67,25 @@ float yardstick_practice(uint count) {
         area += cross(previous - first, vertex - first);
         vec3 a = normalize(previous);
         vec3 b = normalize(vertex);
-        // theta / sin(theta) / 2 pi
-        float x = dot(a, b);
-        float y = abs(x);
-        float numerator = 0.8543985 + (0.4965155 + 0.0145206 * y) * y;
-        float denominator = 3.4175940 + (4.1616724 + y) * y;
-        float weight = numerator / denominator;
-        weight = x > 0.0 ? weight : 0.5 * inversesqrt(max(1.0 - x * x, 1e-7)) - weight;
-        sum += cross(a, b) * weight;
+        sum += yardstick_practice_edge(a, b);
         previous = vertex;
     }
     // Seen from the front the vertices run clockwise about the way to the light
     float z = dot(area, first) < 0.0 ? -sum.z : sum.z;
     float l = length(sum);
     return max((l * l + z) / (l + 1.0), 0.0);
+}
+
+// The practice as its users write it for four vertices, seen from the front.
+float yardstick_practice_quad(vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    v0 = normalize(v0);
+    v1 = normalize(v1);
+    v2 = normalize(v2);
+    v3 = normalize(v3);
+    vec3 sum = yardstick_practice_edge(v0, v1) + yardstick_practice_edge(v1, v2) + yardstick_practice_edge(v2, v3)
+             + yardstick_practice_edge(v3, v0);
+    float l = length(sum);
+    return max((l * l - sum.z) / (l + 1.0), 0.0);
 }
 
 #endif

@@ -1,7 +1,8 @@
 //! The fit of a whole table.
 
-use arealight::table::MIN_COS_VIEW;
+use arealight::table::{MIN_COS_VIEW, mirror_frame};
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
+use glam::DMat3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -92,6 +93,46 @@ pub fn fit(
         *magnitude = magnitude_of_lobe(brdf, node_of(settings.size, i).0, 0.0)?;
     }
     into_table(brdf, settings, layers.collect(), &magnitude)
+}
+
+/// Fits the lobes of one roughness, from 0 to 1, and one view, starting from what `table` interpolates there: a table that
+/// gives this fit, to be looked up at that place alone. So what the nodes of `table` between them lose is known.
+///
+/// # Errors
+/// As [`fit`], whose `settings.aim` this takes.
+pub fn fit_at(
+    brdf: &dyn Brdf,
+    aim: &Aim,
+    table: &LightTable,
+    roughness: f64,
+    cos_view: f64,
+) -> Result<LightTable, FitError> {
+    let alpha = (roughness * roughness).max(MIN_ALPHA);
+    let cos_view = cos_view.clamp(MIN_COS_VIEW, 1.0);
+    let magnitude = magnitude_of_lobe(brdf, alpha, cos_view)?;
+    let texel = Texel { brdf, alpha, cos_view };
+    // Undo what the lookup makes of a texel
+    let sample = table.lookup(roughness, cos_view);
+    let lobe_of = |inverse: DMat3| {
+        let m = inverse * mirror_frame(cos_view);
+        Lobe { texel: [m.x_axis.x, m.z_axis.x, m.x_axis.z / alpha, m.z_axis.z / alpha], alpha }
+    };
+    let starts = [lobe_of(sample.inverse), lobe_of(sample.schlick_inverse)];
+    let fits = aim.shares(magnitude).into_iter().zip(starts).map(|(shares, start)| {
+        let lobe = texel.fit(shares, start, start)?;
+        Ok([lobe.texel.map(|q| q as f32); 4])
+    });
+    let layers = fits.collect::<Result<Vec<[[f32; 4]; 4]>, FitError>>()?;
+
+    // The same at every node
+    let mut layers = layers.into_iter().map(Vec::from);
+    let description = TableDescription { brdf: brdf.name().to_owned(), ..TableDescription::default() };
+    let magnitude = vec![[magnitude.albedo as f32, magnitude.schlick as f32]; 4];
+    let table = LightTable::new(description, 2, layers.next().unwrap_or_default(), magnitude)?;
+    Ok(match layers.next() {
+        Some(schlick) => table.with_schlick_matrix(schlick)?,
+        None => table,
+    })
 }
 
 /// The albedos of a BRDF that has a lobe at an alpha and a view.

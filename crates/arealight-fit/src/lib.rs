@@ -42,4 +42,4 @@ mod solve;
 pub use aim::Aim;
 pub use brdf::{Brdf, GgxBrdf, Magnitude};
 pub use error::FitError;
-pub use fit::{Settings, fit};
+pub use fit::{Settings, fit, fit_at};

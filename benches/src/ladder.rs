@@ -1,0 +1,349 @@
+//! What accuracy costs in time: every rung of the quality ladder on a device, its error against the integral of the true BRDF and
+//! its time, beside Monte Carlo, the textbook and the practice.
+
+mod errors;
+mod frame;
+mod methods;
+mod names;
+mod pictures;
+mod points;
+mod random;
+mod scaling;
+mod text;
+mod timing;
+
+pub use errors::{Errors, SplitErrors};
+pub use methods::{DEFAULT, PRACTICE};
+pub use names::{RungNames, UnknownRung};
+pub use pictures::{Picture, Pictures};
+pub use scaling::{Growth, Scaling};
+pub use text::{number, percent};
+pub use timing::{Spread, Time};
+
+use crate::textures::is_software;
+use arealight::{Effects, LightTable, PyramidSize, Quality, TexturePart};
+use arealight_engine::{Engine, EngineError, GBuffer, SourceImage, SourceTexels};
+use arealight_host::Host;
+use arealight_oracle::texture::Texture;
+use arealight_scene::Scene;
+use arealight_vk::TableFormat;
+use errors::Known;
+use frame::Frame;
+use glam::{DVec3, Vec3};
+use methods::{LOBES, Method, Named, SAMPLES, Workload, workloads};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::Instant;
+use timing::Entry;
+
+/// What to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Points whose error is measured; workloads after the first take a share of them.
+    pub points: usize,
+    /// Rounds in which time is taken.
+    pub rounds: usize,
+    /// Another seed makes other points.
+    pub seed: u64,
+    /// Monte Carlo's samples of the pictures' reference.
+    pub reference: u32,
+}
+
+impl Options {
+    /// As the documents have it: some minutes on two processors.
+    pub const FULL: Self = Self { points: 1024, rounds: 31, seed: 1, reference: 4096 };
+    /// Half a minute: to see that it runs, and about what comes out.
+    pub const QUICK: Self = Self { points: 128, rounds: 5, seed: 1, reference: 256 };
+
+    /// How often progress is told of, in all.
+    pub fn steps(&self) -> u64 {
+        let points: usize = workloads().iter().map(|workload| self.points_of(workload)).sum();
+        points as u64 + self.rounds as u64 + 1 + scaling::STEPS + pictures::STEPS
+    }
+
+    fn points_of(&self, workload: &Workload) -> usize {
+        ((self.points as f64 * workload.share) as usize).max(PATCHES_A_ROW)
+    }
+}
+
+/// A method's error and cost.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// The lights: a workload's name.
+    pub lights: String,
+    /// The method's name.
+    pub name: String,
+    /// What it does, in a few words.
+    pub description: String,
+    /// The rungs; none of a yardstick.
+    pub rungs: Option<RungNames>,
+    /// Its errors.
+    pub errors: SplitErrors,
+    /// Its time.
+    pub time: Time,
+    /// Monte Carlo's samples that err as much, and that take as long. Of the first lights alone.
+    pub samples: Option<Equal>,
+}
+
+/// Monte Carlo's samples beside a method.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Equal {
+    /// So many err as much.
+    pub error: f64,
+    /// So many take as long.
+    pub time: f64,
+}
+
+/// Monte Carlo.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// How many a pixel.
+    pub count: u32,
+    /// Errors.
+    pub errors: Errors,
+    /// Milliseconds a light and a megapixel.
+    pub milliseconds: f64,
+    /// Whether that was measured, or is of fewer samples, multiplied.
+    pub measured: bool,
+}
+
+/// What an effect adds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EffectCost {
+    /// Its name.
+    pub effect: String,
+    /// Time of a pipeline with it over one without, of a frame in which nothing calls for it; of a lobe, where all does.
+    pub on: Spread,
+    /// Time of a frame of lights that call for it, over one of quads.
+    pub used: Option<Spread>,
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Ladder {
+    /// The device's name.
+    pub device: String,
+    /// Whether it is the processor: then times are its threads' processor time over their number.
+    pub software: bool,
+    /// The command to run it again.
+    pub command: String,
+    /// Points whose error was measured.
+    pub points: usize,
+    /// Rounds in which time was taken.
+    pub rounds: usize,
+    /// The seed of the points.
+    pub seed: u64,
+    /// Pixels of the frames.
+    pub pixels: u32,
+    /// Seconds that all took.
+    pub seconds: f64,
+    /// By lights, each method in turn.
+    pub rows: Vec<Row>,
+    /// Monte Carlo over the first lights.
+    pub monte_carlo: Vec<Samples>,
+    /// What effects add.
+    pub effects: Vec<EffectCost>,
+    /// Growth.
+    pub scaling: Scaling,
+    /// Names of the lights, with what they are.
+    pub workloads: Vec<(String, String)>,
+}
+
+/// Patches of points in a row of the frames.
+const PATCHES_A_ROW: usize = 16;
+
+/// Runs everything on a device. `progress` is told how many more steps are done.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn run(
+    host: &Host,
+    table: &LightTable,
+    scene: &Scene,
+    options: &Options,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<(Ladder, Pictures), EngineError> {
+    let start = Instant::now();
+    let textures = errors::pictures();
+    let engine = engine(host, table, &textures)?;
+    let workloads = workloads();
+
+    // Errors: a pixel a point
+    let mut rows = vec![];
+    let mut monte_carlo = vec![];
+    for (index, workload) in workloads.iter().enumerate() {
+        let count = options.points_of(workload);
+        let known = Known::new(workload, count, options.seed, table, &textures, progress);
+        let buffer = frame::g_buffer(&engine, &known.points, PATCHES_A_ROW, count.div_ceil(PATCHES_A_ROW), 1)?;
+        let frame = Frame::new(&engine, &buffer, &known.lights, DVec3::ZERO, Vec3::ZERO)?;
+        for named in &workload.methods {
+            let found = frame.shaded(&frame.ready(named.method)?, 0)?;
+            rows.push((workload, named, known.judge(named.method, table, &found)));
+        }
+        if index == 0 {
+            monte_carlo = noise(&frame, &known)?;
+        }
+    }
+
+    // Time: a patch a point
+    let buffers = workloads.iter().map(|workload| patches(&engine, workload, options));
+    let buffers = buffers.collect::<Result<Vec<GBuffer>, _>>()?;
+    let frames = workloads.iter().zip(&buffers).map(|(workload, buffer)| {
+        Frame::new(&engine, buffer, &points::lights(workload.lights), DVec3::ZERO, Vec3::ZERO)
+    });
+    let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
+    let effects: Vec<Effects> = Effects::all().iter().collect();
+    let mut entries = vec![];
+    for (workload, frame) in workloads.iter().zip(&frames) {
+        for named in &workload.methods {
+            entries.push(Entry::new(frame, named.method)?);
+        }
+    }
+    let methods = entries.len();
+    for effect in &effects {
+        let method = Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
+        entries.push(Entry::new(&frames[0], method)?);
+    }
+    for count in TIMED_SAMPLES {
+        entries.push(Entry::new(&frames[0], Method::Samples { count })?);
+    }
+    timing::measure(&mut entries, options.rounds, progress)?;
+
+    let yardstick = &entries[0];
+    let rows: Vec<Row> = rows
+        .into_iter()
+        .zip(&entries)
+        .map(|((workload, named, errors), entry)| row(workload, named, errors, entry.time(yardstick)))
+        .collect();
+    let default = rows.iter().position(|row| row.name == DEFAULT).unwrap_or(0);
+    let effects = effects.iter().zip(&entries[methods..]).map(|(effect, entry)| {
+        let on = entry.time(&entries[default]).ratio;
+        // Without a lobe it is the other way round
+        let is_lobe = LOBES.contains(*effect);
+        let on = if is_lobe { inverse(on) } else { on };
+        let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
+        let all = workloads.iter().flat_map(|workload| &workload.methods);
+        let used = all.zip(&entries).find(|(named, _)| calls(named));
+        let used = used.map(|(_, entry)| entry.time(&entries[default]).ratio);
+        EffectCost { effect: effect.names().join(", "), on, used }
+    });
+    let effects = effects.collect();
+    let timed = entries[entries.len() - TIMED_SAMPLES.len()..].iter().map(|entry| entry.time(yardstick));
+    let monte_carlo = with_time(monte_carlo, &timed.collect::<Vec<_>>());
+    let rows = rows.into_iter().map(|row| with_samples(row, &monte_carlo)).collect();
+    let pixels = frames[0].pixels() as u32;
+    drop(entries);
+
+    let scaling = scaling::measure(&engine, options.rounds.div_ceil(3), progress)?;
+    let pictures = pictures::make(&engine, table, scene, options.reference, progress)?;
+    let ladder = Ladder {
+        device: host.device_name(),
+        software: is_software(host),
+        command: String::new(),
+        points: options.points,
+        rounds: options.rounds,
+        seed: options.seed,
+        pixels,
+        seconds: start.elapsed().as_secs_f64(),
+        rows,
+        monte_carlo,
+        effects,
+        scaling,
+        workloads: workloads.iter().map(|w| (w.name.to_owned(), w.description.to_owned())).collect(),
+    };
+    Ok((ladder, pictures))
+}
+
+/// The numbers of samples that are timed; more take in proportion.
+const TIMED_SAMPLES: [u32; 3] = [1, 4, 16];
+
+/// A G-buffer of many pixels: software has a hundredth of a GPU's throughput.
+fn patches(engine: &Engine, workload: &Workload, options: &Options) -> Result<GBuffer, EngineError> {
+    let points = points::points(workload.lights, 512, options.seed);
+    let (columns, rows, side) = if is_software(engine.host()) { (32, 16, 8) } else { (128, 64, 16) };
+    frame::g_buffer(engine, &points, columns, rows, side)
+}
+
+/// An engine whose light textures are the pictures.
+fn engine(host: &Host, table: &LightTable, pictures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
+    let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
+    let texels: Vec<Vec<[f32; 4]>> = pictures
+        .iter()
+        .map(|picture| picture.texels().iter().map(|t| t.as_vec3().extend(1.0).to_array()).collect())
+        .collect();
+    let side = pictures.first().map_or(1, |picture| picture.width() as u32);
+    let sources: Vec<SourceImage<'_>> = texels
+        .iter()
+        .map(|texels| SourceImage {
+            texels: SourceTexels::Linear(texels),
+            size: [side; 2],
+            part: TexturePart::default(),
+        })
+        .collect();
+    engine.load_textures(PyramidSize::for_image(side, side), &sources)?;
+    Ok(engine)
+}
+
+/// Monte Carlo's errors, of several seeds where samples are few.
+fn noise(frame: &Frame<'_>, known: &Known) -> Result<Vec<Samples>, EngineError> {
+    let mut found = vec![];
+    for count in SAMPLES {
+        let ready = frame.ready(Method::Samples { count })?;
+        let seeds = (64 / count).clamp(4, 16);
+        let answers = (0..seeds).map(|seed| {
+            let mut answer = frame.shaded(&ready, seed + 1)?;
+            answer.truncate(known.points.len());
+            Ok(answer)
+        });
+        let errors = known.noise(&answers.collect::<Result<Vec<_>, EngineError>>()?);
+        found.push(Samples { count, errors, milliseconds: 0.0, measured: TIMED_SAMPLES.contains(&count) });
+    }
+    Ok(found)
+}
+
+/// Fills in the time: what was measured, and beyond it what each sample adds.
+fn with_time(mut samples: Vec<Samples>, timed: &[Time]) -> Vec<Samples> {
+    let at = |index: usize| timed.get(index).map_or(f64::NAN, |time| time.milliseconds.median);
+    let last = TIMED_SAMPLES.len() - 1;
+    let (low, high) = (f64::from(TIMED_SAMPLES[0]), f64::from(TIMED_SAMPLES[last]));
+    let each = (at(last) - at(0)) / (high - low);
+    for entry in &mut samples {
+        let measured = TIMED_SAMPLES.iter().position(|count| *count == entry.count);
+        entry.milliseconds = measured.map_or_else(|| at(last) + (f64::from(entry.count) - high) * each, at);
+    }
+    samples
+}
+
+/// Fills in Monte Carlo's samples of equal error and of equal time.
+fn with_samples(mut row: Row, monte_carlo: &[Samples]) -> Row {
+    let is_first = |row: &Row| row.lights == workloads()[0].name;
+    if let ([first, .., last], true) = (monte_carlo, is_first(&row)) {
+        // Errors go with the root of the number
+        let error = f64::from(last.count) * (last.errors.rmse / row.errors.all.rmse).powi(2);
+        let each = (last.milliseconds - first.milliseconds) / f64::from(last.count - first.count);
+        let time = 1.0 + (row.time.milliseconds.median - first.milliseconds) / each;
+        row.samples = Some(Equal { error, time: time.max(0.0) });
+    }
+    row
+}
+
+fn inverse(spread: Spread) -> Spread {
+    let [low, high] = spread.quartiles;
+    Spread { median: 1.0 / spread.median, quartiles: [1.0 / high, 1.0 / low] }
+}
+
+fn row(workload: &Workload, named: &Named, errors: SplitErrors, time: Time) -> Row {
+    let rungs = match named.method {
+        Method::Rung { quality, .. } => Some(RungNames::from(quality)),
+        Method::Yardstick { .. } | Method::Samples { .. } => None,
+    };
+    Row {
+        lights: workload.name.to_owned(),
+        name: named.name.to_owned(),
+        description: named.description.to_owned(),
+        rungs,
+        errors,
+        time,
+        samples: None,
+    }
+}

@@ -1,0 +1,242 @@
+//! How far a frame is from the truth, and which part of it is whose: the fit's, the table's, the integral's.
+
+use super::methods::{Method, Workload};
+use super::points::{Point, lights, points};
+use arealight::{Fresnel, LightTable, Lobes, PolygonLight, Quality};
+use arealight_fit::{Aim, GgxBrdf, fit_at};
+use arealight_oracle::cubature::Settings;
+use arealight_oracle::frame::SurfaceFrame;
+use arealight_oracle::shading::{RelativeLight, ltc_on, truth};
+use arealight_oracle::texture::Texture;
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Errors over the mean of the truth, all channels alike.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Points judged.
+    pub points: usize,
+    /// Root of the mean square.
+    pub rmse: f64,
+    /// Quantile of .99 of the largest channel's.
+    pub p99: f64,
+    /// The largest.
+    pub worst: f64,
+    /// The mean: how much too bright.
+    pub bias: f64,
+    /// How many answers are NaN or infinite; they are left out of the others.
+    pub not_finite: usize,
+}
+
+impl Errors {
+    /// Of answers beside what they should be.
+    pub fn of<'a>(pairs: impl Iterator<Item = (&'a DVec3, &'a DVec3)>) -> Self {
+        let (mut finite, mut not_finite) = (vec![], 0);
+        for (found, expected) in pairs {
+            if found.is_finite() { finite.push((*found, *expected)) } else { not_finite += 1 }
+        }
+        let count = finite.len().max(1) as f64 * 3.0;
+        let mean = finite.iter().map(|(_, expected)| expected.element_sum()).sum::<f64>() / count;
+        let square: f64 = finite.iter().map(|(found, expected)| (*found - *expected).length_squared()).sum();
+        let sum: f64 = finite.iter().map(|(found, expected)| (*found - *expected).element_sum()).sum();
+        let mut largest: Vec<f64> =
+            finite.iter().map(|(found, expected)| (*found - *expected).abs().max_element()).collect();
+        largest.sort_by(f64::total_cmp);
+        let last = largest.len().saturating_sub(1);
+        let quantile = |part: f64| largest.get((part * last as f64).round() as usize).copied().unwrap_or(0.0);
+        Self {
+            points: finite.len() + not_finite,
+            rmse: (square / count).sqrt() / mean,
+            p99: quantile(0.99) / mean,
+            worst: quantile(1.0) / mean,
+            bias: sum / count / mean,
+            not_finite,
+        }
+    }
+}
+
+/// Errors with their parts, each as the root of its mean square over the mean of the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SplitErrors {
+    /// All of it: the device's answer against the integral of the true BRDF.
+    pub all: Errors,
+    /// What the lobes cannot follow: those fitted to just this roughness and view, integrated in float64, against the truth.
+    pub fit: f64,
+    /// What the table's nodes, or the formula, lose between them: integrals of their lobes against those of the fit.
+    pub table: f64,
+    /// What the device's integral loses: its answer against the table's lobes integrated in float64.
+    pub integral: f64,
+}
+
+/// The points of a workload, with what is known of them.
+pub struct Known {
+    /// The points.
+    pub points: Vec<Point>,
+    /// The lights.
+    pub lights: Vec<PolygonLight>,
+    /// Integral of the true BRDF at each point.
+    pub truths: Vec<DVec3>,
+    relative: Vec<Vec<RelativeLight>>,
+    fits: Vec<LightTable>,
+}
+
+/// Estimates of 1e-4 of the integral: errors of about 1e-6, a hundredth of the smallest that is looked for.
+const CUBATURE: Settings = Settings { relative_tolerance: 1e-4, max_evaluations: 400_000 };
+
+impl Known {
+    /// Integrates `count` points of a workload. `progress` is called for each from any thread.
+    pub fn new(
+        workload: &Workload,
+        count: usize,
+        seed: u64,
+        table: &LightTable,
+        pictures: &[Arc<Texture>],
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Self {
+        let (points, lights) = (points(workload.lights, count, seed), lights(workload.lights));
+        let relative = |point: &Point| -> Vec<RelativeLight> {
+            let position = point.position.as_dvec3();
+            let relative = |light: &PolygonLight| match &light.texture {
+                None => RelativeLight::new(light, position),
+                Some(texture) => {
+                    let picture = Arc::clone(&pictures[texture.layer as usize]);
+                    RelativeLight::textured(light, position, picture).expect("our own lights map")
+                }
+            };
+            lights.iter().map(relative).collect()
+        };
+        let relative: Vec<Vec<RelativeLight>> = points.iter().map(relative).collect();
+        let known = points.par_iter().zip(&relative).map(|(point, lights)| {
+            let (surface, normal, view) = (point.surface(), point.normal.as_dvec3(), point.view());
+            let integral: DVec3 =
+                lights.iter().map(|light| truth(&surface, normal, view, light, &CUBATURE).radiance).sum();
+            let cos_view = SurfaceFrame::new(normal, view).cos_view();
+            // Where no lobe can be fitted, the table's is as good as any
+            let fit = fit_at(&GgxBrdf, &Aim::Split, table, surface.alpha.sqrt(), cos_view)
+                .unwrap_or_else(|_| table.clone());
+            progress(1);
+            (integral, fit)
+        });
+        let (truths, fits) = known.unzip();
+        Self { points, lights, truths, relative, fits }
+    }
+
+    /// Judges what a method made of the points.
+    pub fn judge(&self, method: Method, table: &LightTable, found: &[DVec3]) -> SplitErrors {
+        let quality = match method {
+            Method::Rung { quality, .. } => quality,
+            Method::Yardstick { .. } | Method::Samples { .. } => Quality::default(),
+        };
+        let judged: Vec<usize> =
+            (0..self.points.len()).filter(|index| is_right(quality, self, *index, table)).collect();
+        let of_table = self.integrals(quality, &judged, |_| table);
+        let of_fit = self.integrals(Quality { lobes: Lobes::Table, ..quality }, &judged, |index| &self.fits[index]);
+        let truths: Vec<DVec3> = judged.iter().map(|index| self.truths[*index]).collect();
+        let found: Vec<DVec3> = judged.iter().map(|index| found[*index]).collect();
+
+        let all = Errors::of(found.iter().zip(&truths));
+        // Parts are over the mean of the truth as the whole is
+        let mean: f64 = truths.iter().map(|truth| truth.element_sum()).sum();
+        let part = |found: &[DVec3], expected: &[DVec3]| {
+            let finite = found.iter().zip(expected).filter(|(found, _)| found.is_finite());
+            let count = judged.len().max(1) as f64 * 3.0;
+            let square: f64 = finite.map(|(found, expected)| (*found - *expected).length_squared()).sum();
+            (square / count).sqrt() / (mean / count)
+        };
+        SplitErrors {
+            all,
+            fit: part(&of_fit, &truths),
+            table: part(&of_table, &of_fit),
+            integral: part(&found, &of_table),
+        }
+    }
+
+    /// What the lobes of a table give at the points of some indices, integrated in float64.
+    fn integrals<'a>(
+        &self,
+        quality: Quality,
+        indices: &[usize],
+        table: impl Fn(usize) -> &'a LightTable + Sync,
+    ) -> Vec<DVec3> {
+        let integral = |index: &usize| {
+            let point = &self.points[*index];
+            let (surface, normal, view) = (point.surface(), point.normal.as_dvec3(), point.view());
+            let lights = self.relative[*index].iter();
+            lights.map(|light| ltc_on(quality, table(*index), &surface, normal, view, light)).sum()
+        };
+        indices.par_iter().map(integral).collect()
+    }
+
+    /// What Monte Carlo's answers err by.
+    pub fn noise(&self, answers: &[Vec<DVec3>]) -> Errors {
+        Errors::of(answers.iter().flat_map(|found| found.iter().zip(&self.truths)))
+    }
+}
+
+/// Whether a rung is for a point: the bare one asks for lights wholly above each lobe's horizon, without obtuse edges.
+fn is_right(quality: Quality, known: &Known, index: usize, table: &LightTable) -> bool {
+    if quality.horizon != arealight::Horizon::Bare {
+        return true;
+    }
+    let point = &known.points[index];
+    let surface = point.surface();
+    let frame = SurfaceFrame::new(point.normal.as_dvec3(), point.view());
+    let sample = table.lookup(surface.alpha.sqrt(), frame.cos_view());
+    let mean = surface.f0.element_sum() / 3.0;
+    let lobes = match quality.fresnel {
+        Fresnel::ByF0 => vec![DMat3::IDENTITY, sample.inverse_by_f0(mean, surface.f90)],
+        Fresnel::Split => vec![DMat3::IDENTITY, sample.inverse, sample.schlick_inverse],
+    };
+    known.relative[index].iter().all(|light| {
+        lobes.iter().all(|lobe| {
+            let vertices: Vec<DVec3> = light.vertices.iter().map(|v| *lobe * frame.to_surface(*v)).collect();
+            let next = vertices.iter().cycle().skip(1);
+            vertices.iter().zip(next).all(|(a, b)| a.z > 0.0 && a.dot(*b) > 0.0)
+        })
+    })
+}
+
+/// The images that the textured lights show.
+pub fn pictures() -> Vec<Arc<Texture>> {
+    let picture = |seed| Arc::new(Texture::noise(16, 16, seed));
+    (1..=super::points::LIGHTS as u64).map(picture).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_over_the_mean_and_leave_out_what_is_no_number() {
+        let truth = vec![DVec3::splat(1.0), DVec3::splat(3.0), DVec3::splat(2.0)];
+        let found = vec![DVec3::splat(1.2), DVec3::splat(3.0), DVec3::splat(f64::NAN)];
+        let errors = Errors::of(found.iter().zip(&truth));
+        assert_eq!((errors.points, errors.not_finite), (3, 1));
+        assert!((errors.bias - 0.05).abs() < 1e-12 && (errors.worst - 0.1).abs() < 1e-12, "{errors:?}");
+        assert!((errors.rmse - 0.02_f64.sqrt() / 2.0).abs() < 1e-12, "{errors:?}");
+        let exact = Errors::of(truth.iter().zip(&truth));
+        assert_eq!((exact.rmse, exact.worst, exact.bias), (0.0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn the_parts_of_an_error_are_told_apart() {
+        let table = arealight_table::ggx();
+        let workload = &super::super::methods::workloads()[0];
+        let known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
+        let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;
+        // The table's lobes in float64: all that is left is the fit's and the table's
+        let every: Vec<usize> = (0..24).collect();
+        let of_table = known.integrals(Quality::default(), &every, |_| &table);
+        let errors = known.judge(exact, &table, &of_table);
+        assert_eq!(errors.integral, 0.0);
+        assert!(errors.fit > 1e-3 && errors.fit < 0.1 && errors.table < 0.5 * errors.fit, "{errors:?}");
+        // Twice the light is an error of the integral alone
+        let twice: Vec<DVec3> = of_table.iter().map(|radiance| *radiance * 2.0).collect();
+        let wrong = known.judge(exact, &table, &twice);
+        assert!(wrong.integral > 0.5 && wrong.fit == errors.fit, "{wrong:?}");
+        // Of the truth itself nothing is left
+        assert!(known.judge(exact, &table, &known.truths).all.rmse < 1e-12);
+    }
+}

@@ -1,0 +1,190 @@
+//! What is measured: the rungs one by one, the yardsticks, and Monte Carlo.
+
+use super::points::LightKind;
+use arealight::kernels::{Kernel, SHADE};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+
+/// The shade kernel as others write it.
+pub static SHADE_YARDSTICK: Kernel = Kernel {
+    name: "shade_yardstick",
+    spirv: include_bytes!("../../spirv/shade_yardstick.spv"),
+    local_size: SHADE.local_size,
+    push_constant_size: SHADE.push_constant_size,
+    bindings: SHADE.bindings,
+    constants: &[0, 1],
+};
+
+/// Whose form factor a yardstick has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Yardstick {
+    /// That of real-time engines: nothing is clipped, a rational function, a sphere's horizon.
+    Practice = 0,
+    /// The textbook's: clip, normalise, arc cosine.
+    Textbook = 1,
+}
+
+/// A way to shade a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The library's.
+    Rung {
+        /// What the pipeline is specialised for.
+        effects: Effects,
+        /// On which rungs.
+        quality: Quality,
+    },
+    /// Somebody else's.
+    Yardstick {
+        /// What the pipeline is specialised for.
+        effects: Effects,
+        /// Whose.
+        which: Yardstick,
+    },
+    /// Monte Carlo.
+    Samples {
+        /// How many a pixel.
+        count: u32,
+    },
+}
+
+/// A method with its name.
+#[derive(Debug, Clone)]
+pub struct Named {
+    /// A short name.
+    pub name: &'static str,
+    /// What it does, in a few words.
+    pub description: &'static str,
+    /// The method.
+    pub method: Method,
+}
+
+/// Rungs over one kind of lights.
+#[derive(Debug, Clone)]
+pub struct Workload {
+    /// A short name.
+    pub name: &'static str,
+    /// What is shaded, in a few words.
+    pub description: &'static str,
+    /// The lights.
+    pub lights: LightKind,
+    /// What times are ratios to; its error is measured too.
+    pub methods: Vec<Named>,
+    /// A share of the points: the truth of images takes longer.
+    pub share: f64,
+}
+
+/// What points of the workloads call for, beside their lights.
+pub const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
+
+/// The rung that every host starts from.
+pub const DEFAULT: &str = "exact";
+
+/// The yardstick of the ratios.
+pub const PRACTICE: &str = "practice";
+
+/// Monte Carlo's numbers of samples.
+pub const SAMPLES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
+
+const EXACT: Quality = Quality {
+    form_factor: FormFactor::Exact,
+    horizon: Horizon::Cosine,
+    fresnel: Fresnel::ByF0,
+    lobes: Lobes::Table,
+    one_point: false,
+    footprint: Footprint::Round,
+};
+const DIFFERENCE: Quality = Quality { form_factor: FormFactor::ExactDifference, ..EXACT };
+
+/// Every workload; the first has the whole ladder.
+pub fn workloads() -> Vec<Workload> {
+    let rung = |name, description, effects: Effects, quality| Named {
+        name,
+        description,
+        method: Method::Rung { effects: LOBES | effects, quality },
+    };
+    let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
+    let yardstick =
+        |name, description, which| Named { name, description, method: Method::Yardstick { effects: LOBES, which } };
+    let practice = || yardstick(PRACTICE, "what engines ship: no clipping, a sphere's horizon", Yardstick::Practice);
+
+    let ladder = vec![
+        practice(),
+        yardstick("textbook", "clip, normalise, arc cosines", Yardstick::Textbook),
+        plain("bare", "no clipping, where that is right", Quality { horizon: Horizon::Bare, ..EXACT }),
+        plain("fast", "a shorter series for arcs", Quality { form_factor: FormFactor::Fast, ..EXACT }),
+        plain(DEFAULT, "the default: clipped in cosine space", EXACT),
+        plain("one point", "far lights from their centre", Quality { one_point: true, ..EXACT }),
+        plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
+        plain("split", "a lobe each for F0 and Schlick's part", Quality { fresnel: Fresnel::Split, ..EXACT }),
+        plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
+        plain("difference", "precise for small lights", DIFFERENCE),
+        plain(
+            "fast difference",
+            "the same by the shorter series",
+            Quality { form_factor: FormFactor::FastDifference, ..EXACT },
+        ),
+        plain(
+            "split + both",
+            "split, at both horizons",
+            Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..EXACT },
+        ),
+        plain(
+            "everything",
+            "split, both horizons, difference",
+            Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..DIFFERENCE },
+        ),
+    ];
+    let far = vec![
+        practice(),
+        plain(DEFAULT, "absolute precision", EXACT),
+        plain("one point", "from the centre where enough", Quality { one_point: true, ..EXACT }),
+        plain("difference", "relative precision", DIFFERENCE),
+        plain("difference, one point", "both", Quality { one_point: true, ..DIFFERENCE }),
+    ];
+    let textured = |name, description, footprint| {
+        rung(name, description, Effects::TEXTURED, Quality { footprint, ..EXACT })
+    };
+    vec![
+        Workload {
+            name: "quads",
+            description: "four quads, .5 to 8 times their size away",
+            lights: LightKind::Quads,
+            methods: ladder,
+            share: 1.0,
+        },
+        Workload {
+            name: "far",
+            description: "the same, 30 to 1000 times their size away",
+            lights: LightKind::Far,
+            methods: far,
+            share: 0.25,
+        },
+        Workload {
+            name: "textured",
+            description: "quads that show an image",
+            lights: LightKind::Textured,
+            methods: vec![
+                textured("round", "one fetch", Footprint::Round),
+                textured("ellipse", "four fetches", Footprint::Ellipse),
+                textured("split in two", "2 x 2 parts", Footprint::SplitTwo),
+                textured("split in four", "4 x 4 parts", Footprint::SplitFour),
+            ],
+            share: 0.125,
+        },
+        Workload {
+            name: "two-sided",
+            description: "quads that light both sides",
+            lights: LightKind::TwoSided,
+            methods: vec![rung(DEFAULT, "the default", Effects::TWO_SIDED, EXACT)],
+            share: 0.25,
+        },
+        Workload {
+            name: "stars",
+            description: "concave lights of ten vertices",
+            lights: LightKind::Stars,
+            methods: vec![rung(DEFAULT, "the default, any outline", Effects::POLYGON, EXACT)],
+            share: 0.25,
+        },
+    ]
+}

@@ -1,0 +1,113 @@
+//! The rungs of a quality as words, for files.
+
+use arealight::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use serde::{Deserialize, Serialize};
+
+/// A [`Quality`] in words, those of the options of `arealight render`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RungNames {
+    /// `--form-factor`
+    pub form_factor: String,
+    /// `--horizon`, or `bare`
+    pub horizon: String,
+    /// `--fresnel`
+    pub fresnel: String,
+    /// `--lobes`
+    pub lobes: String,
+    /// `--one-point`
+    pub one_point: bool,
+    /// `--footprint`
+    pub footprint: String,
+}
+
+/// A name that no rung has.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{field}: '{name}' is no rung; there are {}", .known.join(", "))]
+pub struct UnknownRung {
+    /// The field.
+    pub field: &'static str,
+    /// What it says.
+    pub name: String,
+    /// What it may say.
+    pub known: Vec<&'static str>,
+}
+
+const FORM_FACTORS: [(&str, FormFactor); 4] = [
+    ("exact", FormFactor::Exact),
+    ("fast", FormFactor::Fast),
+    ("exact-difference", FormFactor::ExactDifference),
+    ("fast-difference", FormFactor::FastDifference),
+];
+const HORIZONS: [(&str, Horizon); 3] =
+    [("cosine", Horizon::Cosine), ("both", Horizon::Both), ("bare", Horizon::Bare)];
+const FRESNELS: [(&str, Fresnel); 2] = [("by-f0", Fresnel::ByF0), ("split", Fresnel::Split)];
+const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
+const FOOTPRINTS: [(&str, Footprint); 4] = [
+    ("round", Footprint::Round),
+    ("ellipse", Footprint::Ellipse),
+    ("split-two", Footprint::SplitTwo),
+    ("split-four", Footprint::SplitFour),
+];
+
+impl From<Quality> for RungNames {
+    fn from(quality: Quality) -> Self {
+        fn name<T: Copy + PartialEq>(names: &[(&str, T)], rung: T) -> String {
+            let known = names.iter().find(|(_, known)| *known == rung);
+            known.map_or_else(String::new, |(name, _)| (*name).to_owned())
+        }
+        Self {
+            form_factor: name(&FORM_FACTORS, quality.form_factor),
+            horizon: name(&HORIZONS, quality.horizon),
+            fresnel: name(&FRESNELS, quality.fresnel),
+            lobes: name(&LOBES, quality.lobes),
+            one_point: quality.one_point,
+            footprint: name(&FOOTPRINTS, quality.footprint),
+        }
+    }
+}
+
+impl RungNames {
+    /// The rungs.
+    ///
+    /// # Errors
+    /// [`UnknownRung`] names the field.
+    pub fn quality(&self) -> Result<Quality, UnknownRung> {
+        fn find<T: Copy>(
+            names: &[(&'static str, T)],
+            field: &'static str,
+            name: &str,
+        ) -> Result<T, UnknownRung> {
+            let known = || names.iter().map(|(known, _)| *known).collect();
+            let found = names.iter().find(|(known, _)| *known == name).map(|(_, rung)| *rung);
+            found.ok_or_else(|| UnknownRung { field, name: name.to_owned(), known: known() })
+        }
+        Ok(Quality {
+            form_factor: find(&FORM_FACTORS, "form_factor", &self.form_factor)?,
+            horizon: find(&HORIZONS, "horizon", &self.horizon)?,
+            fresnel: find(&FRESNELS, "fresnel", &self.fresnel)?,
+            lobes: find(&LOBES, "lobes", &self.lobes)?,
+            one_point: self.one_point,
+            footprint: find(&FOOTPRINTS, "footprint", &self.footprint)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rung_has_a_name_and_is_found_by_it() {
+        for (_, form_factor) in FORM_FACTORS {
+            for (_, horizon) in HORIZONS {
+                for (_, footprint) in FOOTPRINTS {
+                    let quality = Quality { form_factor, horizon, footprint, ..Quality::default() };
+                    assert_eq!(RungNames::from(quality).quality(), Ok(quality));
+                }
+            }
+        }
+        let wrong = RungNames { lobes: "magic".into(), ..RungNames::from(Quality::default()) };
+        let error = wrong.quality().unwrap_err().to_string();
+        assert_eq!(error, "lobes: 'magic' is no rung; there are table, formula");
+    }
+}

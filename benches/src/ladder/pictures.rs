@@ -1,0 +1,110 @@
+//! A scene through some of the methods, to be seen.
+
+use super::errors::Errors;
+use super::frame::Frame;
+use super::methods::{Method, Yardstick};
+use crate::textures::is_software;
+use arealight::{Effects, FormFactor, Fresnel, Horizon, LightTable, Quality};
+use arealight_engine::{Engine, EngineError, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_vk::TableFormat;
+use glam::{DVec3, Vec3};
+
+/// What a method makes of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// The method's name.
+    pub name: &'static str,
+    /// What surfaces reflect, row after row from the top.
+    pub reflected: Vec<DVec3>,
+    /// Against the reference.
+    pub errors: Errors,
+    /// Milliseconds of the frame.
+    pub milliseconds: f64,
+}
+
+/// The pictures.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pictures {
+    /// The scene's name.
+    pub scene: String,
+    /// Its lights.
+    pub lights: usize,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// What the camera sees of the lights.
+    pub emitted: Vec<DVec3>,
+    /// Monte Carlo of many samples.
+    pub reference: Vec<DVec3>,
+    /// How many.
+    pub samples: u32,
+    /// Each method's.
+    pub shown: Vec<Picture>,
+}
+
+const SIZE: [u32; 2] = [320, 180];
+
+/// How often progress is told of.
+pub const STEPS: u64 = 8;
+
+/// Runs a frame so often, for its time.
+const REPEATS: usize = 5;
+
+/// What is shown, but for what the scene's lights are too much for.
+fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
+    let effects = scene.effects();
+    let rung = |quality| Method::Rung { effects, quality };
+    let exact = Quality::default();
+    let both = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..exact };
+    let mut methods = vec![
+        ("practice", Method::Yardstick { effects, which: Yardstick::Practice }),
+        ("exact", rung(exact)),
+        ("split", rung(Quality { fresnel: Fresnel::Split, ..exact })),
+        ("both horizons", rung(Quality { horizon: Horizon::Both, ..exact })),
+        ("everything", rung(Quality { form_factor: FormFactor::ExactDifference, ..both })),
+        ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
+        ("Monte Carlo, 16 samples", Method::Samples { count: 16 }),
+    ];
+    let beyond = Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED;
+    if effects.intersects(beyond) {
+        methods.remove(0);
+    }
+    methods
+}
+
+/// Renders a scene by every method, and by `samples` of Monte Carlo.
+pub fn make(
+    engine: &Engine,
+    table: &LightTable,
+    scene: &Scene,
+    samples: u32,
+    progress: &dyn Fn(u64),
+) -> Result<Pictures, EngineError> {
+    let mut engine = Engine::new(engine.host().clone(), table, TableFormat::default())?;
+    engine.load_scene_textures(scene, 256)?;
+    let size = if is_software(engine.host()) { SIZE } else { SIZE.map(|side| side * 2) };
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.framing_camera(aspect));
+    let buffers = SceneBuffers::new(scene, camera.position)?;
+    let constants = buffers.constants(&camera, size, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(&engine, &buffers, &scene.lights, constants, size)?;
+    renderer.visibility()?;
+    let emitted = renderer.radiance()?.into_iter().map(|texel| texel.truncate().as_dvec3()).collect();
+    let origin = Vec3::from(constants.camera);
+    let frame = Frame::new(&engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
+
+    let reference = frame.shaded(&frame.ready(Method::Samples { count: samples })?, 1)?;
+    progress(1);
+    let mut shown = vec![];
+    for (name, method) in methods(scene) {
+        let ready = frame.ready(method)?;
+        let reflected = frame.shaded(&ready, 2)?;
+        let errors = Errors::of(reflected.iter().zip(&reference));
+        let seconds = (0..REPEATS).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
+        let milliseconds = 1e3 * crate::cost::quantile(&seconds, 0.5);
+        shown.push(Picture { name, reflected, errors, milliseconds });
+        progress(1);
+    }
+    let (lights, scene) = (scene.lights.len(), scene.name.clone());
+    Ok(Pictures { scene, lights, size, emitted, reference, samples, shown })
+}

@@ -1,0 +1,191 @@
+//! What was found, for people: as text for a terminal, as Markdown for the documents.
+
+use super::{Ladder, Row, Spread};
+use std::fmt::Write as _;
+
+/// A table: heads, and rows of cells.
+struct Table {
+    heads: Vec<&'static str>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    fn to_text(&self) -> String {
+        let heads: Vec<String> = self.heads.iter().map(|head| (*head).to_owned()).collect();
+        let width = |column: usize| {
+            let all = self.rows.iter().chain([&heads]);
+            all.filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = (0..heads.len()).map(width).collect();
+        let mut text = String::new();
+        for row in [&heads].into_iter().chain(&self.rows) {
+            let mut line = String::from(" ");
+            for (index, (cell, width)) in row.iter().zip(&widths).enumerate() {
+                let _ = if index == 0 { write!(line, " {cell:<width$}") } else { write!(line, "  {cell:>width$}") };
+            }
+            text.push_str(line.trim_end());
+            text.push('\n');
+        }
+        text
+    }
+
+    fn to_markdown(&self) -> String {
+        let mut text = format!("| {} |\n|{}\n", self.heads.join(" | "), "---|".repeat(self.heads.len()));
+        for row in &self.rows {
+            let _ = writeln!(text, "| {} |", row.join(" | "));
+        }
+        text
+    }
+}
+
+/// Three digits, and as few zeros as can be.
+pub fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        tiny if tiny < 1e-3 => format!("{value:.1e}"),
+        small if small < 0.1 => format!("{value:.4}"),
+        middling if middling < 9.995 => format!("{value:.2}"),
+        large if large < 99.95 => format!("{value:.1}"),
+        huge if huge < 1e6 => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// A share in percent.
+pub fn percent(value: f64) -> String {
+    let percent = value * 100.0;
+    match percent.abs() {
+        0.0 => "0 %".to_owned(),
+        tiny if tiny < 1e-3 => format!("{percent:.0e} %"),
+        small if small < 0.1 => format!("{percent:.3} %"),
+        _ => format!("{} %", number(percent)),
+    }
+}
+
+fn spread(spread: &Spread) -> String {
+    let [low, high] = spread.quartiles;
+    format!("{} ({} to {})", number(spread.median), number(low), number(high))
+}
+
+impl Ladder {
+    /// The rows of some lights.
+    pub fn rows_of(&self, lights: &str) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.lights == lights)
+    }
+
+    /// The first lights, which have the whole ladder.
+    pub fn first(&self) -> &str {
+        self.workloads.first().map_or("", |(name, _)| name)
+    }
+
+    fn ladder(&self, lights: &str) -> Table {
+        let row = |row: &Row| {
+            let (errors, time) = (&row.errors, &row.time);
+            let samples = |pick: fn(&super::Equal) -> f64| row.samples.as_ref().map_or_else(String::new, |s| number(pick(s)));
+            vec![
+                row.name.clone(),
+                percent(errors.all.rmse),
+                percent(errors.fit),
+                percent(errors.table),
+                percent(errors.integral),
+                percent(errors.all.p99),
+                percent(errors.all.worst),
+                percent(errors.all.bias),
+                errors.all.not_finite.to_string(),
+                number(time.milliseconds.median),
+                spread(&time.ratio),
+                samples(|equal| equal.error),
+                samples(|equal| equal.time),
+            ]
+        };
+        Table {
+            heads: vec![
+                "method", "RMSE", "of it fit", "table", "integral", "p99", "worst", "bias", "NaN", "ms", "time, practice = 1",
+                "samples, equal error", "equal time",
+            ],
+            rows: self.rows_of(lights).map(row).collect(),
+        }
+    }
+
+    fn samples(&self) -> Table {
+        let row = |samples: &super::Samples| {
+            vec![
+                samples.count.to_string(),
+                percent(samples.errors.rmse),
+                percent(samples.errors.p99),
+                percent(samples.errors.worst),
+                number(samples.milliseconds),
+                if samples.measured { "measured" } else { "in proportion" }.to_owned(),
+            ]
+        };
+        Table {
+            heads: vec!["samples", "RMSE", "p99", "worst", "ms", "time is"],
+            rows: self.monte_carlo.iter().map(row).collect(),
+        }
+    }
+
+    fn effects(&self) -> Table {
+        let row = |effect: &super::EffectCost| {
+            let used = effect.used.as_ref().map_or_else(|| "-".to_owned(), spread);
+            vec![effect.effect.clone(), spread(&effect.on), used]
+        };
+        Table {
+            heads: vec!["effect", "turned on, time without it = 1", "lights that call for it, quads = 1"],
+            rows: self.effects.iter().map(row).collect(),
+        }
+    }
+
+    fn scaling(&self, by_lights: bool) -> Table {
+        let growths = if by_lights { &self.scaling.by_lights } else { &self.scaling.by_pixels };
+        let mut heads = vec![if by_lights { "lights" } else { "pixels" }];
+        heads.extend(["practice, ms", "exact", "Monte Carlo, 1 sample"]);
+        let steps = growths.first().map_or(0, |growth| growth.steps.len());
+        let row = |index: usize| {
+            let count = growths.first().map_or(0, |growth| growth.steps[index].0);
+            let cells = growths.iter().map(|growth| number(growth.steps[index].1.median));
+            std::iter::once(count.to_string()).chain(cells).collect()
+        };
+        Table { heads, rows: (0..steps).map(row).collect() }
+    }
+
+    /// What the numbers are, in words.
+    fn legend(&self) -> String {
+        let clock = if self.software {
+            "processor time of all threads over their number: what the clock would say on an idle machine"
+        } else {
+            "GPU time, by timestamps"
+        };
+        format!(
+            "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are of a frame of {} pixels \
+             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles.",
+            self.points, self.pixels, self.scaling.lights, self.rounds
+        )
+    }
+
+    /// For a terminal.
+    pub fn to_text(&self) -> String {
+        let mut text = format!("{}\n{}\n", self.device, self.legend());
+        for (name, description) in &self.workloads {
+            let _ = write!(text, "\n{name}: {description}\n{}", self.ladder(name).to_text());
+        }
+        let _ = write!(text, "\nMonte Carlo\n{}", self.samples().to_text());
+        let _ = write!(text, "\neffects\n{}", self.effects().to_text());
+        let _ = write!(text, "\ntime by lights, {} pixels\n{}", self.scaling.pixels, self.scaling(true).to_text());
+        let _ = write!(text, "\ntime by pixels, {} lights\n{}", self.scaling.lights, self.scaling(false).to_text());
+        let _ = writeln!(text, "\n{:.0} s", self.seconds);
+        text
+    }
+
+    /// For a document.
+    pub fn to_markdown(&self) -> String {
+        let mut text = format!("`{}` on {}.\n\n{}\n", self.command, self.device, self.legend());
+        for (name, description) in &self.workloads {
+            let _ = write!(text, "\n### {name}: {description}\n\n{}", self.ladder(name).to_markdown());
+        }
+        let _ = write!(text, "\n### Monte Carlo\n\n{}", self.samples().to_markdown());
+        let _ = write!(text, "\n### Effects\n\n{}", self.effects().to_markdown());
+        let _ = write!(text, "\n### Time by lights, {} pixels\n\n{}", self.scaling.pixels, self.scaling(true).to_markdown());
+        let _ = write!(text, "\n### Time by pixels, {} lights\n\n{}", self.scaling.lights, self.scaling(false).to_markdown());
+        text
+    }
+}

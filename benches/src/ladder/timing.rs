@@ -1,0 +1,108 @@
+//! Time: every method in turn, round after round, as ratios to the same yardstick in the same round.
+
+use super::frame::{Frame, Ready};
+use super::methods::Method;
+use crate::cost::quantile;
+use arealight_engine::EngineError;
+use serde::{Deserialize, Serialize};
+
+/// A median with its quartiles.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The median over the rounds.
+    pub median: f64,
+    /// The quartiles.
+    pub quartiles: [f64; 2],
+}
+
+impl Spread {
+    /// Of one value a round.
+    pub fn of(values: &[f64]) -> Self {
+        let quantile = |part| quantile(values, part);
+        Self { median: quantile(0.5), quartiles: [quantile(0.25), quantile(0.75)] }
+    }
+
+    /// Multiplied.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self { median: self.median * factor, quartiles: self.quartiles.map(|value| value * factor) }
+    }
+}
+
+/// What a method costs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Time {
+    /// Milliseconds a light and a megapixel, all in: the frame's time over its lights and pixels.
+    pub milliseconds: Spread,
+    /// The ratio to the practice over quads, in the same round.
+    pub ratio: Spread,
+    /// Of them, milliseconds that a megapixel costs with no light.
+    pub fixed: f64,
+    /// Milliseconds that each light adds to a megapixel.
+    pub per_light: f64,
+}
+
+/// A method on a frame, with what its runs took: with one light, and with all.
+pub struct Entry<'a> {
+    frame: &'a Frame<'a>,
+    ready: Ready,
+    seconds: [Vec<f64>; 2],
+}
+
+/// The lights of the frames.
+const ALL: u32 = super::points::LIGHTS as u32;
+
+impl<'a> Entry<'a> {
+    /// Makes the pipeline.
+    pub fn new(frame: &'a Frame<'a>, method: Method) -> Result<Self, EngineError> {
+        Ok(Self { frame, ready: frame.ready(method)?, seconds: [vec![], vec![]] })
+    }
+
+    /// Its time, as ratios to the yardstick's.
+    pub fn time(&self, yardstick: &Self) -> Time {
+        let [one, all] = &self.seconds;
+        let ratios: Vec<f64> = all.iter().zip(&yardstick.seconds[1]).map(|(a, b)| a / b).collect();
+        let added: Vec<f64> = one.iter().zip(all).map(|(one, all)| (all - one) / f64::from(ALL - 1)).collect();
+        let per_megapixel = 1e3 / (self.frame.pixels() as f64 * 1e-6);
+        let milliseconds = Spread::of(all).times(per_megapixel);
+        let per_light = (quantile(&added, 0.5) * per_megapixel).clamp(0.0, milliseconds.median);
+        Time {
+            milliseconds: milliseconds.times(1.0 / f64::from(ALL)),
+            ratio: Spread::of(&ratios),
+            fixed: (milliseconds.median - per_light * f64::from(ALL)).max(0.0),
+            per_light,
+        }
+    }
+}
+
+/// Runs every entry in turn: a round to warm up, then `rounds`. `progress` is told of each round.
+pub fn measure(
+    entries: &mut [Entry<'_>],
+    rounds: usize,
+    progress: &dyn Fn(u64),
+) -> Result<(), EngineError> {
+    for round in 0..=rounds {
+        for entry in &mut *entries {
+            for (lights, seconds) in [1, ALL].into_iter().zip(&mut entry.seconds) {
+                let took = entry.frame.run(&entry.ready, lights, round as u32)?;
+                if round > 0 {
+                    seconds.push(took);
+                }
+            }
+        }
+        progress(1);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_is_a_median_between_quartiles() {
+        let spread = Spread::of(&[5.0, 1.0, 4.0, 2.0, 3.0]);
+        assert_eq!((spread.median, spread.quartiles), (3.0, [2.0, 4.0]));
+        assert_eq!(spread.times(2.0).quartiles, [4.0, 8.0]);
+    }
+}

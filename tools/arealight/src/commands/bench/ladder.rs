@@ -1,0 +1,75 @@
+//! `arealight bench` without a subcommand
+
+use super::Ends;
+use crate::failure::Failure;
+use crate::progress;
+use arealight_benches::ladder::{self, Options};
+use arealight_scene::Scene;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// What to run, and where to write it.
+#[derive(clap::Args)]
+pub struct LadderArguments {
+    /// Fewer points and rounds: half a minute instead of some.
+    #[arg(long)]
+    quick: bool,
+    /// Points whose error is measured.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..=100_000))]
+    points: Option<u32>,
+    /// Rounds in which time is taken.
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    rounds: Option<u32>,
+    /// Another seed makes other points.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Write the report: one page that needs nothing else.
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    ends: Ends,
+}
+
+impl LadderArguments {
+    fn options(&self) -> Options {
+        let base = if self.quick { Options::QUICK } else { Options::FULL };
+        Options {
+            points: self.points.map_or(base.points, |points| points as usize),
+            rounds: self.rounds.map_or(base.rounds, |rounds| rounds as usize),
+            seed: self.seed,
+            ..base
+        }
+    }
+
+    /// The command that runs the same again.
+    fn command(&self) -> String {
+        let mut command = "arealight bench".to_owned();
+        if self.quick {
+            command += " --quick";
+        }
+        for (option, value) in [("--points", self.points), ("--rounds", self.rounds)] {
+            command += &value.map(|value| format!(" {option} {value}")).unwrap_or_default();
+        }
+        if self.seed != 1 {
+            command += &format!(" --seed {}", self.seed);
+        }
+        command + " --html report.html"
+    }
+}
+
+pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
+    let options = arguments.options();
+    let scene = Scene::from_bytes(include_bytes!("../../../../../scenes/demo.glb"), "demo")
+        .map_err(|error| Failure::input("demo (built in)", error))?;
+    let host = arguments.ends.host()?;
+
+    let bar = progress::bar(options.steps(), "steps");
+    let found = ladder::run(&host, &arealight_table::ggx(), &scene, &options, &|count| bar.inc(count));
+    bar.finish_and_clear();
+    let (mut found, pictures) = found.map_err(|error| Failure::Device(error.to_string()))?;
+    found.command = arguments.command();
+
+    let _ = pictures;
+    arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
+    Ok(ExitCode::SUCCESS)
+}
