@@ -34,7 +34,7 @@ use methods::{LOBES, Method, Named, SAMPLES, Workload, workloads};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Instant;
-use timing::Entry;
+use timing::{Clock, Entry};
 
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ impl Options {
     /// How often progress is told of, in all.
     pub fn steps(&self) -> u64 {
         let points: usize = workloads().iter().map(|workload| self.points_of(workload)).sum();
-        points as u64 + self.rounds as u64 + 1 + scaling::STEPS + pictures::STEPS
+        points as u64 + self.rounds as u64 + 2 + scaling::STEPS + pictures::STEPS
     }
 
     fn points_of(&self, workload: &Workload) -> usize {
@@ -185,54 +185,32 @@ pub fn run(
         }
     }
 
-    // Time: a patch a point
-    let buffers = workloads.iter().map(|workload| patches(&engine, workload, options));
-    let buffers = buffers.collect::<Result<Vec<GBuffer>, _>>()?;
-    let frames = workloads.iter().zip(&buffers).map(|(workload, buffer)| {
-        Frame::new(&engine, buffer, &points::lights(workload.lights), DVec3::ZERO, Vec3::ZERO)
-    });
-    let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
+    // Time: a patch a point. Once to fill the driver's cache: some make other code the first time than they load later
     let effects: Vec<Effects> = Effects::all().iter().collect();
-    let mut entries = vec![];
-    for (workload, frame) in workloads.iter().zip(&frames) {
-        for named in &workload.methods {
-            entries.push(Entry::new(frame, named.method)?);
-        }
-    }
-    let methods = entries.len();
-    for effect in &effects {
-        let method = Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
-        entries.push(Entry::new(&frames[0], method)?);
-    }
-    for count in TIMED_SAMPLES {
-        entries.push(Entry::new(&frames[0], Method::Samples { count })?);
-    }
-    timing::measure(&mut entries, options.rounds, progress)?;
+    time(&engine, &workloads, &effects, options.seed, 0, progress)?;
+    let engine = self::engine(host, table, &textures)?;
+    let timed = time(&engine, &workloads, &effects, options.seed, options.rounds, progress)?;
 
-    let yardstick = &entries[0];
+    let yardstick = &timed.methods[0];
     let rows: Vec<Row> = rows
         .into_iter()
-        .zip(&entries)
-        .map(|((workload, named, errors), entry)| row(workload, named, errors, entry.time(yardstick)))
+        .zip(&timed.methods)
+        .map(|((workload, named, errors), clock)| row(workload, named, errors, clock.time(yardstick)))
         .collect();
     let default = rows.iter().position(|row| row.name == DEFAULT).unwrap_or(0);
-    let effects = effects.iter().zip(&entries[methods..]).map(|(effect, entry)| {
-        let on = entry.time(&entries[default]).ratio;
+    let effects = effects.iter().zip(&timed.effects).map(|(effect, clock)| {
+        let default = &timed.methods[default];
         // Without a lobe it is the other way round
-        let is_lobe = LOBES.contains(*effect);
-        let on = if is_lobe { inverse(on) } else { on };
+        let on = if LOBES.contains(*effect) { default.ratio(clock) } else { clock.ratio(default) };
         let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
         let all = workloads.iter().flat_map(|workload| &workload.methods);
-        let used = all.zip(&entries).find(|(named, _)| calls(named));
-        let used = used.map(|(_, entry)| entry.time(&entries[default]).ratio);
+        let used = all.zip(&timed.methods).find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
         EffectCost { effect: effect.names().join(", "), on, used }
     });
     let effects = effects.collect();
-    let timed = entries[entries.len() - TIMED_SAMPLES.len()..].iter().map(|entry| entry.time(yardstick));
-    let monte_carlo = with_time(monte_carlo, &timed.collect::<Vec<_>>());
+    let times: Vec<Time> = timed.samples.iter().map(|clock| clock.time(yardstick)).collect();
+    let monte_carlo = with_time(monte_carlo, &times);
     let rows = rows.into_iter().map(|row| with_samples(row, &monte_carlo)).collect();
-    let pixels = frames[0].pixels() as u32;
-    drop(entries);
 
     let scaling = scaling::measure(&engine, options.rounds.div_ceil(3), progress)?;
     let pictures = pictures::make(&engine, table, scene, options.reference, progress)?;
@@ -243,7 +221,7 @@ pub fn run(
         points: options.points,
         rounds: options.rounds,
         seed: options.seed,
-        pixels,
+        pixels: timed.pixels,
         seconds: start.elapsed().as_secs_f64(),
         rows,
         monte_carlo,
@@ -254,12 +232,57 @@ pub fn run(
     Ok((ladder, pictures))
 }
 
+/// What the frames took.
+struct Timed {
+    pixels: u32,
+    methods: Vec<Clock>,
+    effects: Vec<Clock>,
+    samples: Vec<Clock>,
+}
+
+/// Times every method, the default with each effect changed, and Monte Carlo.
+fn time(
+    engine: &Engine,
+    workloads: &[Workload],
+    effects: &[Effects],
+    seed: u64,
+    rounds: usize,
+    progress: &dyn Fn(u64),
+) -> Result<Timed, EngineError> {
+    let buffers = workloads.iter().map(|workload| patches(engine, workload, seed));
+    let buffers = buffers.collect::<Result<Vec<GBuffer>, _>>()?;
+    let frames = workloads.iter().zip(&buffers).map(|(workload, buffer)| {
+        Frame::new(engine, buffer, &points::lights(workload.lights), DVec3::ZERO, Vec3::ZERO)
+    });
+    let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
+    let first = &frames[0];
+    let changed = |effect: &Effects| Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
+
+    let mut entries = vec![];
+    for (workload, frame) in workloads.iter().zip(&frames) {
+        for named in &workload.methods {
+            entries.push(Entry::new(frame, named.method)?);
+        }
+    }
+    let methods = entries.len();
+    for effect in effects {
+        entries.push(Entry::new(first, changed(effect))?);
+    }
+    for count in TIMED_SAMPLES {
+        entries.push(Entry::new(first, Method::Samples { count })?);
+    }
+    let mut clocks = timing::measure(&entries, rounds, progress)?;
+    let samples = clocks.split_off(methods + effects.len());
+    let effects = clocks.split_off(methods);
+    Ok(Timed { pixels: first.pixels() as u32, methods: clocks, effects, samples })
+}
+
 /// The numbers of samples that are timed; more take in proportion.
 const TIMED_SAMPLES: [u32; 3] = [1, 4, 16];
 
 /// A G-buffer of many pixels: software has a hundredth of a GPU's throughput.
-fn patches(engine: &Engine, workload: &Workload, options: &Options) -> Result<GBuffer, EngineError> {
-    let points = points::points(workload.lights, 512, options.seed);
+fn patches(engine: &Engine, workload: &Workload, seed: u64) -> Result<GBuffer, EngineError> {
+    let points = points::points(workload.lights, 512, seed);
     let (columns, rows, side) = if is_software(engine.host()) { (32, 16, 8) } else { (128, 64, 16) };
     frame::g_buffer(engine, &points, columns, rows, side)
 }
@@ -325,11 +348,6 @@ fn with_samples(mut row: Row, monte_carlo: &[Samples]) -> Row {
         row.samples = Some(Equal { error, time: time.max(0.0) });
     }
     row
-}
-
-fn inverse(spread: Spread) -> Spread {
-    let [low, high] = spread.quartiles;
-    Spread { median: 1.0 / spread.median, quartiles: [1.0 / high, 1.0 / low] }
 }
 
 fn row(workload: &Workload, named: &Named, errors: SplitErrors, time: Time) -> Row {

@@ -114,8 +114,6 @@ impl<'a> Frame<'a> {
 
     /// Makes a method's pipeline.
     pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
-        let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
-        let radiance = Resource::StorageImage { view: self.g_buffer.radiance.view() };
         let (kernel, specialization) = match method {
             Method::Rung { effects, quality } => {
                 let (position, output) = (PositionSource::Position, Output::Overwrite);
@@ -127,20 +125,30 @@ impl<'a> Frame<'a> {
             }
             Method::Samples { .. } => (&REFERENCE, vec![]),
         };
-        let mut resources = vec![];
-        if !matches!(method, Method::Samples { .. }) {
-            resources.push(self.engine.table());
-        }
-        resources.extend([buffer(&self.lights), buffer(&self.vertices)]);
-        if matches!(method, Method::Samples { .. }) {
-            resources.extend([buffer(&self.sampling), buffer(&self.triangles)]);
-        }
-        resources.extend(self.g_buffer.sampled());
-        resources.extend([radiance, self.engine.light_textures()]);
+        let resources: Vec<Resource> = kernel.bindings.iter().map(|binding| self.resource(binding.name)).collect();
         let pass = self.engine.passes().pass(kernel, &specialization)?;
         // SAFETY: The frame and the engine outlive what is made of them here, and submissions are waited for.
         let set = unsafe { self.engine.passes().bind(&pass, &resources) }?;
         Ok(Ready { pass, set, method })
+    }
+
+    /// What a kernel's binding is for. Shapes, of which there are none, have any buffer.
+    fn resource(&self, binding: &str) -> Resource {
+        let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
+        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        match binding {
+            "table_image" => self.engine.table(),
+            "light_textures" => self.engine.light_textures(),
+            "light_vertices" => buffer(&self.vertices),
+            "light_sampling" => buffer(&self.sampling),
+            "light_triangles" => buffer(&self.triangles),
+            "g_position" => position,
+            "g_normal" => normal,
+            "g_base_color" => base_color,
+            "g_specular" => specular,
+            "radiance_image" => Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            _ => buffer(&self.lights),
+        }
     }
 
     /// Runs a method with all lights, or with the first of them. Seconds of the device; see [`device_seconds`].
@@ -153,6 +161,7 @@ impl<'a> Frame<'a> {
                 position_from_clip: Mat4::IDENTITY.to_cols_array_2d(),
                 camera: self.camera.to_array(),
                 light_count,
+                shape_count: 0,
             };
             return device_seconds(self.engine, |commands| {
                 // SAFETY: `commands` is being recorded, outside a render pass.

@@ -42,48 +42,63 @@ pub struct Time {
     pub per_light: f64,
 }
 
-/// A method on a frame, with what its runs took: with one light, and with all.
+/// A method on a frame.
 pub struct Entry<'a> {
     frame: &'a Frame<'a>,
     ready: Ready,
+}
+
+impl<'a> Entry<'a> {
+    /// Makes the pipeline.
+    pub fn new(frame: &'a Frame<'a>, method: Method) -> Result<Self, EngineError> {
+        Ok(Self { frame, ready: frame.ready(method)? })
+    }
+}
+
+/// What the runs of a method took, in seconds: with one light, and with all.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clock {
+    pixels: usize,
     seconds: [Vec<f64>; 2],
 }
 
 /// The lights of the frames.
 const ALL: u32 = super::points::LIGHTS as u32;
 
-impl<'a> Entry<'a> {
-    /// Makes the pipeline.
-    pub fn new(frame: &'a Frame<'a>, method: Method) -> Result<Self, EngineError> {
-        Ok(Self { frame, ready: frame.ready(method)?, seconds: [vec![], vec![]] })
-    }
-
-    /// Its time, as ratios to the yardstick's.
+impl Clock {
+    /// The time, as a ratio to a yardstick's.
     pub fn time(&self, yardstick: &Self) -> Time {
         let [one, all] = &self.seconds;
-        let ratios: Vec<f64> = all.iter().zip(&yardstick.seconds[1]).map(|(a, b)| a / b).collect();
         let added: Vec<f64> = one.iter().zip(all).map(|(one, all)| (all - one) / f64::from(ALL - 1)).collect();
-        let per_megapixel = 1e3 / (self.frame.pixels() as f64 * 1e-6);
+        let per_megapixel = 1e3 / (self.pixels as f64 * 1e-6);
         let milliseconds = Spread::of(all).times(per_megapixel);
-        let per_light = (quantile(&added, 0.5) * per_megapixel).clamp(0.0, milliseconds.median);
+        let per_light = (quantile(&added, 0.5) * per_megapixel).clamp(0.0, milliseconds.median / f64::from(ALL));
         Time {
             milliseconds: milliseconds.times(1.0 / f64::from(ALL)),
-            ratio: Spread::of(&ratios),
+            ratio: self.ratio(yardstick),
             fixed: (milliseconds.median - per_light * f64::from(ALL)).max(0.0),
             per_light,
         }
+    }
+
+    /// The time with all lights over another's, round by round.
+    pub fn ratio(&self, other: &Self) -> Spread {
+        let ratios: Vec<f64> = self.seconds[1].iter().zip(&other.seconds[1]).map(|(a, b)| a / b).collect();
+        Spread::of(&ratios)
     }
 }
 
 /// Runs every entry in turn: a round to warm up, then `rounds`. `progress` is told of each round.
 pub fn measure(
-    entries: &mut [Entry<'_>],
+    entries: &[Entry<'_>],
     rounds: usize,
     progress: &dyn Fn(u64),
-) -> Result<(), EngineError> {
+) -> Result<Vec<Clock>, EngineError> {
+    let clock = |entry: &Entry<'_>| Clock { pixels: entry.frame.pixels(), seconds: [vec![], vec![]] };
+    let mut clocks: Vec<Clock> = entries.iter().map(clock).collect();
     for round in 0..=rounds {
-        for entry in &mut *entries {
-            for (lights, seconds) in [1, ALL].into_iter().zip(&mut entry.seconds) {
+        for (entry, clock) in entries.iter().zip(&mut clocks) {
+            for (lights, seconds) in [1, ALL].into_iter().zip(&mut clock.seconds) {
                 let took = entry.frame.run(&entry.ready, lights, round as u32)?;
                 if round > 0 {
                     seconds.push(took);
@@ -92,7 +107,7 @@ pub fn measure(
         }
         progress(1);
     }
-    Ok(())
+    Ok(clocks)
 }
 
 #[cfg(test)]
@@ -104,5 +119,14 @@ mod tests {
         let spread = Spread::of(&[5.0, 1.0, 4.0, 2.0, 3.0]);
         assert_eq!((spread.median, spread.quartiles), (3.0, [2.0, 4.0]));
         assert_eq!(spread.times(2.0).quartiles, [4.0, 8.0]);
+    }
+
+    #[test]
+    fn a_light_is_told_from_the_frame() {
+        // A megapixel: a millisecond, and two for each light
+        let clock = Clock { pixels: 1_000_000, seconds: [vec![0.003; 3], vec![0.009; 3]] };
+        let time = clock.time(&Clock { pixels: 1_000_000, seconds: [vec![0.001; 3], vec![0.018; 3]] });
+        assert!((time.per_light - 2.0).abs() < 1e-9 && (time.fixed - 1.0).abs() < 1e-9, "{time:?}");
+        assert!((time.milliseconds.median - 2.25).abs() < 1e-9 && (time.ratio.median - 0.5).abs() < 1e-9);
     }
 }
