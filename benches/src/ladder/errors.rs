@@ -132,7 +132,8 @@ impl Known {
         let judged: Vec<usize> =
             (0..self.points.len()).filter(|index| is_right(quality, self, *index, table)).collect();
         let of_table = self.integrals(quality, &judged, |_| table);
-        let of_fit = self.integrals(Quality { lobes: Lobes::Table, ..quality }, &judged, |index| &self.fits[index]);
+        let of_fit =
+            self.integrals(Quality { lobes: Lobes::Table, ..quality }, &judged, |index| &self.fits[index]);
         let truths: Vec<DVec3> = judged.iter().map(|index| self.truths[*index]).collect();
         let found: Vec<DVec3> = judged.iter().map(|index| found[*index]).collect();
 

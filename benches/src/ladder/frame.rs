@@ -41,7 +41,8 @@ pub fn g_buffer(
         place.extend(1.0).to_array()
     });
     let normal = texels(&|point, _| point.normal.extend(point.material.roughness).to_array());
-    let base_color = texels(&|point, _| point.material.base_color.extend(point.material.metalness).to_array());
+    let base_color =
+        texels(&|point, _| point.material.base_color.extend(point.material.metalness).to_array());
     let specular =
         texels(&|point, _| point.material.dielectric_f0.extend(point.material.dielectric_f90).to_array());
     g_buffer.position.upload(&position, Usage::COMPUTE_READ)?;
@@ -125,7 +126,8 @@ impl<'a> Frame<'a> {
             }
             Method::Samples { .. } => (&REFERENCE, vec![]),
         };
-        let resources: Vec<Resource> = kernel.bindings.iter().map(|binding| self.resource(binding.name)).collect();
+        let resources: Vec<Resource> =
+            kernel.bindings.iter().map(|binding| self.resource(binding.name)).collect();
         let pass = self.engine.passes().pass(kernel, &specialization)?;
         // SAFETY: The frame and the engine outlive what is made of them here, and submissions are waited for.
         let set = unsafe { self.engine.passes().bind(&pass, &resources) }?;

@@ -104,9 +104,13 @@ pub fn workloads() -> Vec<Workload> {
         method: Method::Rung { effects: LOBES | effects, quality },
     };
     let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
-    let yardstick =
-        |name, description, which| Named { name, description, method: Method::Yardstick { effects: LOBES, which } };
-    let practice = || yardstick(PRACTICE, "what engines ship: no clipping, a sphere's horizon", Yardstick::Practice);
+    let yardstick = |name, description, which| Named {
+        name,
+        description,
+        method: Method::Yardstick { effects: LOBES, which },
+    };
+    let practice =
+        || yardstick(PRACTICE, "what engines ship: no clipping, a sphere's horizon", Yardstick::Practice);
 
     let ladder = vec![
         practice(),

@@ -87,7 +87,8 @@ pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
 pub fn many_lights(count: usize) -> Vec<PolygonLight> {
     let mut random = Random::new(3);
     let light = |index| {
-        let center = DVec3::new(random.between(-4.0, 4.0), random.between(-1.0, 3.0), random.between(-8.0, -2.0));
+        let center =
+            DVec3::new(random.between(-4.0, 4.0), random.between(-1.0, 3.0), random.between(-8.0, -2.0));
         let (u, v) = random.direction().any_orthonormal_pair();
         let (u, v) = (u * random.between(0.05, 0.3), v * random.between(0.05, 0.3));
         PolygonLight {
@@ -112,7 +113,8 @@ fn point(kind: LightKind, index: usize, random: &mut Random) -> Point {
     loop {
         // Somewhere before the light
         let size = half_width.max(half_height);
-        let (nearest, farthest): (f64, f64) = if kind == LightKind::Far { (30.0, 1000.0) } else { (0.5, 8.0) };
+        let (nearest, farthest): (f64, f64) =
+            if kind == LightKind::Far { (30.0, 1000.0) } else { (0.5, 8.0) };
         let distance = size * random.between(nearest.ln(), farthest.ln()).exp();
         let mut away = random.direction();
         if kind != LightKind::TwoSided {

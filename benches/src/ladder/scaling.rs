@@ -95,12 +95,7 @@ pub fn measure(engine: &Engine, rounds: usize, progress: &dyn Fn(u64)) -> Result
             progress(1);
         }
     }
-    Ok(Scaling {
-        pixels: crowd.pixels() as u32,
-        by_lights,
-        lights: super::points::LIGHTS as u32,
-        by_pixels,
-    })
+    Ok(Scaling { pixels: crowd.pixels() as u32, by_lights, lights: super::points::LIGHTS as u32, by_pixels })
 }
 
 /// How often progress is told of.

@@ -21,7 +21,11 @@ impl Table {
         for row in [&heads].into_iter().chain(&self.rows) {
             let mut line = String::from(" ");
             for (index, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                let _ = if index == 0 { write!(line, " {cell:<width$}") } else { write!(line, "  {cell:>width$}") };
+                let _ = if index == 0 {
+                    write!(line, " {cell:<width$}")
+                } else {
+                    write!(line, "  {cell:>width$}")
+                };
             }
             text.push_str(line.trim_end());
             text.push('\n');
@@ -81,7 +85,9 @@ impl Ladder {
     fn ladder(&self, lights: &str) -> Table {
         let row = |row: &Row| {
             let (errors, time) = (&row.errors, &row.time);
-            let samples = |pick: fn(&super::Equal) -> f64| row.samples.as_ref().map_or_else(String::new, |s| number(pick(s)));
+            let samples = |pick: fn(&super::Equal) -> f64| {
+                row.samples.as_ref().map_or_else(String::new, |s| number(pick(s)))
+            };
             vec![
                 row.name.clone(),
                 percent(errors.all.rmse),
@@ -100,8 +106,19 @@ impl Ladder {
         };
         Table {
             heads: vec![
-                "method", "RMSE", "of it fit", "table", "integral", "p99", "worst", "bias", "NaN", "ms", "time, practice = 1",
-                "samples, equal error", "equal time",
+                "method",
+                "RMSE",
+                "of it fit",
+                "table",
+                "integral",
+                "p99",
+                "worst",
+                "bias",
+                "NaN",
+                "ms",
+                "time, practice = 1",
+                "samples, equal error",
+                "equal time",
             ],
             rows: self.rows_of(lights).map(row).collect(),
         }
@@ -170,8 +187,18 @@ impl Ladder {
         }
         let _ = write!(text, "\nMonte Carlo\n{}", self.samples().to_text());
         let _ = write!(text, "\neffects\n{}", self.effects().to_text());
-        let _ = write!(text, "\ntime by lights, {} pixels\n{}", self.scaling.pixels, self.scaling(true).to_text());
-        let _ = write!(text, "\ntime by pixels, {} lights\n{}", self.scaling.lights, self.scaling(false).to_text());
+        let _ = write!(
+            text,
+            "\ntime by lights, {} pixels\n{}",
+            self.scaling.pixels,
+            self.scaling(true).to_text()
+        );
+        let _ = write!(
+            text,
+            "\ntime by pixels, {} lights\n{}",
+            self.scaling.lights,
+            self.scaling(false).to_text()
+        );
         let _ = writeln!(text, "\n{:.0} s", self.seconds);
         text
     }
@@ -184,8 +211,18 @@ impl Ladder {
         }
         let _ = write!(text, "\n### Monte Carlo\n\n{}", self.samples().to_markdown());
         let _ = write!(text, "\n### Effects\n\n{}", self.effects().to_markdown());
-        let _ = write!(text, "\n### Time by lights, {} pixels\n\n{}", self.scaling.pixels, self.scaling(true).to_markdown());
-        let _ = write!(text, "\n### Time by pixels, {} lights\n\n{}", self.scaling.lights, self.scaling(false).to_markdown());
+        let _ = write!(
+            text,
+            "\n### Time by lights, {} pixels\n\n{}",
+            self.scaling.pixels,
+            self.scaling(true).to_markdown()
+        );
+        let _ = write!(
+            text,
+            "\n### Time by pixels, {} lights\n\n{}",
+            self.scaling.lights,
+            self.scaling(false).to_markdown()
+        );
         text
     }
 }

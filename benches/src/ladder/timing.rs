@@ -69,10 +69,12 @@ impl Clock {
     /// The time, as a ratio to a yardstick's.
     pub fn time(&self, yardstick: &Self) -> Time {
         let [one, all] = &self.seconds;
-        let added: Vec<f64> = one.iter().zip(all).map(|(one, all)| (all - one) / f64::from(ALL - 1)).collect();
+        let added: Vec<f64> =
+            one.iter().zip(all).map(|(one, all)| (all - one) / f64::from(ALL - 1)).collect();
         let per_megapixel = 1e3 / (self.pixels as f64 * 1e-6);
         let milliseconds = Spread::of(all).times(per_megapixel);
-        let per_light = (quantile(&added, 0.5) * per_megapixel).clamp(0.0, milliseconds.median / f64::from(ALL));
+        let per_light =
+            (quantile(&added, 0.5) * per_megapixel).clamp(0.0, milliseconds.median / f64::from(ALL));
         Time {
             milliseconds: milliseconds.times(1.0 / f64::from(ALL)),
             ratio: self.ratio(yardstick),

@@ -26,11 +26,13 @@
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what a scene calls for, and nothing else |
 //! | [`quality`] | the rungs of the quality ladder |
+//! | [`budget`] | rungs picked by what was measured on a device |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
+pub mod budget;
 pub mod effects;
 pub mod gpu;
 pub mod kernels;
@@ -45,6 +47,7 @@ pub mod shape;
 pub mod table;
 pub mod texture_part;
 
+pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileRung};
 pub use effects::{Effects, UnknownEffect};
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;

@@ -90,7 +90,7 @@ impl Picture {
 
 /// Khronos PBR Neutral: colours below 0.8 stay as they are but for a small toe, highlights roll off towards
 /// white. From radiance times exposure to [0, 1].
-fn tone_map(color: Vec3) -> Vec3 {
+pub fn tone_map(color: Vec3) -> Vec3 {
     const START: f32 = 0.8 - 0.04;
     const DESATURATION: f32 = 0.15;
     // What has overflowed is white, not NaN

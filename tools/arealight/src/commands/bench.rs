@@ -1,6 +1,7 @@
 //! `arealight bench`
 
 mod ladder;
+mod page;
 mod stability;
 mod textures;
 

@@ -1,6 +1,7 @@
 //! `arealight bench` without a subcommand
 
-use super::Ends;
+use super::page::page;
+use super::{Ends, write};
 use crate::failure::Failure;
 use crate::progress;
 use arealight_benches::ladder::{self, Options};
@@ -69,7 +70,9 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     let (mut found, pictures) = found.map_err(|error| Failure::Device(error.to_string()))?;
     found.command = arguments.command();
 
-    let _ = pictures;
+    if let Some(path) = &arguments.html {
+        write(path, &page(&found, &pictures)?)?;
+    }
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,0 +1,269 @@
+//! From a budget to rungs: what was measured on a device picks the quality there ([`Quality::within`]).
+
+use crate::Quality;
+
+/// A quality with what it costs and errs on one device.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProfileRung {
+    /// The rungs.
+    pub quality: Quality,
+    /// Whether it was measured with lights that show images ([`crate::Effects::TEXTURED`]).
+    pub textured: bool,
+    /// The error: root of the mean square over the mean.
+    pub error: f64,
+    /// Milliseconds of a megapixel without lights.
+    pub fixed: f64,
+    /// Milliseconds that each light adds to a megapixel.
+    pub per_light: f64,
+}
+
+impl ProfileRung {
+    /// Milliseconds that a frame takes.
+    pub fn milliseconds(&self, frame: FrameLoad) -> f64 {
+        frame.megapixels * (self.fixed + f64::from(frame.lights) * self.per_light)
+    }
+}
+
+/// What was measured on a device: `arealight bench --json` writes it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Profile {
+    /// The device's name.
+    pub device: String,
+    /// Its rungs, those alone that are right for every light and point: not [`crate::Horizon::Bare`].
+    pub rungs: Vec<ProfileRung>,
+}
+
+/// What a pass has to do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrameLoad {
+    /// Lights of the frame, which every pixel is shaded with.
+    pub lights: u32,
+    /// Pixels, in millions.
+    pub megapixels: f64,
+    /// Whether some light shows an image.
+    pub textured: bool,
+}
+
+/// What may not be exceeded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Limit {
+    /// Milliseconds of the pass.
+    Milliseconds(f64),
+    /// The error: root of the mean square over the mean.
+    Error(f64),
+}
+
+/// A frame, and what may not be exceeded on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Budget {
+    /// The frame.
+    pub frame: FrameLoad,
+    /// The limit.
+    pub limit: Limit,
+}
+
+/// Why no rung was picked.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BudgetError {
+    /// A limit, or the frame's size, is no number above zero.
+    #[error("{field}: {value} is not a number above 0")]
+    NotPositive {
+        /// What it is of.
+        field: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// Nothing was measured for such lights.
+    #[error("the profile of '{device}' has no rung for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that show images" } else { "of one colour" })]
+    NoRung {
+        /// The device.
+        device: String,
+        /// Whether some light shows an image.
+        textured: bool,
+    },
+    /// Even the fastest rung takes longer.
+    #[error(
+        "no rung takes at most {limit} ms on '{device}': the fastest takes {nearest:.3} ms ({quality:?}); use fewer lights or pixels, \
+         or allow {nearest:.3} ms"
+    )]
+    TooSlow {
+        /// The device.
+        device: String,
+        /// The milliseconds allowed.
+        limit: f64,
+        /// Those of the fastest rung.
+        nearest: f64,
+        /// The fastest rung.
+        quality: Box<Quality>,
+    },
+    /// Even the most accurate rung errs more.
+    #[error(
+        "no rung errs at most {limit} on '{device}': the most accurate errs {nearest:.5} ({quality:?}); allow that, or use the \
+         Monte Carlo reference"
+    )]
+    TooInaccurate {
+        /// The device.
+        device: String,
+        /// The error allowed.
+        limit: f64,
+        /// That of the most accurate rung.
+        nearest: f64,
+        /// The most accurate rung.
+        quality: Box<Quality>,
+    },
+}
+
+impl Quality {
+    /// Picks a rung from what was measured on a device: the most accurate that takes no longer than allowed, or the fastest
+    /// that errs no more than allowed. Of equals the faster, or the more accurate.
+    ///
+    /// Times are those of the profile's frame, scaled: they hold for the shade pass alone, for lights like the profile's, on the
+    /// same device.
+    ///
+    /// # Errors
+    /// [`BudgetError`] names the nearest rung where none fits.
+    pub fn within(budget: Budget, profile: &Profile) -> Result<ProfileRung, BudgetError> {
+        let (Limit::Milliseconds(limit) | Limit::Error(limit)) = budget.limit;
+        for (field, value) in [("limit", limit), ("megapixels", budget.frame.megapixels)] {
+            if !(value.is_finite() && value > 0.0) {
+                return Err(BudgetError::NotPositive { field, value });
+            }
+        }
+        // What is bounded first, then what is wanted
+        let keys = |rung: &ProfileRung| {
+            let milliseconds = rung.milliseconds(budget.frame);
+            match budget.limit {
+                Limit::Milliseconds(_) => (milliseconds, rung.error),
+                Limit::Error(_) => (rung.error, milliseconds),
+            }
+        };
+        let measured = |rung: &&ProfileRung| {
+            let (bounded, wanted) = keys(rung);
+            rung.textured == budget.frame.textured && bounded.is_finite() && wanted.is_finite()
+        };
+        let rungs = || profile.rungs.iter().filter(measured);
+        let best = rungs().filter(|rung| keys(rung).0 <= limit).min_by(|a, b| {
+            let (a, b) = (keys(a), keys(b));
+            a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0))
+        });
+        if let Some(best) = best {
+            return Ok(*best);
+        }
+        let device = profile.device.clone();
+        let Some(nearest) = rungs().min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) else {
+            return Err(BudgetError::NoRung { device, textured: budget.frame.textured });
+        };
+        let quality = Box::new(nearest.quality);
+        let nearest = keys(nearest).0;
+        Err(match budget.limit {
+            Limit::Milliseconds(_) => BudgetError::TooSlow { device, limit, nearest, quality },
+            Limit::Error(_) => BudgetError::TooInaccurate { device, limit, nearest, quality },
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Footprint, Fresnel, Lobes};
+
+    const FORMULA: Quality = {
+        let mut quality = EXACT;
+        quality.lobes = Lobes::Formula;
+        quality
+    };
+    const EXACT: Quality = Quality {
+        form_factor: crate::FormFactor::Exact,
+        horizon: crate::Horizon::Cosine,
+        fresnel: Fresnel::ByF0,
+        lobes: Lobes::Table,
+        one_point: false,
+        footprint: Footprint::Round,
+    };
+
+    /// The formula has no table to read, and takes half as long for few lights.
+    fn profile() -> Profile {
+        let split = Quality { fresnel: Fresnel::Split, ..EXACT };
+        let rung = |quality, error, fixed, per_light| ProfileRung {
+            quality,
+            textured: false,
+            error,
+            fixed,
+            per_light,
+        };
+        Profile {
+            device: "made up".into(),
+            rungs: vec![
+                rung(split, 0.01, 2.0, 3.0),
+                rung(EXACT, 0.02, 2.0, 2.0),
+                rung(FORMULA, 0.03, 1.0, 2.0),
+                ProfileRung { textured: true, ..rung(EXACT, 0.05, 2.0, 4.0) },
+            ],
+        }
+    }
+
+    fn budget(lights: u32, limit: Limit) -> Budget {
+        Budget { frame: FrameLoad { lights, megapixels: 0.5, textured: false }, limit }
+    }
+
+    #[test]
+    fn the_most_accurate_rung_that_is_fast_enough_is_picked() {
+        let pick = |limit| Quality::within(budget(10, Limit::Milliseconds(limit)), &profile());
+        // 16, 11 and 10.5 ms
+        assert_eq!(pick(16.0).unwrap().quality.fresnel, Fresnel::Split);
+        assert_eq!(pick(15.99).unwrap().quality, EXACT);
+        assert_eq!(pick(10.6).unwrap().quality, FORMULA);
+        let error = pick(10.0).unwrap_err();
+        assert!(matches!(&error, BudgetError::TooSlow { nearest, .. } if (*nearest - 10.5).abs() < 1e-12));
+        assert!(error.to_string().contains("the fastest takes 10.500 ms"), "{error}");
+        // Ten times as many lights take as much more
+        let crowd = Quality::within(budget(100, Limit::Milliseconds(16.0)), &profile());
+        assert!(matches!(crowd, Err(BudgetError::TooSlow { .. })));
+    }
+
+    #[test]
+    fn the_fastest_rung_that_is_accurate_enough_is_picked() {
+        let pick = |limit| Quality::within(budget(1, Limit::Error(limit)), &profile());
+        assert_eq!(pick(0.5).unwrap().quality, FORMULA);
+        assert_eq!(pick(0.02).unwrap().quality, EXACT);
+        assert_eq!(pick(0.015).unwrap().quality.fresnel, Fresnel::Split);
+        let error = pick(0.001).unwrap_err();
+        assert!(error.to_string().contains("the most accurate errs 0.01000"), "{error}");
+    }
+
+    #[test]
+    fn lights_that_show_images_have_rungs_of_their_own() {
+        let mut load = budget(1, Limit::Error(0.05));
+        load.frame.textured = true;
+        assert_eq!(Quality::within(load, &profile()).unwrap().error, 0.05);
+        let mut plain = profile();
+        plain.rungs.pop();
+        let error = Quality::within(load, &plain).unwrap_err();
+        assert!(error.to_string().contains("no rung for lights that show images"), "{error}");
+        assert!(matches!(
+            Quality::within(budget(1, Limit::Error(0.1)), &Profile::default()),
+            Err(BudgetError::NoRung { .. })
+        ));
+    }
+
+    #[test]
+    fn what_is_no_budget_is_refused() {
+        for limit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let error = Quality::within(budget(1, Limit::Milliseconds(limit)), &profile()).unwrap_err();
+            assert!(matches!(error, BudgetError::NotPositive { field: "limit", .. }), "{error}");
+        }
+        let mut nowhere = budget(1, Limit::Error(0.1));
+        nowhere.frame.megapixels = 0.0;
+        assert!(matches!(
+            Quality::within(nowhere, &profile()),
+            Err(BudgetError::NotPositive { field: "megapixels", .. })
+        ));
+        // A rung that was not measured is none
+        let mut broken = profile();
+        broken.rungs.truncate(1);
+        broken.rungs[0].error = f64::NAN;
+        let picked = Quality::within(budget(1, Limit::Milliseconds(1e9)), &broken);
+        assert!(matches!(picked, Err(BudgetError::NoRung { .. })));
+    }
+}

@@ -1,0 +1,213 @@
+//! The charts.
+
+use super::svg::{Axis, Drawing, Labels};
+use arealight_benches::ladder::{Growth, Ladder, Row, number, percent};
+
+/// The colours of what is ours, of others', and of Monte Carlo, in words.
+const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>rungs of the ladder</span>\
+    <span><i style=\"background:var(--theirs)\"></i>yardsticks</span>\
+    <span><i style=\"background:var(--noise)\"></i>Monte Carlo, by samples a pixel</span></div>";
+
+/// Error against time, both logarithmic.
+pub fn pareto(found: &Ladder) -> String {
+    let (width, height) = (860.0, 520.0);
+    let bounds = [64.0, 12.0, width - 8.0, height - 46.0];
+    let rows: Vec<&Row> = found.rows_of(found.first()).collect();
+    let place = |row: &Row| (row.time.milliseconds.median, row.errors.all.rmse);
+    let noise = found.monte_carlo.iter().map(|samples| (samples.milliseconds, samples.errors.rmse));
+    let all: Vec<(f64, f64)> = rows.iter().map(|row| place(row)).chain(noise.clone()).collect();
+    let x = Axis::over(all.iter().map(|(time, _)| *time), bounds[0], bounds[2]);
+    let y = Axis::over(all.iter().map(|(_, error)| *error), bounds[3], bounds[1]);
+
+    let mut drawing = Drawing::new(width, height, "Error against time of every method, both logarithmic");
+    grid(&mut drawing, &x, &y, bounds, &|value| percent(value));
+    drawing.text(
+        "axis",
+        "middle",
+        [(bounds[0] + bounds[2]) / 2.0, height - 6.0],
+        "milliseconds a light and a megapixel",
+    );
+    drawing.upwards([14.0, (bounds[1] + bounds[3]) / 2.0], "error: RMSE over mean");
+
+    // Dots first, that no label covers one
+    let mut labels = Labels::default();
+    let line: Vec<[f64; 2]> = noise.map(|(time, error)| [x.at(time), y.at(error)]).collect();
+    let dots: Vec<[f64; 2]> =
+        rows.iter().map(|row| place(row)).map(|(time, error)| [x.at(time), y.at(error)]).collect();
+    for dot in dots.iter().chain(&line) {
+        labels.keep_free(*dot);
+    }
+    drawing.path("line-noise", &line);
+    drawing.path("front", &front(&rows, &dots));
+    for (samples, dot) in found.monte_carlo.iter().zip(&line) {
+        let title = format!("{} samples: error {}", samples.count, percent(samples.errors.rmse));
+        drawing.dot("noise", *dot, &title);
+        label(&mut drawing, &mut labels, *dot, &samples.count.to_string(), bounds);
+    }
+    for (row, dot) in rows.iter().zip(&dots) {
+        let class = if row.rungs.is_some() { "ours" } else { "theirs" };
+        let [low, high] = row.time.ratio.quartiles.map(number);
+        let title = format!(
+            "{} ({}): error {}, time {} ({low} to {high}) of the practice's",
+            row.name,
+            row.description,
+            percent(row.errors.all.rmse),
+            number(row.time.ratio.median)
+        );
+        drawing.dot(class, *dot, &title);
+        label(&mut drawing, &mut labels, *dot, &row.name, bounds);
+    }
+    drawing.into_html() + KEY
+}
+
+/// The rungs that none is better than in both, from the fastest on. The bare one, judged elsewhere, is left out.
+fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let is_bare = |row: &Row| row.rungs.as_ref().is_some_and(|rungs| rungs.horizon == "bare");
+    let mut ours: Vec<(&Row, [f64; 2])> = rows.iter().copied().zip(dots.iter().copied()).collect();
+    ours.retain(|(row, _)| row.rungs.is_some() && !is_bare(row));
+    ours.sort_by(|a, b| a.0.time.milliseconds.median.total_cmp(&b.0.time.milliseconds.median));
+    let mut best = f64::INFINITY;
+    // Differences below a hundredth are none
+    ours.retain(|(row, _)| {
+        let error = row.errors.all.rmse;
+        let better = error < 0.99 * best;
+        best = best.min(error);
+        better
+    });
+    ours.into_iter().map(|(_, dot)| dot).collect()
+}
+
+fn label(drawing: &mut Drawing, labels: &mut Labels, dot: [f64; 2], text: &str, bounds: [f64; 4]) {
+    let (at, anchor) = labels.place(dot, text, bounds);
+    // A label that had to move away is tied to its dot
+    let away = (at[0] - dot[0]).hypot(at[1] - 4.0 - dot[1]);
+    if away > 12.0 {
+        let (dx, dy) = ((at[0] - dot[0]) / away, (at[1] - 4.0 - dot[1]) / away);
+        drawing.line(
+            "leader",
+            [dot[0] + 5.0 * dx, dot[1] + 5.0 * dy],
+            [at[0] - 2.0 * dx, at[1] - 4.0 - 2.0 * dy],
+        );
+    }
+    drawing.text("", anchor, at, text);
+}
+
+fn grid(drawing: &mut Drawing, x: &Axis, y: &Axis, bounds: [f64; 4], name: &dyn Fn(f64) -> String) {
+    for tick in x.ticks() {
+        let at = x.at(tick);
+        drawing.line("grid", [at, bounds[1]], [at, bounds[3]]);
+        drawing.text("axis", "middle", [at, bounds[3] + 16.0], &number_short(tick));
+    }
+    for tick in y.ticks() {
+        let at = y.at(tick);
+        drawing.line("grid", [bounds[0], at], [bounds[2], at]);
+        drawing.text("axis", "end", [bounds[0] - 6.0, at + 4.0], &name(tick));
+    }
+}
+
+/// A tick: no digits that say nothing.
+fn number_short(value: f64) -> String {
+    match value {
+        large if large >= 1e6 => format!("{} M", large / 1e6),
+        large if large >= 1e4 => format!("{} k", large / 1e3),
+        _ => format!("{value}"),
+    }
+}
+
+/// The parts of each rung's error, side by side.
+pub fn parts(found: &Ladder) -> String {
+    let rows: Vec<&Row> = found.rows_of(found.first()).collect();
+    let (width, line, top) = (860.0, 40.0, 8.0);
+    let height = top + line * rows.len() as f64 + 40.0;
+    let parts = |row: &Row| [row.errors.fit, row.errors.table, row.errors.integral];
+    // What is below a ten-millionth is drawn as that
+    let x =
+        Axis::over(rows.iter().flat_map(|row| parts(row)).map(|part| part.max(1e-7)), 130.0, width - 70.0);
+    let mut drawing =
+        Drawing::new(width, height, "Fit, table and integral error of every method, logarithmic");
+    for tick in x.ticks() {
+        let at = x.at(tick);
+        drawing.line("grid", [at, top], [at, height - 36.0]);
+        drawing.text("axis", "middle", [at, height - 20.0], &percent(tick));
+    }
+    for (index, row) in rows.iter().enumerate() {
+        let y = top + line * index as f64;
+        drawing.text("", "end", [122.0, y + 24.0], &row.name);
+        for (part, (value, class)) in
+            parts(row).into_iter().zip(["fit", "table-part", "integral"]).enumerate()
+        {
+            let y = y + 5.0 + 10.5 * part as f64;
+            let end = x.at(value.max(1e-7));
+            drawing.bar(class, [130.0, y], [end - 130.0, 9.0]);
+            drawing.text("axis", "start", [end + 5.0, y + 9.0], &percent(value));
+        }
+    }
+    let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>fit</span>\
+        <span><i style=\"background:var(--good)\"></i>table</span>\
+        <span><i style=\"background:var(--theirs)\"></i>integral</span></div>";
+    drawing.into_html() + key
+}
+
+/// A bar for each effect.
+pub fn effects(found: &Ladder) -> String {
+    let (width, line, top) = (860.0, 44.0, 8.0);
+    let height = top + line * found.effects.len() as f64 + 34.0;
+    let used = found.effects.iter().filter_map(|effect| effect.used.as_ref());
+    let spreads = found.effects.iter().map(|effect| &effect.on).chain(used);
+    let most = spreads.map(|spread| spread.quartiles[1]).fold(1.5, f64::max) - 1.0;
+    let scale = (width - 130.0 - 110.0) / most;
+    let at = |ratio: f64| 130.0 + (ratio - 1.0).max(0.0) * scale;
+    let mut drawing = Drawing::new(width, height, "What each effect adds to the time of the default rung");
+    let step = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0].into_iter().find(|step| most / step <= 8.0).unwrap_or(10.0);
+    for tick in 0..=(most / step) as usize {
+        let value = tick as f64 * step;
+        drawing.line("grid", [at(1.0 + value), top], [at(1.0 + value), height - 30.0]);
+        drawing.text("axis", "middle", [at(1.0 + value), height - 14.0], &format!("+{:.0} %", value * 100.0));
+    }
+    for (index, effect) in found.effects.iter().enumerate() {
+        let y = top + line * index as f64;
+        drawing.text("", "end", [122.0, y + 22.0], &effect.effect.replace('_', " "));
+        let bars = [Some((&effect.on, "bar-on")), effect.used.as_ref().map(|used| (used, "bar-used"))];
+        for (part, (spread, class)) in bars.into_iter().flatten().enumerate() {
+            let y = y + 4.0 + 17.0 * part as f64;
+            let end = at(spread.median);
+            drawing.bar(class, [130.0, y], [end - 130.0, 14.0]);
+            let [low, high] = spread.quartiles.map(at);
+            drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
+            let text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
+            drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
+        }
+    }
+    let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>in the set (of a lobe: what it adds)</span>\
+        <span><i style=\"background:var(--theirs)\"></i>lights that call for it</span></div>";
+    drawing.into_html() + key
+}
+
+/// A frame's time as something grows, both logarithmic.
+pub fn growth(growths: &[Growth], of: &str) -> String {
+    let (width, height) = (860.0, 340.0);
+    let bounds = [64.0, 12.0, width - 150.0, height - 46.0];
+    let steps = growths.iter().flat_map(|growth| &growth.steps);
+    let x = Axis::over(steps.clone().map(|(count, _)| f64::from(*count)), bounds[0], bounds[2]);
+    let y = Axis::over(steps.map(|(_, time)| time.median), bounds[3], bounds[1]);
+    let mut drawing = Drawing::new(width, height, &format!("Time of a frame by its number of {of}"));
+    grid(&mut drawing, &x, &y, bounds, &number_short);
+    drawing.text("axis", "middle", [(bounds[0] + bounds[2]) / 2.0, height - 6.0], of);
+    drawing.upwards([14.0, (bounds[1] + bounds[3]) / 2.0], "milliseconds a frame");
+    let mut labels = Labels::default();
+    let area = [0.0, 0.0, width, height];
+    for (growth, class) in growths.iter().zip(["theirs", "ours", "noise"]) {
+        let places: Vec<[f64; 2]> =
+            growth.steps.iter().map(|(count, time)| [x.at(f64::from(*count)), y.at(time.median)]).collect();
+        drawing.path(&format!("line-{class}"), &places);
+        for (place, (count, time)) in places.iter().zip(&growth.steps) {
+            let title = format!("{}, {count} {of}: {} ms", growth.method, number(time.median));
+            drawing.dot(class, *place, &title);
+        }
+        if let Some(last) = places.last() {
+            labels.keep_free(*last);
+            label(&mut drawing, &mut labels, *last, &growth.method, area);
+        }
+    }
+    drawing.into_html()
+}
