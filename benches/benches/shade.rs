@@ -3,7 +3,7 @@
 //! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
 //! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
 
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Quality};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -53,6 +53,8 @@ fn shade(criterion: &mut Criterion) {
         ("exact, bare", effects, Quality { horizon: Horizon::Bare, ..exact }),
         ("exact, both horizons", effects, Quality { horizon: Horizon::Both, ..exact }),
         ("exact, split", effects, Quality { fresnel: Fresnel::Split, ..exact }),
+        // The difference is what the table's lookup costs
+        ("exact, lobes by formula", effects, Quality { lobes: Lobes::Formula, ..exact }),
         ("exact, one point", effects, Quality { one_point: true, ..exact }),
         ("exact, diffuse only", effects - Effects::GLOSSY, exact),
         ("exact, every effect", Effects::all(), exact),

@@ -20,8 +20,9 @@ pub use scaling::{Growth, Scaling};
 pub use text::{number, percent};
 pub use timing::{Spread, Time};
 
+use crate::instructions::Instructions;
 use crate::textures::is_software;
-use arealight::{Effects, LightTable, PyramidSize, Quality, TexturePart};
+use arealight::{Effects, Horizon, LightTable, Profile, ProfileRung, PyramidSize, Quality, TexturePart};
 use arealight_engine::{Engine, EngineError, GBuffer, SourceImage, SourceTexels};
 use arealight_host::Host;
 use arealight_oracle::texture::Texture;
@@ -116,6 +117,8 @@ pub struct EffectCost {
     pub on: Spread,
     /// Time of a frame of lights that call for it, over one of quads.
     pub used: Option<Spread>,
+    /// Instructions of the shade kernel's SPIR-V that it adds, after `spirv-opt`; see [`crate::instructions`].
+    pub instructions: Option<u32>,
 }
 
 /// What was found.
@@ -147,6 +150,28 @@ pub struct Ladder {
     pub scaling: Scaling,
     /// Names of the lights, with what they are.
     pub workloads: Vec<(String, String)>,
+}
+
+impl Ladder {
+    /// What [`Quality::within`] picks from: the rungs that are right everywhere, over quads and over lights that show images.
+    ///
+    /// # Errors
+    /// [`UnknownRung`] where the rungs are in words that this version does not know.
+    pub fn profile(&self) -> Result<Profile, UnknownRung> {
+        let mut rungs = vec![];
+        for row in &self.rows {
+            let textured = row.lights == methods::TEXTURED;
+            let Some(names) = row.rungs.as_ref().filter(|_| textured || row.lights == self.first()) else {
+                continue;
+            };
+            let quality = names.quality()?;
+            if quality.horizon != Horizon::Bare {
+                let (error, Time { fixed, per_light, .. }) = (row.errors.all.rmse, row.time);
+                rungs.push(ProfileRung { quality, textured, error, fixed, per_light });
+            }
+        }
+        Ok(Profile { device: self.device.clone(), rungs })
+    }
 }
 
 /// Patches of points in a row of the frames.
@@ -199,6 +224,7 @@ pub fn run(
         .map(|((workload, named, errors), clock)| row(workload, named, errors, clock.time(yardstick)))
         .collect();
     let default = rows.iter().position(|row| row.name == DEFAULT).unwrap_or(0);
+    let counted = Instructions::checked_in();
     let effects = effects.iter().zip(&timed.effects).map(|(effect, clock)| {
         let default = &timed.methods[default];
         // Without a lobe it is the other way round
@@ -206,7 +232,8 @@ pub fn run(
         let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
         let all = workloads.iter().flat_map(|workload| &workload.methods);
         let used = all.zip(&timed.methods).find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
-        EffectCost { effect: effect.names().join(", "), on, used }
+        let added = counted.added_by(*effect).map(|added| added.with.saturating_sub(added.without));
+        EffectCost { effect: effect.names().join(", "), on, used, instructions: added }
     });
     let effects = effects.collect();
     let times: Vec<Time> = timed.samples.iter().map(|clock| clock.time(yardstick)).collect();

@@ -3,14 +3,10 @@
 //! | module | holds |
 //! |---|---|
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
-<<<<<<< HEAD
 //! | [`effects`] | the time of the shade kernel by effect, and of what is stripped by hand |
 //! | [`instructions`] | what each effect and rung adds in instructions |
-//! | [`cost`] | the time of each rung, as a ratio to the practice |
-=======
 //! | [`cost`] | the time of each rung of the form factor, as a ratio to the practice |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
->>>>>>> f9f5590 (arealight bench: every rung's error, split into fit, table and integral, and its time, beside Monte Carlo and the yardsticks)
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |

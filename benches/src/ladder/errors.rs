@@ -211,8 +211,8 @@ mod tests {
 
     #[test]
     fn errors_are_over_the_mean_and_leave_out_what_is_no_number() {
-        let truth = vec![DVec3::splat(1.0), DVec3::splat(3.0), DVec3::splat(2.0)];
-        let found = vec![DVec3::splat(1.2), DVec3::splat(3.0), DVec3::splat(f64::NAN)];
+        let truth = [DVec3::splat(1.0), DVec3::splat(3.0), DVec3::splat(2.0)];
+        let found = [DVec3::splat(1.2), DVec3::splat(3.0), DVec3::splat(f64::NAN)];
         let errors = Errors::of(found.iter().zip(&truth));
         assert_eq!((errors.points, errors.not_finite), (3, 1));
         assert!((errors.bias - 0.05).abs() < 1e-12 && (errors.worst - 0.1).abs() < 1e-12, "{errors:?}");

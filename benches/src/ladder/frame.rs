@@ -182,6 +182,7 @@ impl<'a> Frame<'a> {
                 sample_count,
                 weight: (f64::from(sample_count) / f64::from(count)) as f32,
                 seed,
+                shape_count: 0,
             };
             seconds += device_seconds(self.engine, |commands| {
                 self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);

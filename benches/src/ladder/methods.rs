@@ -83,6 +83,9 @@ pub const DEFAULT: &str = "exact";
 /// The yardstick of the ratios.
 pub const PRACTICE: &str = "practice";
 
+/// The name of the lights that show images.
+pub const TEXTURED: &str = "textured";
+
 /// Monte Carlo's numbers of samples.
 pub const SAMPLES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
 
@@ -98,10 +101,14 @@ const DIFFERENCE: Quality = Quality { form_factor: FormFactor::ExactDifference, 
 
 /// Every workload; the first has the whole ladder.
 pub fn workloads() -> Vec<Workload> {
-    let rung = |name, description, effects: Effects, quality| Named {
+    let rung = |name, description, effects: Effects, quality: Quality| Named {
         name,
         description,
-        method: Method::Rung { effects: LOBES | effects, quality },
+        // The one-point form is in the far effect's code
+        method: Method::Rung {
+            effects: LOBES | effects | if quality.one_point { Effects::FAR } else { Effects::empty() },
+            quality,
+        },
     };
     let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
     let yardstick = |name, description, which| Named {
@@ -165,7 +172,7 @@ pub fn workloads() -> Vec<Workload> {
             share: 0.25,
         },
         Workload {
-            name: "textured",
+            name: TEXTURED,
             description: "quads that show an image",
             lights: LightKind::Textured,
             methods: vec![

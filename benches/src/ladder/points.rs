@@ -66,7 +66,7 @@ pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
         let quad = [-u - v, u - v, u * 0.8 + v, v - u].map(|corner| *center + corner);
         let ray = |ray: u32| {
             let (sin, cos) = (TAU * f64::from(ray) / 10.0).sin_cos();
-            *center + (u * cos + v * sin) * if ray % 2 == 0 { 1.0 } else { 0.45 }
+            *center + (u * cos + v * sin) * if ray.is_multiple_of(2) { 1.0 } else { 0.45 }
         };
         let vertices = if kind == LightKind::Stars { (0..10).map(ray).collect() } else { quad.to_vec() };
         // The trapezoid's third corner is where a straight mapping has it
@@ -126,7 +126,7 @@ fn point(kind: LightKind, index: usize, random: &mut Random) -> Point {
 
         // Facing halfway between light and camera, or anywhere
         let half = to_light.normalize_or(DVec3::Z) + view;
-        let spread = random.unit() * if index % 2 == 0 { 0.3 } else { 3.0 };
+        let spread = random.unit() * if index.is_multiple_of(2) { 0.3 } else { 3.0 };
         let normal = (half.normalize_or(DVec3::Z) + random.direction() * spread).normalize_or(DVec3::Z);
         let normal = normal.as_vec3();
         let lit = normal.as_dvec3().dot(to_light) > -size;

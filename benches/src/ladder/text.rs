@@ -144,10 +144,17 @@ impl Ladder {
     fn effects(&self) -> Table {
         let row = |effect: &super::EffectCost| {
             let used = effect.used.as_ref().map_or_else(|| "-".to_owned(), spread);
-            vec![effect.effect.clone(), spread(&effect.on), used]
+            let instructions =
+                effect.instructions.map_or_else(|| "-".to_owned(), |count| format!("+{count}"));
+            vec![effect.effect.clone(), spread(&effect.on), used, instructions]
         };
         Table {
-            heads: vec!["effect", "turned on, time without it = 1", "lights that call for it, quads = 1"],
+            heads: vec![
+                "effect",
+                "turned on, time without it = 1",
+                "lights that call for it, quads = 1",
+                "SPIR-V instructions",
+            ],
             rows: self.effects.iter().map(row).collect(),
         }
     }

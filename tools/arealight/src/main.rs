@@ -1,5 +1,6 @@
 //! The command line of Arealight.
 
+mod budget;
 mod commands;
 mod failure;
 mod gpu;

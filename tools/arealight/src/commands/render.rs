@@ -1,12 +1,14 @@
 //! `arealight render`: a picture of a glTF scene, lit by its polygon lights.
 
+use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
 use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
-use arealight::{Effects, Quality, UnknownEffect};
+use arealight::{Effects, FrameLoad, ProfileRung, Quality, UnknownEffect};
+use arealight_benches::ladder::RungNames;
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -50,6 +52,8 @@ pub struct Arguments {
     effects: EffectChoice,
     #[command(flatten)]
     quality: QualityArguments,
+    #[command(flatten)]
+    budget: BudgetArguments,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -69,7 +73,18 @@ impl Arguments {
             supersample: 2,
             effects: EffectChoice::Required,
             quality: QualityArguments::default(),
+            budget: BudgetArguments::default(),
             json: false,
+        }
+    }
+
+    /// What the shade pass has to do.
+    fn load(&self, scene: &Scene) -> FrameLoad {
+        let pixels: f64 = self.size.map(|side| f64::from(side * self.supersample)).iter().product();
+        FrameLoad {
+            lights: (scene.lights.len() + scene.shapes.len()) as u32,
+            megapixels: pixels * 1e-6,
+            textured: scene.effects().contains(Effects::TEXTURED),
         }
     }
 
@@ -135,6 +150,7 @@ impl EffectChoice {
 struct Outcome {
     visibility: Option<Duration>,
     shading: Option<Duration>,
+    picked: Option<ProfileRung>,
     picture: Picture,
 }
 
@@ -157,14 +173,17 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     prepare(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
     let camera = choose_camera(&scene, arguments)?;
+    let picked = arguments.budget.pick(arguments.load(&scene))?;
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
     let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
     engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
     let effects = arguments.effects.effects(&scene, &path);
-    let outcome = render(&engine, &scene, &camera, samples, effects, arguments)
+    let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |rung| rung.quality);
+    let mut outcome = render(&engine, &scene, &camera, samples, (effects, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;
+    outcome.picked = picked;
     outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
     let device = engine.host().device_name();
     let summary = Summary {
@@ -184,7 +203,7 @@ fn render(
     scene: &Scene,
     camera: &Camera,
     size: [u32; 2],
-    effects: Effects,
+    (effects, quality): (Effects, Quality),
     arguments: &Arguments,
 ) -> Result<Outcome, EngineError> {
     // Everything on the GPU is relative to the camera
@@ -194,7 +213,7 @@ fn render(
     renderer = renderer.with_shapes(&scene.shapes)?;
     let visibility = renderer.visibility()?;
     let shading = match arguments.reference {
-        None => renderer.shade(effects, arguments.quality.quality_or(Quality::default()))?,
+        None => renderer.shade(effects, quality)?,
         Some(samples) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
@@ -205,7 +224,7 @@ fn render(
     };
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
-    Ok(Outcome { visibility, shading, picture })
+    Ok(Outcome { visibility, shading, picked: None, picture })
 }
 
 /// Stops within what float32 radiance bears.
@@ -292,6 +311,14 @@ impl Summary<'_> {
             milliseconds(outcome.visibility),
             milliseconds(outcome.shading)
         ));
+        if let Some(rung) = outcome.picked {
+            let expected = rung.milliseconds(arguments.load(scene));
+            lines.push(format!(
+                "budget   expected {expected:.1} ms at an error of {:.2} %: {:?}",
+                rung.error * 100.0,
+                rung.quality
+            ));
+        }
         let per_pixel = arguments.supersample * arguments.supersample;
         lines.push(format!(
             "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)\n",
@@ -319,6 +346,11 @@ impl Summary<'_> {
             "effects_shaded_with": set.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
+            "picked": outcome.picked.map(|rung| json!({
+                "rungs": RungNames::from(rung.quality),
+                "expected_milliseconds": rung.milliseconds(arguments.load(scene)),
+                "error": rung.error,
+            })),
             "reference_samples": arguments.reference_samples(),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "picture": output,

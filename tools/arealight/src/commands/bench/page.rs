@@ -118,7 +118,7 @@ fn says_parts(found: &Ladder) -> String {
 fn says_effects() -> &'static str {
     "Blue: the time that an effect adds to the default rung by being in the set, on a frame in which no light calls for it; of a \
      lobe, which every pixel has, what it adds. Orange: lights that call for it, beside quads. What is not in the set costs nothing, \
-     so blue is what a set that is too large costs."
+     so blue is what a set that is too large costs. Instructions are of the shade kernel's SPIR-V, specialised and optimised."
 }
 
 fn says_growth(found: &Ladder) -> String {
@@ -141,7 +141,7 @@ fn says_pixels() -> &'static str {
 fn says_pictures(pictures: &Pictures) -> String {
     format!(
         "The scene '{}' under {} lights, without shadows, as in every method. Below each picture its difference from the reference \
-         (Monte Carlo of {} samples a pixel, whose own noise is in it), over the reference's mean.",
+         (Monte Carlo of {} samples a pixel, whose own noise is in it), over the reference's mean; lights themselves are left out.",
         escape(&pictures.scene),
         pictures.lights,
         pictures.samples
@@ -177,7 +177,13 @@ fn show(pictures: &Pictures) -> Result<String, Failure> {
         pictures.samples
     );
     for Picture { name, reflected, errors, milliseconds } in &pictures.shown {
-        let map = images::differences(pictures.size, reflected, &pictures.reference)?;
+        // A light itself is no matter of shading
+        let shown = |radiance: &[DVec3]| -> Vec<DVec3> {
+            let all = radiance.iter().zip(&pictures.emitted);
+            all.map(|(radiance, emitted)| if *emitted == DVec3::ZERO { *radiance } else { DVec3::ZERO })
+                .collect()
+        };
+        let map = images::differences(pictures.size, &shown(reflected), &shown(&pictures.reference))?;
         let name = escape(name);
         let _ = writeln!(
             html,

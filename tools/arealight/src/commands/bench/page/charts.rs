@@ -8,26 +8,39 @@ const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\">
     <span><i style=\"background:var(--theirs)\"></i>yardsticks</span>\
     <span><i style=\"background:var(--noise)\"></i>Monte Carlo, by samples a pixel</span></div>";
 
-/// Error against time, both logarithmic.
+/// What has a name in the chart of everything: the others are too near to each other there.
+const NAMED: [&str; 4] = ["practice", "textbook", "exact", "everything"];
+
+/// Error against time, both logarithmic: everything, and the rungs from nearer.
 pub fn pareto(found: &Ladder) -> String {
-    let (width, height) = (860.0, 520.0);
-    let bounds = [64.0, 12.0, width - 8.0, height - 46.0];
+    let samples: Vec<(String, f64, f64)> = found
+        .monte_carlo
+        .iter()
+        .map(|samples| (samples.count.to_string(), samples.milliseconds, samples.errors.rmse))
+        .collect();
     let rows: Vec<&Row> = found.rows_of(found.first()).collect();
+    let near: Vec<&Row> = rows.iter().copied().filter(|row| row.name != NAMED[0]).collect();
+    error_against_time("Error against time of every method", &rows, &samples, &NAMED)
+        + KEY
+        + "<p>The rungs alone, from nearer; the dotted line joins those that none is better than in both.</p>"
+        + &error_against_time("Error against time of the rungs", &near, &[], &[])
+}
+
+/// A chart of rows, and of Monte Carlo's samples. Rows of some names have labels; with none given, all.
+fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)], named: &[&str]) -> String {
+    let (width, height) = (860.0, 480.0);
+    let bounds = [64.0, 12.0, width - 8.0, height - 46.0];
     let place = |row: &Row| (row.time.milliseconds.median, row.errors.all.rmse);
-    let noise = found.monte_carlo.iter().map(|samples| (samples.milliseconds, samples.errors.rmse));
+    let noise = samples.iter().map(|(_, time, error)| (*time, *error));
     let all: Vec<(f64, f64)> = rows.iter().map(|row| place(row)).chain(noise.clone()).collect();
     let x = Axis::over(all.iter().map(|(time, _)| *time), bounds[0], bounds[2]);
     let y = Axis::over(all.iter().map(|(_, error)| *error), bounds[3], bounds[1]);
 
-    let mut drawing = Drawing::new(width, height, "Error against time of every method, both logarithmic");
+    let mut drawing = Drawing::new(width, height, title);
     grid(&mut drawing, &x, &y, bounds, &|value| percent(value));
-    drawing.text(
-        "axis",
-        "middle",
-        [(bounds[0] + bounds[2]) / 2.0, height - 6.0],
-        "milliseconds a light and a megapixel",
-    );
-    drawing.upwards([14.0, (bounds[1] + bounds[3]) / 2.0], "error: RMSE over mean");
+    let middle = [0.5 * (bounds[0] + bounds[2]), 0.5 * (bounds[1] + bounds[3])];
+    drawing.text("axis", "middle", [middle[0], height - 6.0], "milliseconds a light and a megapixel");
+    drawing.upwards([14.0, middle[1]], "error: RMSE over mean");
 
     // Dots first, that no label covers one
     let mut labels = Labels::default();
@@ -38,11 +51,10 @@ pub fn pareto(found: &Ladder) -> String {
         labels.keep_free(*dot);
     }
     drawing.path("line-noise", &line);
-    drawing.path("front", &front(&rows, &dots));
-    for (samples, dot) in found.monte_carlo.iter().zip(&line) {
-        let title = format!("{} samples: error {}", samples.count, percent(samples.errors.rmse));
-        drawing.dot("noise", *dot, &title);
-        label(&mut drawing, &mut labels, *dot, &samples.count.to_string(), bounds);
+    drawing.path("front", &front(rows, &dots));
+    for ((count, _, error), dot) in samples.iter().zip(&line) {
+        drawing.dot("noise", *dot, &format!("{count} samples: error {}", percent(*error)));
+        label(&mut drawing, &mut labels, *dot, count, bounds);
     }
     for (row, dot) in rows.iter().zip(&dots) {
         let class = if row.rungs.is_some() { "ours" } else { "theirs" };
@@ -55,9 +67,11 @@ pub fn pareto(found: &Ladder) -> String {
             number(row.time.ratio.median)
         );
         drawing.dot(class, *dot, &title);
-        label(&mut drawing, &mut labels, *dot, &row.name, bounds);
+        if named.is_empty() || named.contains(&row.name.as_str()) {
+            label(&mut drawing, &mut labels, *dot, &row.name, bounds);
+        }
     }
-    drawing.into_html() + KEY
+    drawing.into_html()
 }
 
 /// The rungs that none is better than in both, from the fastest on. The bare one, judged elsewhere, is left out.
@@ -155,7 +169,7 @@ pub fn effects(found: &Ladder) -> String {
     let used = found.effects.iter().filter_map(|effect| effect.used.as_ref());
     let spreads = found.effects.iter().map(|effect| &effect.on).chain(used);
     let most = spreads.map(|spread| spread.quartiles[1]).fold(1.5, f64::max) - 1.0;
-    let scale = (width - 130.0 - 110.0) / most;
+    let scale = (width - 130.0 - 160.0) / most;
     let at = |ratio: f64| 130.0 + (ratio - 1.0).max(0.0) * scale;
     let mut drawing = Drawing::new(width, height, "What each effect adds to the time of the default rung");
     let step = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0].into_iter().find(|step| most / step <= 8.0).unwrap_or(10.0);
@@ -174,7 +188,10 @@ pub fn effects(found: &Ladder) -> String {
             drawing.bar(class, [130.0, y], [end - 130.0, 14.0]);
             let [low, high] = spread.quartiles.map(at);
             drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
-            let text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
+            let mut text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
+            if let Some(count) = effect.instructions.filter(|_| part == 0) {
+                text += &format!(", {count} instructions");
+            }
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
     }

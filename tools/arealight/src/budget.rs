@@ -1,0 +1,45 @@
+//! Rungs by what was measured, as options of a command.
+
+use crate::failure::Failure;
+use arealight::{Budget, FrameLoad, Limit, ProfileRung, Quality};
+use arealight_benches::ladder::Ladder;
+use std::path::PathBuf;
+
+/// What may not be exceeded, and what was measured.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct BudgetArguments {
+    /// Shade on the most accurate rung that takes no longer
+    #[arg(long, value_name = "MS", requires = "profile", conflicts_with_all = ["max_error", "reference", "form_factor", "horizon", "fresnel", "lobes", "one_point", "footprint"])]
+    budget_ms: Option<f64>,
+    /// Shade on the fastest rung that errs no more, as root of the mean square over the mean
+    #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "fresnel", "lobes", "one_point", "footprint"])]
+    max_error: Option<f64>,
+    /// What `arealight bench --json FILE` measured on this device
+    #[arg(long, value_name = "FILE")]
+    profile: Option<PathBuf>,
+}
+
+impl BudgetArguments {
+    /// The rung for a frame; none without a budget.
+    ///
+    /// # Errors
+    /// A profile that cannot be read; a budget that no rung keeps, with the nearest.
+    pub fn pick(&self, frame: FrameLoad) -> Result<Option<ProfileRung>, Failure> {
+        let (argument, limit) = match (self.budget_ms, self.max_error) {
+            (Some(limit), _) => ("--budget-ms", Limit::Milliseconds(limit)),
+            (None, Some(limit)) => ("--max-error", Limit::Error(limit)),
+            (None, None) => return Ok(None),
+        };
+        let Some(path) = &self.profile else { return Ok(None) };
+        let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+        let found: Ladder = serde_json::from_str(&text).map_err(|error| {
+            Failure::input(
+                path,
+                format!("{error}; write one with `arealight bench --json {}`", path.display()),
+            )
+        })?;
+        let profile = found.profile().map_err(|error| Failure::input(path, error))?;
+        let picked = Quality::within(Budget { frame, limit }, &profile);
+        picked.map(Some).map_err(|error| Failure::Argument { argument, message: error.to_string() })
+    }
+}
