@@ -48,7 +48,7 @@ pub fn g_buffer(
     g_buffer.position.upload(&position, Usage::COMPUTE_READ)?;
     g_buffer.normal.upload(&normal, Usage::COMPUTE_READ)?;
     g_buffer.base_color.upload(&half(base_color), Usage::COMPUTE_READ)?;
-    g_buffer.specular.upload(&half(specular), Usage::COMPUTE_READ)?;
+    g_buffer.specular.upload(&specular, Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }
 

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::progress;
 use arealight_benches::ladder::{self, Options};
 use arealight_scene::Scene;
+use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -52,7 +53,7 @@ impl LadderArguments {
             command += &value.map(|value| format!(" {option} {value}")).unwrap_or_default();
         }
         if self.seed != 1 {
-            command += &format!(" --seed {}", self.seed);
+            let _ = write!(command, " --seed {}", self.seed);
         }
         command + " --html report.html"
     }

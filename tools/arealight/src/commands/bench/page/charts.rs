@@ -2,6 +2,7 @@
 
 use super::svg::{Axis, Drawing, Labels};
 use arealight_benches::ladder::{Growth, Ladder, Row, number, percent};
+use std::fmt::Write as _;
 
 /// The colours of what is ours, of others', and of Monte Carlo, in words.
 const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>rungs of the ladder</span>\
@@ -190,7 +191,7 @@ pub fn effects(found: &Ladder) -> String {
             drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
             let mut text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
             if let Some(count) = effect.instructions.filter(|_| part == 0) {
-                text += &format!(", {count} instructions");
+                let _ = write!(text, ", {count} instructions");
             }
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
@@ -209,8 +210,8 @@ pub fn growth(growths: &[Growth], of: &str) -> String {
     let y = Axis::over(steps.map(|(_, time)| time.median), bounds[3], bounds[1]);
     let mut drawing = Drawing::new(width, height, &format!("Time of a frame by its number of {of}"));
     grid(&mut drawing, &x, &y, bounds, &number_short);
-    drawing.text("axis", "middle", [(bounds[0] + bounds[2]) / 2.0, height - 6.0], of);
-    drawing.upwards([14.0, (bounds[1] + bounds[3]) / 2.0], "milliseconds a frame");
+    drawing.text("axis", "middle", [f64::midpoint(bounds[0], bounds[2]), height - 6.0], of);
+    drawing.upwards([14.0, f64::midpoint(bounds[1], bounds[3])], "milliseconds a frame");
     let mut labels = Labels::default();
     let area = [0.0, 0.0, width, height];
     for (growth, class) in growths.iter().zip(["theirs", "ours", "noise"]) {
