@@ -117,8 +117,9 @@ pub struct EffectCost {
     pub on: Spread,
     /// Time of a frame of lights that call for it, over one of quads.
     pub used: Option<Spread>,
-    /// Instructions of the shade kernel's SPIR-V that it adds, after `spirv-opt`; see [`crate::instructions`].
-    pub instructions: Option<u32>,
+    /// Instructions of the shade kernel's SPIR-V that it adds, after `spirv-opt`; see [`crate::instructions`]. Fewer than none
+    /// where a loop takes the place of what was unrolled.
+    pub instructions: Option<i64>,
 }
 
 /// What was found.
@@ -232,7 +233,7 @@ pub fn run(
         let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
         let all = workloads.iter().flat_map(|workload| &workload.methods);
         let used = all.zip(&timed.methods).find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
-        let added = counted.added_by(*effect).map(|added| added.with.saturating_sub(added.without));
+        let added = counted.added_by(*effect).map(|added| i64::from(added.with) - i64::from(added.without));
         EffectCost { effect: effect.names().join(", "), on, used, instructions: added }
     });
     let effects = effects.collect();

@@ -145,7 +145,7 @@ impl Ladder {
         let row = |effect: &super::EffectCost| {
             let used = effect.used.as_ref().map_or_else(|| "-".to_owned(), spread);
             let instructions =
-                effect.instructions.map_or_else(|| "-".to_owned(), |count| format!("+{count}"));
+                effect.instructions.map_or_else(|| "-".to_owned(), |count| format!("{count:+}"));
             vec![effect.effect.clone(), spread(&effect.on), used, instructions]
         };
         Table {

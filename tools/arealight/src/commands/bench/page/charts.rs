@@ -191,7 +191,7 @@ pub fn effects(found: &Ladder) -> String {
             drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
             let mut text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
             if let Some(count) = effect.instructions.filter(|_| part == 0) {
-                let _ = write!(text, ", {count} instructions");
+                let _ = write!(text, ", {count:+} instructions");
             }
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
