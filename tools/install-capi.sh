@@ -34,3 +34,7 @@ fill <"$crate/arealight.pc.in" >"$prefix/lib/pkgconfig/arealight.pc"
 fill <"$crate/cmake/arealight-config-version.cmake.in" >"$prefix/lib/cmake/arealight/arealight-config-version.cmake"
 install -m644 -t "$prefix/lib/cmake/arealight" "$crate/cmake/arealight-config.cmake"
 echo "installed arealight $version to $prefix"
+# The loader looks into a list of its own, which root can renew
+if ! { [[ "$(id -u)" == 0 ]] && ldconfig 2>/dev/null && ldconfig -p | grep -qF "$prefix/lib/"; }; then
+    echo "programs find the shared library with LD_LIBRARY_PATH=$prefix/lib, or after ldconfig where the loader looks there"
+fi

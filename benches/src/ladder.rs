@@ -154,7 +154,8 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// What [`Quality::within`] picks from: the rungs that are right everywhere, over quads and over lights that show images.
+    /// What [`Quality::within`] picks from: the rungs that are right everywhere, over quads and over lights that show images. One
+    /// that gave no number, or was judged nowhere, is none of them.
     ///
     /// # Errors
     /// [`UnknownRung`] where the rungs are in words that this version does not know.
@@ -166,7 +167,8 @@ impl Ladder {
                 continue;
             };
             let quality = names.quality()?;
-            if quality.horizon != Horizon::Bare {
+            let is_judged = row.errors.all.points > 0 && row.errors.all.not_finite == 0;
+            if quality.horizon != Horizon::Bare && is_judged {
                 let (error, Time { fixed, per_light, .. }) = (row.errors.all.rmse, row.time);
                 rungs.push(ProfileRung { quality, textured, error, fixed, per_light });
             }
@@ -231,8 +233,10 @@ pub fn run(
         // Without a lobe it is the other way round
         let on = if LOBES.contains(*effect) { default.ratio(clock) } else { clock.ratio(default) };
         let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
-        let all = workloads.iter().flat_map(|workload| &workload.methods);
-        let used = all.zip(&timed.methods).find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
+        // Nothing calls for it in the first
+        let all = workloads.iter().flat_map(|workload| &workload.methods).zip(&timed.methods);
+        let mut others = all.skip(workloads[0].methods.len());
+        let used = others.find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
         let added = counted.added_by(*effect).map(|added| i64::from(added.with) - i64::from(added.without));
         EffectCost { effect: effect.names().join(", "), on, used, instructions: added }
     });
@@ -285,7 +289,11 @@ fn time(
     });
     let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
     let first = &frames[0];
-    let changed = |effect: &Effects| Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
+    // The one-point form is what far lights call for
+    let changed = |effect: &Effects| Method::Rung {
+        effects: LOBES ^ *effect,
+        quality: Quality { one_point: *effect == Effects::FAR, ..Quality::default() },
+    };
 
     let mut entries = vec![];
     for (workload, frame) in workloads.iter().zip(&frames) {

@@ -184,12 +184,18 @@ fn families() -> Vec<Family> {
             Place::Far,
             Place::FarCrossing,
         ] {
-            let far = [Place::Far, Place::FarCrossing].contains(&place);
+            let judgement = match place {
+                // A capsule has no end to look into
+                Place::Far if ends == Ends::Round => Judgement::Relative(RELATIVE),
+                Place::Far | Place::FarCrossing => Judgement::Relative(RELATIVE_TUBE),
+                _ => Judgement::Backward,
+            };
+            let is_far = !matches!(judgement, Judgement::Backward);
             families.push(Family {
                 name: format!("{name}, {}", place.name()),
                 function: ShapeFunction::Tube,
-                rung: if far { DIFFERENCE } else { 0 },
-                judgement: if far { Judgement::Relative(RELATIVE_TUBE) } else { Judgement::Backward },
+                rung: if is_far { DIFFERENCE } else { 0 },
+                judgement,
                 make: Box::new(move |index| Case::Tube(hard_tube(place, ends, index))),
             });
         }

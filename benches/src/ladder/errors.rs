@@ -38,7 +38,9 @@ impl Errors {
             if found.is_finite() { finite.push((*found, *expected)) } else { not_finite += 1 }
         }
         let count = finite.len().max(1) as f64 * 3.0;
-        let mean = finite.iter().map(|(_, expected)| expected.element_sum()).sum::<f64>() / count;
+        let truth = finite.iter().map(|(_, expected)| expected.element_sum()).sum::<f64>();
+        // Of nothing there is no mean
+        let mean = if finite.is_empty() { 1.0 } else { truth / count };
         let square: f64 = finite.iter().map(|(found, expected)| (*found - *expected).length_squared()).sum();
         let sum: f64 = finite.iter().map(|(found, expected)| (*found - *expected).element_sum()).sum();
         let mut largest: Vec<f64> =

@@ -10,14 +10,18 @@
 // origin near the camera that you choose; lights are packed with the same. A light's front is where its vertices run
 // counter-clockwise.
 //
-// Every function that returns an ArealightResult checks what it can, writes nothing and records nothing where it fails, and leaves a
-// message for arealight_last_error. An object is used by one thread at a time.
+// Every function that returns an ArealightResult checks what it can, records nothing where it fails, writes nothing but the sizes that are
+// needed and a null handle, and leaves a message for arealight_last_error. An object is used by one thread at a time.
 
 #ifndef AREALIGHT_H
 #define AREALIGHT_H
 
 #include <stddef.h>
 #include <stdint.h>
+
+// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
+// with. They must be equal; arealight_create refuses another.
+#define AREALIGHT_ABI_VERSION 1
 
 // The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
 #define AREALIGHT_EFFECT_DIFFUSE 1
@@ -136,10 +140,6 @@
 // The range of an ArealightBuffer from its offset to its end.
 #define AREALIGHT_WHOLE_SIZE UINT64_MAX
 
-// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
-// with. They must be equal; arealight_create refuses another.
-#define AREALIGHT_ABI_VERSION 1
-
 // What became of a call. Whatever is not AREALIGHT_RESULT_OK comes with a message: arealight_last_error.
 typedef enum ArealightResult {
     // Done.
@@ -240,6 +240,59 @@ typedef struct ArealightUpload {
     // VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
     void *command_buffer;
 } ArealightUpload;
+
+// A flat polygon that emits constant radiance, or shows an image. Convex or concave, without crossing edges.
+typedef struct ArealightLight {
+    // For messages, UTF-8; may be null.
+    const char *name;
+    // World positions, three numbers a vertex: seen from the front, counter-clockwise.
+    const double *vertices;
+    // Null, or two texture coordinates a vertex, in [0, 1], an affine function of the positions: the light shows
+    // `texture_layer` of the light textures.
+    const double *texture_coordinates;
+    // From 3 on.
+    uint32_t vertex_count;
+    // Read only with texture coordinates.
+    uint32_t texture_layer;
+    // Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
+    float radiance[3];
+    // 1: the back emits too.
+    uint32_t two_sided;
+} ArealightLight;
+
+// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
+typedef struct ArealightPackedLights {
+    // Where the lights go, aligned to 4 bytes; null to ask for the sizes alone.
+    void *lights;
+    // Where the vertices go, likewise.
+    void *vertices;
+    // In: bytes at `lights`. Out: bytes that are needed, 128 a light.
+    uint64_t lights_size;
+    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
+    uint64_t vertices_size;
+} ArealightPackedLights;
+
+// A disk, sphere or tube of constant radiance, in world positions.
+typedef struct ArealightShape {
+    // For messages, UTF-8; may be null.
+    const char *name;
+    // One of AREALIGHT_SHAPE_*.
+    uint32_t kind;
+    // Of a tube: one of AREALIGHT_TUBE_*.
+    uint32_t ends;
+    // The middle.
+    double center[3];
+    // Of an ellipse and a tube.
+    double axis_u[3];
+    // Of an ellipse.
+    double axis_v[3];
+    // Of a sphere and a tube, above zero.
+    double radius;
+    // Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
+    float radiance[3];
+    // 1: the back of an ellipse, or the inside of a sphere, emits too.
+    uint32_t two_sided;
+} ArealightShape;
 
 // What a pass is specialised for. All zero is the exact rung without an effect.
 typedef struct ArealightPassOptions {
@@ -342,160 +395,9 @@ typedef struct ArealightFrame {
     const float *position_from_clip;
 } ArealightFrame;
 
-// A flat polygon that emits constant radiance, or shows an image. Convex or concave, without crossing edges.
-typedef struct ArealightLight {
-    // For messages, UTF-8; may be null.
-    const char *name;
-    // World positions, three numbers a vertex: seen from the front, counter-clockwise.
-    const double *vertices;
-    // Null, or two texture coordinates a vertex, in [0, 1], an affine function of the positions: the light shows
-    // `texture_layer` of the light textures.
-    const double *texture_coordinates;
-    // From 3 on.
-    uint32_t vertex_count;
-    // Read only with texture coordinates.
-    uint32_t texture_layer;
-    // Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
-    float radiance[3];
-    // 1: the back emits too.
-    uint32_t two_sided;
-} ArealightLight;
-
-// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
-typedef struct ArealightPackedLights {
-    // Where the lights go, aligned to 4 bytes; null to ask for the sizes alone.
-    void *lights;
-    // Where the vertices go, likewise.
-    void *vertices;
-    // In: bytes at `lights`. Out: bytes that are needed, 128 a light.
-    uint64_t lights_size;
-    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
-    uint64_t vertices_size;
-} ArealightPackedLights;
-
-// A disk, sphere or tube of constant radiance, in world positions.
-typedef struct ArealightShape {
-    // For messages, UTF-8; may be null.
-    const char *name;
-    // One of AREALIGHT_SHAPE_*.
-    uint32_t kind;
-    // Of a tube: one of AREALIGHT_TUBE_*.
-    uint32_t ends;
-    // The middle.
-    double center[3];
-    // Of an ellipse and a tube.
-    double axis_u[3];
-    // Of an ellipse.
-    double axis_v[3];
-    // Of a sphere and a tube, above zero.
-    double radius;
-    // Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
-    float radiance[3];
-    // 1: the back of an ellipse, or the inside of a sphere, emits too.
-    uint32_t two_sided;
-} ArealightShape;
-
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
-
-// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty where none
-// has. Valid until the next call of this thread that fails.
-const char *arealight_last_error(void);
-
-// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
-//
-// The host sees to it:
-// Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
-enum ArealightResult arealight_create(const struct ArealightHost *host,
-                                      const struct ArealightTable *table,
-                                      struct Arealight **out);
-
-// What memory the table needs.
-//
-// The host sees to it:
-// Pointers are null or valid.
-enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
-
-// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
-// once; the commands run before any that shade.
-//
-// The host sees to it:
-// Pointers are null or valid, and `upload` is as ArealightUpload says.
-enum ArealightResult arealight_table_upload(struct Arealight *arealight,
-                                            const struct ArealightUpload *upload);
-
-// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
-// nothing.
-//
-// The host sees to it:
-// No commands that shade are pending, the device is alive, and no other thread uses the object.
-enum ArealightResult arealight_destroy(struct Arealight *arealight);
-
-// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
-//
-// The host sees to it:
-// Pointers are null or valid.
-enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
-                                           const struct ArealightPassOptions *options,
-                                           struct ArealightPass **out);
-
-// What descriptor sets of the pass are made with.
-//
-// The host sees to it:
-// Pointers are null or valid.
-enum ArealightResult arealight_pass_set_layout(const struct ArealightPass *pass,
-                                               struct ArealightSetLayout *out);
-
-// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
-// which was uploaded.
-//
-// The host sees to it:
-// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
-enum ArealightResult arealight_pass_write_set(const struct ArealightPass *pass,
-                                              const struct Arealight *arealight,
-                                              uint64_t set,
-                                              const struct ArealightResources *resources);
-
-// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
-//
-// The host sees to it:
-// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
-// set was written, with images of the frame's size and buffers of
-// `frame.light_count` lights and `frame.shape_count` shapes.
-enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
-                                           void *command_buffer,
-                                           uint64_t set,
-                                           const struct ArealightFrame *frame);
-
-// Destroys a pass, before or after the object that it was made from. Null is nothing.
-//
-// The host sees to it:
-// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
-enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
-
-// Packs lights for the pass, relative to `origin` (three numbers, in world positions), into arrays of the host, which
-// uploads them to its buffers. With null arrays, only says how large they must be.
-//
-// The host sees to it:
-// Pointers are null or valid, with as many items as their counts say.
-enum ArealightResult arealight_pass_pack_lights(const struct ArealightPass *pass,
-                                                const struct ArealightLight *lights,
-                                                uint32_t light_count,
-                                                const double *origin,
-                                                struct ArealightPackedLights *packed);
-
-// Packs disks, spheres and tubes for the pass, relative to `origin`, into an array of the host, 64 bytes each and aligned to 4.
-// `*size` is the array's in bytes, and becomes what is needed. With a null array, only says so.
-//
-// The host sees to it:
-// Pointers are null or valid, with as many items as their counts say.
-enum ArealightResult arealight_pass_pack_shapes(const struct ArealightPass *pass,
-                                                const struct ArealightShape *shapes,
-                                                uint32_t shape_count,
-                                                const double *origin,
-                                                void *packed,
-                                                uint64_t *size);
 
 // AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
 uint32_t arealight_abi_version(void);

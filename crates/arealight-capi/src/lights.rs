@@ -44,13 +44,15 @@ pub unsafe extern "C" fn arealight_pass_pack_lights(
         [arrays.lights_size, arrays.vertices_size] = bytes.map(|bytes| bytes.len() as u64);
         // SAFETY: as above.
         unsafe { arguments::write(packed, arrays, "packed") }?;
-        for ((to, size), (bytes, field)) in
-            given.into_iter().zip(bytes.into_iter().zip(["packed.lights_size", "packed.vertices_size"]))
-        {
-            if !to.is_null() {
-                // SAFETY: as above.
-                unsafe { copy(bytes, to, size, field) }?;
-            }
+        let fields = ["packed.lights_size", "packed.vertices_size"];
+        let arrays =
+            || given.into_iter().zip(bytes.into_iter().zip(fields)).filter(|((to, _), _)| !to.is_null());
+        for ((_, size), (bytes, field)) in arrays() {
+            check_size(bytes, size, field)?;
+        }
+        for ((to, _), (bytes, _)) in arrays() {
+            // SAFETY: as above; there is room.
+            unsafe { copy(bytes, to) };
         }
         Ok(())
     })
@@ -86,8 +88,12 @@ pub unsafe extern "C" fn arealight_pass_pack_shapes(
         let bytes: &[u8] = bytemuck::cast_slice(&made);
         // SAFETY: as above.
         unsafe { arguments::write(size, bytes.len() as u64, "size") }?;
-        // SAFETY: as above.
-        if packed.is_null() { Ok(()) } else { unsafe { copy(bytes, packed, given, "size") } }
+        if !packed.is_null() {
+            check_size(bytes, given, "size")?;
+            // SAFETY: as above; there is room.
+            unsafe { copy(bytes, packed) };
+        }
+        Ok(())
     })
 }
 
@@ -123,16 +129,19 @@ fn read_flag(flag: u32, field: &str) -> Result<bool, Failure> {
     }
 }
 
-/// # Safety
-/// `to` has `size` bytes that nobody else uses.
-unsafe fn copy(bytes: &[u8], to: *mut c_void, size: u64, field: &str) -> Result<(), Failure> {
+fn check_size(bytes: &[u8], size: u64, field: &str) -> Result<(), Failure> {
     if size < bytes.len() as u64 {
         let message = format!("{field}: {size}, but {} are needed", bytes.len());
         return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
     }
+    Ok(())
+}
+
+/// # Safety
+/// `to` has as many bytes, that nobody else uses.
+unsafe fn copy(bytes: &[u8], to: *mut c_void) {
     // SAFETY: the same contract; both are as long as is copied.
     unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), to.cast(), bytes.len()) };
-    Ok(())
 }
 
 /// # Safety

@@ -3,6 +3,7 @@
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
 use crate::{Bounds, Scene, SceneError, Warning, area_lights, emitters, materials, meshes, nodes};
+use glam::Vec3;
 use std::path::Path;
 
 /// A scene in the making.
@@ -17,6 +18,8 @@ pub(crate) struct Loader {
     pub images: Vec<Option<u32>>,
     /// The lights that a texture shines through, until all are known.
     pub textured: Vec<TexturedLight>,
+    /// The node whose mesh was last found to stand for a shape, and what it shines with.
+    pub shaped: Option<(usize, Vec3)>,
 }
 
 impl Loader {
@@ -42,7 +45,7 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let materials = vec![None; document.root.materials.len() + 1];
     let images = vec![None; document.root.images.len()];
     let scene = Scene { name, ..Scene::default() };
-    let mut loader = Loader { document, scene, materials, images, textured: Vec::new() };
+    let mut loader = Loader { document, scene, materials, images, textured: Vec::new(), shaped: None };
     warn_of_what_is_ignored(&mut loader);
     // Place the nodes in the world
     let placed = nodes::place(&mut loader)?;

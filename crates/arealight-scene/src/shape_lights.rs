@@ -49,6 +49,13 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     let place = format!("light '{}' (node {})", instance.name, node.index);
     let material = &loader.scene.materials[instance.material as usize];
     let radiance = material.emission;
+    // A mesh of several materials is several primitives, and one light
+    if let Some((index, shone)) = loader.shaped.filter(|(index, _)| *index == node.index) {
+        if shone != radiance {
+            loader.warn(place, format!("node {index} shines with the emission of its first primitive"));
+        }
+        return true;
+    }
     let (double_sided, textured) = (material.double_sided, material.emission_texture.is_some());
     let shape = Said::deserialize(said).map_err(|error| error.to_string());
     let shape = shape.and_then(|said| said.placed(&node.world)).and_then(|shape| {
@@ -62,6 +69,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
             if textured {
                 loader.warn(place, "its texture is not shown in what it lights: a shape has one colour");
             }
+            loader.shaped = Some((node.index, radiance));
             loader.scene.shapes.push(light);
             true
         }

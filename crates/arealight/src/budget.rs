@@ -114,6 +114,10 @@ pub enum BudgetError {
     },
 }
 
+/// Errors, or times, that are apart by no more than this factor count as equal: a rung of the same error to three digits must
+/// not be taken for its last one, at twice the time.
+const EQUAL: f64 = 1.01;
+
 impl Quality {
     /// Picks a rung from what was measured on a device: the most accurate that takes no longer than allowed, or the fastest
     /// that errs no more than allowed. Of equals the faster, or the more accurate.
@@ -140,15 +144,16 @@ impl Quality {
         };
         let measured = |rung: &&ProfileRung| {
             let (bounded, wanted) = keys(rung);
-            rung.textured == budget.frame.textured && bounded.is_finite() && wanted.is_finite()
+            let is_known = |value: f64| value.is_finite() && value >= 0.0;
+            rung.textured == budget.frame.textured && is_known(bounded) && is_known(wanted)
         };
         let rungs = || profile.rungs.iter().filter(measured);
-        let best = rungs().filter(|rung| keys(rung).0 <= limit).min_by(|a, b| {
-            let (a, b) = (keys(a), keys(b));
-            a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0))
-        });
-        if let Some(best) = best {
-            return Ok(*best);
+        let allowed = || rungs().filter(|rung| keys(rung).0 <= limit);
+        if let Some(best) = allowed().map(|rung| keys(rung).1).min_by(f64::total_cmp) {
+            let equal = allowed().filter(|rung| keys(rung).1 <= best * EQUAL);
+            if let Some(best) = equal.min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) {
+                return Ok(*best);
+            }
         }
         let device = profile.device.clone();
         let Some(nearest) = rungs().min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) else {
@@ -220,6 +225,19 @@ mod tests {
         // Ten times as many lights take as much more
         let crowd = Quality::within(budget(100, Limit::Milliseconds(16.0)), &profile());
         assert!(matches!(crowd, Err(BudgetError::TooSlow { .. })));
+    }
+
+    #[test]
+    fn the_last_digit_of_an_error_is_not_paid_for() {
+        let mut profile = profile();
+        let dear = ProfileRung { error: 0.01 * (1.0 - 1e-6), per_light: 7.0, ..profile.rungs[0] };
+        profile.rungs.push(dear);
+        let pick =
+            |profile: &Profile| Quality::within(budget(10, Limit::Milliseconds(1e3)), profile).unwrap();
+        assert_eq!(pick(&profile).per_light, 3.0);
+        // What is better by more is
+        profile.rungs.last_mut().unwrap().error = 0.009;
+        assert_eq!(pick(&profile).per_light, 7.0);
     }
 
     #[test]

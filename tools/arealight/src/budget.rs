@@ -20,14 +20,18 @@ pub struct BudgetArguments {
 }
 
 impl BudgetArguments {
-    /// The rung for a frame; none without a budget.
+    /// The rung for a frame on a device; none without a budget. A profile of another device is said to be one.
     ///
     /// # Errors
-    /// A profile that cannot be read; a budget that no rung keeps, with the nearest.
-    pub fn pick(&self, frame: FrameLoad) -> Result<Option<ProfileRung>, Failure> {
+    /// A profile without a budget, or that cannot be read; a budget that no rung keeps, with the nearest.
+    pub fn pick(&self, frame: FrameLoad, device: &str) -> Result<Option<ProfileRung>, Failure> {
         let (argument, limit) = match (self.budget_ms, self.max_error) {
             (Some(limit), _) => ("--budget-ms", Limit::Milliseconds(limit)),
             (None, Some(limit)) => ("--max-error", Limit::Error(limit)),
+            (None, None) if self.profile.is_some() => {
+                let message = "is for --budget-ms or --max-error, and there is neither".into();
+                return Err(Failure::Argument { argument: "--profile", message });
+            }
             (None, None) => return Ok(None),
         };
         let Some(path) = &self.profile else { return Ok(None) };
@@ -39,6 +43,10 @@ impl BudgetArguments {
             )
         })?;
         let profile = found.profile().map_err(|error| Failure::input(path, error))?;
+        if profile.device != device {
+            let (path, of) = (path.display(), &profile.device);
+            eprintln!("warning: {path}: was measured on '{of}', and this is '{device}': times will differ");
+        }
         let picked = Quality::within(Budget { frame, limit }, &profile);
         picked.map(Some).map_err(|error| Failure::Argument { argument, message: error.to_string() })
     }

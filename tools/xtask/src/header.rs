@@ -44,10 +44,8 @@ pub fn header(root: &Path) -> Result<String, TaskError> {
     let folder = root.join(CRATE);
     let failed = |message: String| TaskError::Header { message };
     let config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).map_err(failed)?;
-    let mut builder = cbindgen::Builder::new().with_config(config);
-    for name in ["types", "failure", "device", "pass", "lights", "lib"] {
-        builder = builder.with_src(folder.join(format!("src/{name}.rs")));
-    }
+    // Its modules are followed from there
+    let builder = cbindgen::Builder::new().with_config(config).with_src(folder.join("src/lib.rs"));
     let bindings = builder.generate().map_err(|error| failed(error.to_string()))?;
     let mut bytes = vec![];
     bindings.write(&mut bytes);
@@ -149,7 +147,7 @@ mod tests {
     #[test]
     fn c_and_cpp_take_it_and_its_assertions_hold() {
         let header = header(&root()).unwrap();
-        let strict = ["-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"];
+        let strict = ["-Wall", "-Wextra", "-Wpedantic", "-Wredundant-decls", "-Werror", "-fsyntax-only"];
         let c = [&["-x", "c", "-std=c11"], &strict[..]].concat();
         let cpp = [&["-x", "c++", "-std=c++11"], &strict[..]].concat();
         assert_eq!(compiles("cc", &c, &header), Ok(()));

@@ -84,20 +84,21 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
     let counted = Mutex::new(vec![None; plans.len()]);
     let next = std::sync::atomic::AtomicUsize::new(0);
     let work = || -> Result<(), TaskError> {
-        while let Some(plan) = plans.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
+        loop {
+            let place = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            let Some(plan) = plans.get(place) else { return Ok(()) };
             let count = count(&optimised(&spirv, &plan.constants)?);
             println!("{:40} {:5} instructions", plan.name, count.instructions);
-            let place = plans.iter().position(|other| other.name == plan.name);
-            if let (Some(place), Ok(mut counted)) = (place, counted.lock()) {
-                counted[place] = Some(count);
-            }
+            counted.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[place] = Some(count);
         }
-        Ok(())
     };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().try_for_each(|worker| worker.join().unwrap_or(Ok(())))
+        // What a thread dies of, all die of: no table is written of what is left
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })?;
     let counted = counted.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
 

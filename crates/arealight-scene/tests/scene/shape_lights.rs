@@ -70,6 +70,24 @@ fn emissive_meshes_may_stand_for_shapes() {
 }
 
 #[test]
+fn a_mesh_of_two_materials_is_one_shape() {
+    let two = |strength: f32| {
+        let said = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
+        let mut writer = emitter_with(&sphere(1.0, 8, 4), json!({ "extras": said }));
+        let other = writer.emitter("caps", [3.0 * strength, 2.0 * strength, strength], false);
+        let mut caps = writer.root["meshes"][0]["primitives"][0].clone();
+        caps["material"] = json!(other);
+        writer.root["meshes"][0]["primitives"].as_array_mut().unwrap().push(caps);
+        load(writer)
+    };
+    let scene = two(1.0);
+    assert_eq!((scene.shapes.len(), scene.lights.len(), warnings(&scene).len()), (1, 0, 0));
+    let scene = two(0.5);
+    assert_eq!((scene.shapes.len(), scene.shapes[0].radiance), (1, Vec3::new(3.0, 2.0, 1.0)));
+    assert!(warnings(&scene)[0].contains("shines with the emission of its first primitive"));
+}
+
+#[test]
 fn disks_face_up_and_take_any_scale() {
     let said = json!({ "shape": "disk", "radius": 2 });
     for (scale, front) in

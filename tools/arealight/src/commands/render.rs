@@ -146,6 +146,17 @@ impl EffectChoice {
     }
 }
 
+/// A profile's times are of quads with one side, and of those that show images.
+fn warn_of_dearer_lights(effects: Effects, path: &Path) {
+    let measured =
+        Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::TEXTURED | Effects::FAR;
+    let dearer = effects - measured;
+    if !dearer.is_empty() {
+        let path = path.display();
+        eprintln!("warning: {path}: the profile's times are of plain quads, and {dearer} takes longer");
+    }
+}
+
 /// What a render took, for the summary.
 struct Outcome {
     visibility: Option<Duration>,
@@ -173,13 +184,16 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     prepare(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
     let camera = choose_camera(&scene, arguments)?;
-    let picked = arguments.budget.pick(arguments.load(&scene))?;
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
     let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
     engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
     let effects = arguments.effects.effects(&scene, &path);
+    let picked = arguments.budget.pick(arguments.load(&scene), &engine.host().device_name())?;
+    if picked.is_some() {
+        warn_of_dearer_lights(effects, &path);
+    }
     let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |rung| rung.quality);
     let mut outcome = render(&engine, &scene, &camera, samples, (effects, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;

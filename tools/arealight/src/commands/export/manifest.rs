@@ -94,6 +94,7 @@ fn memory() -> Value {
         "light_texture_layer": layers.collect::<Map<_, _>>(),
         "light": size_of::<arealight::gpu::GpuLight>(),
         "light_vertex": size_of::<[f32; 4]>(),
+        "shape": size_of::<arealight::gpu::GpuShape>(),
     })
 }
 
