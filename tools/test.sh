@@ -54,7 +54,9 @@ run_tests() {
 # under core and synchronisation validation, which cannot be had together with this.)
 run_assisted() {
     if cargo nextest --version >/dev/null 2>&1; then
-        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run -p arealight-tests -p arealight-examples --locked
+        # Of the whole workspace, so that what was built for the step before is what runs
+        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run --workspace --locked \
+            -E 'package(arealight-tests) or package(arealight-examples)'
     else
         AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked
     fi
