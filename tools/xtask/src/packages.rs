@@ -1,4 +1,4 @@
-//! `packages`: what would be published is whole, and builds with the oldest Rust that is promised.
+//! `packages`: what would be published is whole, and nothing that it is built from asks for a newer Rust than is promised.
 
 use crate::TaskError;
 use serde::Deserialize;
@@ -66,14 +66,18 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
     let published: Vec<&Package> = metadata.published().collect();
     let mut wrong = metadata.too_new();
 
-    // Pack all at once, since they depend on each other; what is not committed counts too
-    let mut arguments = vec!["package", "--no-verify", "--allow-dirty", "--locked", "--quiet"];
+    // Pack all at once, since they depend on each other; what is not committed counts too. A lock file of each package would be
+    // resolved anew, from a registry that may be out of reach
+    let mut arguments =
+        vec!["package", "--no-verify", "--allow-dirty", "--locked", "--quiet", "--exclude-lockfile"];
     for package in &published {
         arguments.extend(["-p", &package.name]);
     }
     cargo(root, &arguments)?;
     for package in &published {
-        let list = cargo(root, &["package", "--list", "--allow-dirty", "--quiet", "-p", &package.name])?;
+        let list =
+            ["package", "--list", "--allow-dirty", "--quiet", "--exclude-lockfile", "-p", &package.name];
+        let list = cargo(root, &list)?;
         let files: BTreeSet<String> = list.lines().map(|line| line.replace('\\', "/")).collect();
         wrong.extend(missing(&package.name, &files));
         println!("{}: {} files", package.name, files.len());
