@@ -3,7 +3,8 @@
 //! `cargo bench -p arealight-benches --bench effects`. Prints a Markdown table.
 
 use arealight_benches::effects::{markdown, measure};
-use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
+use arealight_benches::start::start;
+use arealight_engine::{Engine, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use glam::Vec3;
 use std::path::Path;
@@ -12,15 +13,7 @@ const ROUNDS: usize = 60;
 const SIZE: [u32; 2] = [320, 180];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    // Under `cargo test` a benchmark is only to be seen to run
-    let rounds = if std::env::args().any(|argument| argument == "--bench") { ROUNDS } else { 1 };
-    let host = match Host::new(HostOptions::default()) {
-        Ok(host) => host,
-        Err(error) => {
-            eprintln!("skipped: {error}");
-            return Ok(());
-        }
-    };
+    let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
     let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
     let scene = Scene::load(Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/sweep.glb"))?;
     let camera =

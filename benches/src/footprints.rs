@@ -6,11 +6,8 @@ mod report;
 
 use crate::textures::{self, TextureCost};
 use arealight::kernels::{EVAL, Kernel};
-use arealight::{
-    Effects, Footprint, FormFactor, LightTable, PolygonLight, PyramidSize, Quality, Surface, TexturePart,
-    plan,
-};
-use arealight_engine::{Engine, EngineError, EvalPoint, SourceImage, SourceTexels};
+use arealight::{Effects, Footprint, FormFactor, LightTable, PolygonLight, Quality, Surface, plan};
+use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_host::Host;
 use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, Summary, poses};
@@ -271,20 +268,9 @@ pub fn run(
 }
 
 /// An engine that has the pictures for layers.
-fn engine(host: &Host, table: &LightTable, pictures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
+fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::Rgba32Float)?;
-    let texels: Vec<Vec<[f32; 4]>> = pictures
-        .iter()
-        .map(|picture| picture.texels().iter().map(|t| t.as_vec3().extend(1.0).to_array()).collect())
-        .collect();
-    let image = |texels| SourceImage {
-        texels: SourceTexels::Linear(texels),
-        size: [SIDE; 2],
-        part: TexturePart::default(),
-    };
-    let images: Vec<SourceImage<'_>> = texels.iter().map(|texels| image(texels)).collect();
-    let size = PyramidSize::new(SIDE, SIDE).expect("a size of light textures");
-    engine.load_textures(size, &images)?;
+    crate::pictures::load(&mut engine, textures)?;
     Ok(engine)
 }
 

@@ -17,13 +17,13 @@ pub use methods::{DEFAULT, PRACTICE};
 pub use names::{RungNames, UnknownRung};
 pub use pictures::{Picture, Pictures};
 pub use scaling::{Growth, Scaling};
-pub use text::{number, percent};
+pub use text::{error_cells, number, percent};
 pub use timing::{Spread, Time};
 
 use crate::instructions::Instructions;
 use crate::textures::is_software;
-use arealight::{Effects, Horizon, LightTable, Profile, ProfileRung, PyramidSize, Quality, TexturePart};
-use arealight_engine::{Engine, EngineError, GBuffer, SourceImage, SourceTexels};
+use arealight::{Effects, Horizon, LightTable, Profile, ProfileRung, Quality};
+use arealight_engine::{Engine, EngineError, GBuffer};
 use arealight_host::Host;
 use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
@@ -325,22 +325,9 @@ fn patches(engine: &Engine, workload: &Workload, seed: u64) -> Result<GBuffer, E
 }
 
 /// An engine whose light textures are the pictures.
-fn engine(host: &Host, table: &LightTable, pictures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
+fn engine(host: &Host, table: &LightTable, textures: &[Arc<Texture>]) -> Result<Engine, EngineError> {
     let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
-    let texels: Vec<Vec<[f32; 4]>> = pictures
-        .iter()
-        .map(|picture| picture.texels().iter().map(|t| t.as_vec3().extend(1.0).to_array()).collect())
-        .collect();
-    let side = pictures.first().map_or(1, |picture| picture.width() as u32);
-    let sources: Vec<SourceImage<'_>> = texels
-        .iter()
-        .map(|texels| SourceImage {
-            texels: SourceTexels::Linear(texels),
-            size: [side; 2],
-            part: TexturePart::default(),
-        })
-        .collect();
-    engine.load_textures(PyramidSize::for_image(side, side), &sources)?;
+    crate::pictures::load(&mut engine, textures)?;
     Ok(engine)
 }
 

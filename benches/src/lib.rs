@@ -15,6 +15,8 @@
 //! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
+//! | [`pictures`] | pictures as light textures of an engine |
+//! | [`start`] | what a benchmark begins with |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
@@ -25,9 +27,12 @@ pub mod instructions;
 pub mod kernel;
 pub mod ladder;
 pub mod method;
+pub mod pictures;
 pub mod report;
 pub mod shape_cost;
 pub mod shape_stability;
 pub mod shapes;
 pub mod stability;
+pub mod start;
+mod table;
 pub mod textures;

@@ -2,6 +2,7 @@
 
 use super::cost::UNTEXTURED;
 use super::{Footprints, JUDGED_PICTURES, METHODS, Method, Row};
+use crate::table::Table;
 use crate::textures;
 use arealight_oracle::shading::poses::Family;
 use std::fmt::Write as _;
@@ -10,49 +11,15 @@ use std::fmt::Write as _;
 const HEAD: &str = include_str!("head.txt");
 const TAIL: &str = include_str!("tail.txt");
 
-/// A table: its heads, and its rows, the first cell of each being a name.
-struct Table {
-    heads: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    /// A row for each method, under its name.
-    fn by_method(heads: &[String], cells: impl Fn(&Method) -> Vec<String>) -> Self {
-        let heads = std::iter::once("lookup".to_owned()).chain(heads.iter().cloned()).collect();
-        let row = |method: &Method| {
-            let mut row = vec![method.name.to_owned()];
-            row.extend(cells(method));
-            row
-        };
-        Self { heads, rows: METHODS.iter().map(row).collect() }
-    }
-
-    fn to_text(&self) -> String {
-        let width = |column: usize| {
-            let all = self.rows.iter().chain([&self.heads]);
-            all.map(|row| row[column].chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..self.heads.len()).map(width).collect();
-        let mut text = String::new();
-        for row in [&self.heads].into_iter().chain(&self.rows) {
-            let mut line = format!("  {:<1$}", row[0], widths[0]);
-            for (cell, width) in row.iter().zip(&widths).skip(1) {
-                let _ = write!(line, "  {cell:>width$}");
-            }
-            text.push_str(line.trim_end());
-            text.push('\n');
-        }
-        text
-    }
-
-    fn to_markdown(&self) -> String {
-        let mut text = format!("| {} |\n|{}\n", self.heads.join(" | "), "---|".repeat(self.heads.len()));
-        for row in &self.rows {
-            let _ = writeln!(text, "| {} |", row.join(" | "));
-        }
-        text
-    }
+/// A row for each method, under its name.
+fn by_method(heads: &[String], cells: impl Fn(&Method) -> Vec<String>) -> Table {
+    let heads = std::iter::once("lookup".to_owned()).chain(heads.iter().cloned()).collect();
+    let row = |method: &Method| {
+        let mut row = vec![method.name.to_owned()];
+        row.extend(cells(method));
+        row
+    };
+    Table { heads, rows: METHODS.iter().map(row).collect() }
 }
 
 impl Row {
@@ -76,7 +43,7 @@ impl Footprints {
     /// A cell for each family.
     fn by_family(&self, pictures: &str, cell: impl Fn(&Row) -> String) -> Table {
         let heads = Family::ALL.map(|family| family.description().to_owned());
-        Table::by_method(&heads, |method| {
+        by_method(&heads, |method| {
             let is_it = |row: &&Row| row.pictures == pictures && row.method == method.name;
             self.rows.iter().filter(is_it).map(&cell).collect()
         })
@@ -123,7 +90,7 @@ impl Footprints {
             self.far.iter().filter(move |far| far.method == name)
         };
         let heads: Vec<String> = of(first).map(|far| format!("{}, {}", far.picture, far.surface)).collect();
-        Table::by_method(&heads, |method| of(method).map(|far| format!("{:.4}", far.ratio)).collect())
+        by_method(&heads, |method| of(method).map(|far| format!("{:.4}", far.ratio)).collect())
     }
 
     /// Tables for a terminal.

@@ -1,45 +1,26 @@
 //! What was found, for people: as text for a terminal, as Markdown for the documents.
 
-use super::{Ladder, Row, Spread};
+use super::{Ladder, Row, SplitErrors, Spread};
+use crate::table::Table;
 use std::fmt::Write as _;
 
-/// A table: heads, and rows of cells.
-struct Table {
-    heads: Vec<&'static str>,
-    rows: Vec<Vec<String>>,
+/// Errors, in the order of every table of them: all, of it fit, table and integral; p99, worst, bias; how many are no numbers.
+pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
+    [
+        percent(errors.all.rmse),
+        percent(errors.fit),
+        percent(errors.table),
+        percent(errors.integral),
+        percent(errors.all.p99),
+        percent(errors.all.worst),
+        percent(errors.all.bias),
+        errors.all.not_finite.to_string(),
+    ]
 }
 
-impl Table {
-    fn to_text(&self) -> String {
-        let heads: Vec<String> = self.heads.iter().map(|head| (*head).to_owned()).collect();
-        let width = |column: usize| {
-            let all = self.rows.iter().chain([&heads]);
-            all.filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-        };
-        let widths: Vec<usize> = (0..heads.len()).map(width).collect();
-        let mut text = String::new();
-        for row in [&heads].into_iter().chain(&self.rows) {
-            let mut line = String::from(" ");
-            for (index, (cell, width)) in row.iter().zip(&widths).enumerate() {
-                let _ = if index == 0 {
-                    write!(line, " {cell:<width$}")
-                } else {
-                    write!(line, "  {cell:>width$}")
-                };
-            }
-            text.push_str(line.trim_end());
-            text.push('\n');
-        }
-        text
-    }
-
-    fn to_markdown(&self) -> String {
-        let mut text = format!("| {} |\n|{}\n", self.heads.join(" | "), "---|".repeat(self.heads.len()));
-        for row in &self.rows {
-            let _ = writeln!(text, "| {} |", row.join(" | "));
-        }
-        text
-    }
+/// A table of those heads.
+fn table(heads: &[&str], rows: Vec<Vec<String>>) -> Table {
+    Table { heads: heads.iter().map(|head| (*head).to_owned()).collect(), rows }
 }
 
 /// Three digits, and as few zeros as can be.
@@ -84,28 +65,17 @@ impl Ladder {
 
     fn ladder(&self, lights: &str) -> Table {
         let row = |row: &Row| {
-            let (errors, time) = (&row.errors, &row.time);
             let samples = |pick: fn(&super::Equal) -> f64| {
                 row.samples.as_ref().map_or_else(String::new, |s| number(pick(s)))
             };
-            vec![
-                row.name.clone(),
-                percent(errors.all.rmse),
-                percent(errors.fit),
-                percent(errors.table),
-                percent(errors.integral),
-                percent(errors.all.p99),
-                percent(errors.all.worst),
-                percent(errors.all.bias),
-                errors.all.not_finite.to_string(),
-                number(time.milliseconds.median),
-                spread(&time.ratio),
-                samples(|equal| equal.error),
-                samples(|equal| equal.time),
-            ]
+            let mut cells = vec![row.name.clone()];
+            cells.extend(error_cells(&row.errors));
+            cells.extend([number(row.time.milliseconds.median), spread(&row.time.ratio)]);
+            cells.extend([samples(|equal| equal.error), samples(|equal| equal.time)]);
+            cells
         };
-        Table {
-            heads: vec![
+        table(
+            &[
                 "method",
                 "RMSE",
                 "of it fit",
@@ -120,8 +90,8 @@ impl Ladder {
                 "samples, equal error",
                 "equal time",
             ],
-            rows: self.rows_of(lights).map(row).collect(),
-        }
+            self.rows_of(lights).map(row).collect(),
+        )
     }
 
     fn samples(&self) -> Table {
@@ -135,10 +105,10 @@ impl Ladder {
                 if samples.measured { "measured" } else { "in proportion" }.to_owned(),
             ]
         };
-        Table {
-            heads: vec!["samples", "RMSE", "p99", "worst", "ms", "time is"],
-            rows: self.monte_carlo.iter().map(row).collect(),
-        }
+        table(
+            &["samples", "RMSE", "p99", "worst", "ms", "time is"],
+            self.monte_carlo.iter().map(row).collect(),
+        )
     }
 
     fn effects(&self) -> Table {
@@ -148,15 +118,15 @@ impl Ladder {
                 effect.instructions.map_or_else(|| "-".to_owned(), |count| format!("{count:+}"));
             vec![effect.effect.clone(), spread(&effect.on), used, instructions]
         };
-        Table {
-            heads: vec![
+        table(
+            &[
                 "effect",
                 "turned on, time without it = 1",
                 "lights that call for it, quads = 1",
                 "SPIR-V instructions",
             ],
-            rows: self.effects.iter().map(row).collect(),
-        }
+            self.effects.iter().map(row).collect(),
+        )
     }
 
     fn scaling(&self, by_lights: bool) -> Table {
@@ -169,7 +139,7 @@ impl Ladder {
             let cells = growths.iter().map(|growth| number(growth.steps[index].1.median));
             std::iter::once(count.to_string()).chain(cells).collect()
         };
-        Table { heads, rows: (0..steps).map(row).collect() }
+        table(&heads, (0..steps).map(row).collect())
     }
 
     /// What the numbers are, in words.

@@ -5,12 +5,12 @@
 
 use crate::TaskError;
 use crate::manifest::hash;
+use crate::parallel::in_parallel;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::Mutex;
 
 const KERNEL: &str = "shaders/kernels/shade.comp";
 const MODULE: &str = "crates/arealight/spirv/shade.spv";
@@ -79,42 +79,23 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
         return Ok(fresh);
     }
 
-    // Count every specialisation, on as many threads as there are processors
+    // Count every specialisation
     let plans = plans(root)?;
-    let counted = Mutex::new(vec![None; plans.len()]);
-    let next = std::sync::atomic::AtomicUsize::new(0);
-    let work = || -> Result<(), TaskError> {
-        loop {
-            let place = next.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            let Some(plan) = plans.get(place) else { return Ok(()) };
-            let count = count(&optimised(&spirv, &plan.constants)?);
-            println!("{:40} {:5} instructions", plan.name, count.instructions);
-            counted.lock().unwrap_or_else(std::sync::PoisonError::into_inner)[place] = Some(count);
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        // What a thread dies of, all die of: no table is written of what is left
-        workers
-            .into_iter()
-            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    let counts = in_parallel(&plans, |_, plan| {
+        let count = count(&optimised(&spirv, &plan.constants)?);
+        println!("{:40} {:5} instructions", plan.name, count.instructions);
+        Ok(Counted { name: plan.name.clone(), effects: plan.effects, count })
     })?;
-    let counted = counted.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-
-    let counts = plans.iter().zip(counted).filter_map(|(plan, count)| {
-        Some(Counted { name: plan.name.clone(), effects: plan.effects, count: count? })
-    });
     let table = Table {
         command: "cargo run -p xtask -- instructions".to_owned(),
         tool: tool()?,
         spirv_sha256: hash(&spirv),
-        counts: counts.collect(),
+        counts,
     };
     let text = serde_json::to_string_pretty(&table)
         .map_err(|error| TaskError::Unreadable { path: path.clone(), message: error.to_string() })?;
     std::fs::write(&path, text + "\n").map_err(TaskError::file(&path))?;
-    Ok(table.counts.len() == plans.len())
+    Ok(true)
 }
 
 /// What one count is of.

@@ -22,6 +22,7 @@ mod lint;
 mod manifest;
 mod matrix;
 mod packages;
+mod parallel;
 mod quotes;
 mod shaders;
 

@@ -8,9 +8,9 @@
 use crate::TaskError;
 use crate::library::Library;
 use crate::lint::bridges;
+use crate::parallel::in_parallel;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The host that is compiled, from the checkout's root.
 const HOST: &str = "tools/xtask/matrix/host.glsl";
@@ -49,23 +49,24 @@ struct Case {
 
 /// Whether every case does as it should.
 pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
-    let scratch = Scratch::new()?;
+    let scratch = tempfile::tempdir().map_err(TaskError::file(&std::env::temp_dir()))?;
     let folder = match &arguments.library {
         Some(folder) => folder.clone(),
-        None => export(root, &scratch.0.join("library"))?,
+        None => export(root, &scratch.path().join("library"))?,
     };
     let include = folder.join("include");
     let library = Library::read(&include.join("arealight"))?;
 
     let mut cases = hosts(&root.join(HOST), &library);
     cases.extend(examples(&root.join(EXAMPLES))?);
-    let failures = run_all(&cases, |index, case| {
+    let found = in_parallel(&cases, |index, case| {
         if arguments.verbose {
             println!("{}", case.title());
         }
-        case.run(&include, &scratch.0.join(format!("{index}.spv")))
+        case.run(&include, &scratch.path().join(format!("{index}.spv")))
     })?;
-    let validator_can_fail = validator_refuses(&scratch.0.join("0.spv"))?;
+    let failures: Vec<String> = found.into_iter().flatten().collect();
+    let validator_can_fail = validator_refuses(&scratch.path().join("0.spv"))?;
     if !validator_can_fail {
         eprintln!("error: spirv-val accepts a module that is cut short");
     }
@@ -230,35 +231,6 @@ fn said(output: &Output) -> String {
     (String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)).into_owned()
 }
 
-/// Runs every case, as many at a time as there are processors, and collects what fails in their order.
-fn run_all(
-    cases: &[Case],
-    run: impl Fn(usize, &Case) -> Result<Option<String>, TaskError> + Sync,
-) -> Result<Vec<String>, TaskError> {
-    let next = AtomicUsize::new(0);
-    let work = || -> Result<Vec<(usize, String)>, TaskError> {
-        let mut failures = vec![];
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(case) = cases.get(index) else { return Ok(failures) };
-            failures.extend(run(index, case)?.map(|failure| (index, failure)));
-        }
-    };
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
-    let mut failures = vec![];
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        for worker in workers {
-            // A worker that panicked has said so
-            let found = worker.join().unwrap_or_else(|_| std::process::exit(1))?;
-            failures.extend(found);
-        }
-        Ok::<(), TaskError>(())
-    })?;
-    failures.sort();
-    Ok(failures.into_iter().map(|(_, failure)| failure).collect())
-}
-
 /// Lets the command line write the library to `folder`, as a user would.
 fn export(root: &Path, folder: &Path) -> Result<PathBuf, TaskError> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -272,24 +244,6 @@ fn export(root: &Path, folder: &Path) -> Result<PathBuf, TaskError> {
         Ok(folder.to_owned())
     } else {
         Err(TaskError::Export { message: said(&output) })
-    }
-}
-
-/// A folder that goes when it is dropped.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new() -> Result<Self, TaskError> {
-        let path = std::env::temp_dir().join(format!("arealight-matrix-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(TaskError::file(&path))?;
-        Ok(Self(path))
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // What cannot be removed is in the system's temporary folder
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
@@ -321,13 +275,5 @@ mod tests {
             assert!(verdict(LACKS, Some("g")).unwrap().contains("does not name"));
             assert!(verdict(LACKS, None).unwrap().contains("does not compile"));
         }
-    }
-
-    #[test]
-    fn every_case_runs_once_and_failures_keep_their_order() {
-        let folder = tempfile::tempdir().unwrap();
-        let cases: Vec<Case> = (0..50).map(|_| case(Tool::Glslc, folder.path(), GOOD, None)).collect();
-        let failures = run_all(&cases, |index, _| Ok((index % 7 == 0).then(|| format!("{index}")))).unwrap();
-        assert_eq!(failures, ["0", "7", "14", "21", "28", "35", "42", "49"]);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{LightTexture, PolygonLight, PyramidSize, Quality, TexturePart};
-use arealight_engine::{Engine, EngineError, EvalPoint, SourceImage, SourceTexels};
+use arealight::{LightTexture, PolygonLight, Quality};
+use arealight_engine::EvalPoint;
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
 use arealight_oracle::texture::Texture;
@@ -30,7 +30,7 @@ pub fn answer(
         Vec::new()
     } else {
         let engine = engine.get()?;
-        images.load(engine).map_err(|error| failure(error, input))?;
+        arealight_benches::pictures::load(engine, &images.layers).map_err(|error| failure(error, input))?;
         engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
@@ -80,26 +80,5 @@ impl Images {
             self.layers.push(Arc::clone(image));
             self.layers.len() - 1
         }) as u32
-    }
-
-    /// Loads them, in the size of the largest.
-    fn load(&self, engine: &mut Engine) -> Result<(), EngineError> {
-        let largest =
-            |side: fn(&Texture) -> usize| self.layers.iter().map(|layer| side(layer)).max().unwrap_or(1);
-        let size = PyramidSize::for_image(largest(Texture::width) as u32, largest(Texture::height) as u32);
-        let texel = |texel: &DVec3| texel.as_vec3().extend(1.0).to_array();
-        let texels: Vec<Vec<[f32; 4]>> =
-            self.layers.iter().map(|layer| layer.texels().iter().map(texel).collect()).collect();
-        let sources: Vec<SourceImage<'_>> = self
-            .layers
-            .iter()
-            .zip(&texels)
-            .map(|(layer, texels)| SourceImage {
-                texels: SourceTexels::Linear(texels),
-                size: [layer.width() as u32, layer.height() as u32],
-                part: TexturePart::default(),
-            })
-            .collect();
-        engine.load_textures(size, &sources)
     }
 }

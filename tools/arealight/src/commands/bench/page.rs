@@ -5,7 +5,9 @@ mod images;
 mod svg;
 
 use crate::failure::Failure;
-use arealight_benches::ladder::{DEFAULT, Ladder, PRACTICE, Picture, Pictures, Row, number, percent};
+use arealight_benches::ladder::{
+    DEFAULT, Ladder, PRACTICE, Picture, Pictures, Row, error_cells, number, percent,
+};
 use glam::DVec3;
 use std::fmt::Write as _;
 use svg::escape;
@@ -212,18 +214,10 @@ fn tables(found: &Ladder) -> String {
             escape(description)
         );
         for row in found.rows_of(name) {
-            let (errors, ratio) = (&row.errors, &row.time.ratio);
+            let ratio = &row.time.ratio;
             let [low, high] = ratio.quartiles.map(number);
             let samples = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), number);
             let cells = [
-                percent(errors.all.rmse),
-                percent(errors.fit),
-                percent(errors.table),
-                percent(errors.integral),
-                percent(errors.all.p99),
-                percent(errors.all.worst),
-                percent(errors.all.bias),
-                errors.all.not_finite.to_string(),
                 number(row.time.milliseconds.median),
                 number(ratio.median),
                 format!("{low} to {high}"),
@@ -231,7 +225,7 @@ fn tables(found: &Ladder) -> String {
                 samples(row.samples.map(|equal| equal.time)),
             ];
             let _ = write!(html, "<tr><td title=\"{}\">{}</td>", escape(&row.description), escape(&row.name));
-            for cell in cells {
+            for cell in error_cells(&row.errors).into_iter().chain(cells) {
                 let _ = write!(html, "<td>{cell}</td>");
             }
             html.push_str("</tr>");
