@@ -16,18 +16,18 @@ layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 
 const int POSITION_FROM_DEPTH = 1;
-const int OUTPUT_ADD = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
+#define RADIANCE_BINDING 7
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9
+#define GLOSSY_BINDING 10
 #include "table_image.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"
 #include "shape_buffer.glsl"
-
-layout(set = 0, binding = 7, rgba32f) uniform image2D radiance_image;
+#include "output.glsl"
 
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
@@ -59,28 +59,23 @@ void main() {
 
     vec3 position;
     bool hit = load_position(pixel, size, position);
-    vec3 radiance = vec3(0.0);
+    PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (hit) {
         ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
         ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
         for (uint index = 0u; index < constants.light_count; index++) {
-            radiance += arealight_polygon_radiance(point, load_light(index), EFFECTS, quality);
+            ArealightPolygonLight light = load_light(index);
+            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, quality));
         }
         // Not by a function: so compilers drop the shapes' code before they inline it
         if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u) {
             for (uint index = 0u; index < constants.shape_count; index++) {
-                radiance += arealight_shape_radiance(point, load_shape(index, SHAPE_ANY), EFFECTS, quality);
+                ArealightShape shape = load_shape(index, SHAPE_ANY);
+                add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, quality));
             }
         }
     }
 
-    if (OUTPUT == OUTPUT_ADD) {
-        if (hit) {
-            vec4 before = imageLoad(radiance_image, pixel);
-            imageStore(radiance_image, pixel, vec4(before.rgb + radiance, 1.0));
-        }
-    } else {
-        imageStore(radiance_image, pixel, vec4(radiance, hit ? 1.0 : 0.0));
-    }
+    store_radiance(pixel, hit, sum);
 }

@@ -5,6 +5,7 @@ mod cases;
 mod compare;
 pub mod kernel;
 pub mod lobe;
+pub mod one_pixel;
 mod points;
 mod property;
 mod rungs;

@@ -177,6 +177,7 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
         base_color: of(&base_color),
         specular: of(&position),
         radiance: Resource::StorageImage { view: radiance.view() },
+        glossy: None,
         light_textures: engine.light_textures(),
         shapes: Resource::buffer(shape_buffer.handle()),
     };

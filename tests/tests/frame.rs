@@ -1,17 +1,16 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
-use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::plan::{PositionSource, ShadeOptions};
 use arealight::{Effects, PolygonLight, Quality};
 use arealight_engine::{EvalPoint, SceneRenderer};
-use arealight_host::{Image, ImageDescription, Usage};
+use arealight_host::{Image, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::one_pixel::{OnePixel, lamp, options};
 use arealight_tests::{Comparison, TestEngine, rounding};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
-use ash::vk;
 use glam::camera::rh::proj::vulkan;
-use glam::{DVec3, Mat4, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 use half::f16;
 use std::path::Path;
 
@@ -217,120 +216,6 @@ fn the_fitted_lobes_look_like_the_reference() {
             assert!((ratio - 1.0).abs() < bound, "{name}, channel {channel}: {ratio}");
         }
     }
-}
-
-/// One pixel that sees a point, through a G-buffer that the test makes itself.
-struct OnePixel<'a> {
-    engine: &'a TestEngine,
-    position: Image,
-    depth: Image,
-    normal: Image,
-    base_color: Image,
-    radiance: Image,
-}
-
-impl<'a> OnePixel<'a> {
-    fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
-        let image = |name, format, usage| {
-            let description = ImageDescription { name, extent: [1, 1], layers: 1, format, usage };
-            engine.host().image(&description).unwrap()
-        };
-        let sampled = |name, texel: [f32; 4]| {
-            let image = image(name, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
-            image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
-            image
-        };
-        let depth_image = image("depth", vk::Format::R32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
-        depth_image.upload(&[depth], Usage::COMPUTE_READ).unwrap();
-        let radiance = image("radiance", vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::STORAGE);
-        radiance.upload(&[[0.25_f32, 0.5, 1.0, 1.0]], Usage::COMPUTE_WRITE).unwrap();
-        Self {
-            engine,
-            position: sampled("position", position.to_array()),
-            depth: depth_image,
-            normal: sampled("normal", [0.0, 0.0, 2.0, 0.5]),
-            base_color: sampled("base colour", [0.8, 0.6, 0.4, 0.25]),
-            radiance,
-        }
-    }
-
-    fn shade(
-        &self,
-        options: ShadeOptions,
-        lights: &[PolygonLight],
-        camera: Vec3,
-        matrix: Option<Mat4>,
-    ) -> Vec4 {
-        let host = self.engine.host();
-        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
-        unsafe {
-            let pass = ShadePass::new(self.engine.context(), options).unwrap();
-            let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
-            let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
-            let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
-            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
-            let set = pool.allocate(pass.set_layout()).unwrap();
-            let sampled = |image: &Image| Resource::SampledImage {
-                view: image.view(),
-                layout: Usage::COMPUTE_READ.layout,
-            };
-            let from_depth = options.position == PositionSource::Depth;
-            let resources = ShadeResources {
-                table: self.engine.table(),
-                lights: Resource::buffer(light_buffer.handle()),
-                light_vertices: Resource::buffer(vertex_buffer.handle()),
-                position: sampled(if from_depth { &self.depth } else { &self.position }),
-                normal: sampled(&self.normal),
-                base_color: sampled(&self.base_color),
-                specular: sampled(&self.base_color),
-                radiance: Resource::StorageImage { view: self.radiance.view() },
-                light_textures: self.engine.light_textures(),
-                shapes: Resource::buffer(light_buffer.handle()),
-            };
-            pass.write_set(set, &resources).unwrap();
-            let frame = ShadeFrame {
-                size: [1, 1],
-                camera,
-                position_from_clip: matrix,
-                light_count: lights.len() as u32,
-                shape_count: 0,
-            };
-            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
-        }
-        let texel: Vec<[f32; 4]> = self.radiance.download(Usage::COMPUTE_WRITE).unwrap();
-        Vec4::from_array(texel[0])
-    }
-}
-
-fn lamp() -> PolygonLight {
-    let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
-    PolygonLight {
-        name: "lamp".into(),
-        vertices: square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect(),
-        radiance: Vec3::new(1.0, 2.0, 3.0),
-        ..PolygonLight::default()
-    }
-}
-
-fn options() -> ShadeOptions {
-    ShadeOptions { effects: Effects::DIFFUSE | Effects::GLOSSY, ..ShadeOptions::all() }
-}
-
-#[test]
-fn output_overwrites_or_adds() {
-    let Some(engine) = TestEngine::new() else { return };
-    let camera = Vec3::new(0.0, -1.0, 1.0);
-    let pixel = || OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
-    let over = pixel().shade(options(), &[lamp()], camera, None);
-    assert!(over.min_element() > 0.05 && over.w == 1.0, "{over}");
-    let added = pixel().shade(ShadeOptions { output: Output::Add, ..options() }, &[lamp()], camera, None);
-    assert_eq!(added.truncate(), over.truncate() + Vec3::new(0.25, 0.5, 1.0));
-
-    // Without a surface: overwriting clears, adding leaves alone
-    let nothing = || OnePixel::new(&engine, Vec4::ZERO, 1.0);
-    assert_eq!(nothing().shade(options(), &[lamp()], camera, None), Vec4::ZERO);
-    let left = nothing().shade(ShadeOptions { output: Output::Add, ..options() }, &[lamp()], camera, None);
-    assert_eq!(left, Vec4::new(0.25, 0.5, 1.0, 1.0));
 }
 
 #[test]

@@ -159,6 +159,7 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             base_color: read(&color),
             specular: read(&specular),
             radiance: Resource::StorageImage { view: radiance.view() },
+            glossy: None,
             light_textures: engine.light_textures(),
             shapes: Resource::buffer(buffer.handle()),
         };

@@ -153,6 +153,7 @@ impl<'a> Sweep<'a> {
                 base_color: sampled(color),
                 specular: sampled(color),
                 radiance: Resource::StorageImage { view: radiance.view() },
+                glossy: None,
                 light_textures: self.engine.light_textures(),
                 shapes: Resource::buffer(lights.handle()),
             };

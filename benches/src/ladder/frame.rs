@@ -5,7 +5,7 @@ use super::points::Point;
 use crate::textures::{is_software, timed};
 use arealight::gpu::{ReferenceConstants, ShadeConstants};
 use arealight::kernels::REFERENCE;
-use arealight::plan::{Output, PositionSource, ShadeOptions, shade_specialization};
+use arealight::plan::{ShadeOptions, shade_specialization};
 use arealight::{LightSampling, PackedLights, PolygonLight, kernels};
 use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass};
 use arealight_host::{Buffer, Usage};
@@ -117,8 +117,7 @@ impl<'a> Frame<'a> {
     pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
         let (kernel, specialization) = match method {
             Method::Rung { effects, quality } => {
-                let (position, output) = (PositionSource::Position, Output::Overwrite);
-                let options = ShadeOptions { effects, quality, position, output };
+                let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
                 (&kernels::SHADE, shade_specialization(options))
             }
             Method::Yardstick { effects, which } => {
@@ -148,7 +147,9 @@ impl<'a> Frame<'a> {
             "g_normal" => normal,
             "g_base_color" => base_color,
             "g_specular" => specular,
-            "radiance_image" => Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            "radiance_image" | "glossy_image" => {
+                Resource::StorageImage { view: self.g_buffer.radiance.view() }
+            }
             _ => buffer(&self.lights),
         }
     }

@@ -113,6 +113,18 @@
 // Radiance is added to it.
 #define AREALIGHT_OUTPUT_ADD 1
 
+// The radiance of both lobes goes to ArealightResources.radiance.
+#define AREALIGHT_IMAGES_ONE 0
+
+// That of the glossy lobe goes to ArealightResources.glossy instead.
+#define AREALIGHT_IMAGES_APART 1
+
+// Radiance is stored in 32-bit floats.
+#define AREALIGHT_RADIANCE_RGBA32F 0
+
+// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
+#define AREALIGHT_RADIANCE_RGBA16F 1
+
 // The table is kept in 32-bit floats, 16 bytes a texel.
 #define AREALIGHT_TABLE_RGBA32F 0
 
@@ -314,6 +326,10 @@ typedef struct ArealightPassOptions {
     uint32_t position;
     // One of AREALIGHT_OUTPUT_*.
     uint32_t output;
+    // One of AREALIGHT_IMAGES_*.
+    uint32_t radiance_images;
+    // One of AREALIGHT_RADIANCE_*.
+    uint32_t radiance_format;
     // 0
     uint32_t reserved;
 } ArealightPassOptions;
@@ -372,8 +388,10 @@ typedef struct ArealightResources {
     // The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
     // AREALIGHT_EFFECT_TEXTURED.
     struct ArealightImage light_textures;
-    // Where radiance goes: a storage image (rgba32f) in VK_IMAGE_LAYOUT_GENERAL.
+    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     struct ArealightImage radiance;
+    // Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
+    struct ArealightImage glossy;
 } ArealightResources;
 
 // What differs from frame to frame.
@@ -539,7 +557,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 40);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, effects) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
@@ -549,7 +567,9 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, one_point) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, reserved) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, reserved) == 44);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
@@ -583,7 +603,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 168);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 184);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -593,6 +613,7 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 152);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 168);
 AREALIGHT_ASSERT(sizeof(ArealightFrame) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);

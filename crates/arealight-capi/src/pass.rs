@@ -7,7 +7,7 @@ use crate::types::{
     ArealightSetLayout,
 };
 use crate::{arguments, handles};
-use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::plan::{Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -75,6 +75,16 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         quality,
         position: rung(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
         output: rung(options.output, &[Output::Overwrite, Output::Add], "output")?,
+        images: rung(
+            options.radiance_images,
+            &[RadianceImages::One, RadianceImages::Apart],
+            "radiance_images",
+        )?,
+        format: rung(
+            options.radiance_format,
+            &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
+            "radiance_format",
+        )?,
     })
 }
 
@@ -157,7 +167,8 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             normal: sampled(resources.normal),
             base_color: sampled(resources.base_color),
             specular,
-            radiance: Resource::StorageImage { view: vk::ImageView::from_raw(resources.radiance.view) },
+            radiance: stored(resources.radiance),
+            glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
             light_textures,
             shapes: match resources.shapes {
                 shapes if effects.intersects(Effects::SHAPES) || shapes.buffer != 0 => buffer(shapes),
@@ -172,6 +183,10 @@ pub unsafe extern "C" fn arealight_pass_write_set(
 fn sampled(image: ArealightImage) -> Resource {
     let layout = vk::ImageLayout::from_raw(image.layout.cast_signed());
     Resource::SampledImage { view: vk::ImageView::from_raw(image.view), layout }
+}
+
+fn stored(image: ArealightImage) -> Resource {
+    Resource::StorageImage { view: vk::ImageView::from_raw(image.view) }
 }
 
 fn filtered(image: ArealightImage) -> Resource {
@@ -289,6 +304,8 @@ mod tests {
             (ArealightPassOptions { footprint: 4, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),
             (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),
+            (ArealightPassOptions { radiance_images: 2, ..zero }, "options.radiance_images"),
+            (ArealightPassOptions { radiance_format: 2, ..zero }, "options.radiance_format"),
         ] {
             let message = shade_options(&wrong).err().unwrap().message;
             assert!(message.starts_with(field), "{message}");

@@ -73,6 +73,16 @@ pub const AREALIGHT_OUTPUT_OVERWRITE: u32 = 0;
 /// Radiance is added to it.
 pub const AREALIGHT_OUTPUT_ADD: u32 = 1;
 
+/// The radiance of both lobes goes to ArealightResources.radiance.
+pub const AREALIGHT_IMAGES_ONE: u32 = 0;
+/// That of the glossy lobe goes to ArealightResources.glossy instead.
+pub const AREALIGHT_IMAGES_APART: u32 = 1;
+
+/// Radiance is stored in 32-bit floats.
+pub const AREALIGHT_RADIANCE_RGBA32F: u32 = 0;
+/// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
+pub const AREALIGHT_RADIANCE_RGBA16F: u32 = 1;
+
 /// The table is kept in 32-bit floats, 16 bytes a texel.
 pub const AREALIGHT_TABLE_RGBA32F: u32 = 0;
 /// In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.
@@ -197,6 +207,10 @@ pub struct ArealightPassOptions {
     pub position: u32,
     /// One of AREALIGHT_OUTPUT_*.
     pub output: u32,
+    /// One of AREALIGHT_IMAGES_*.
+    pub radiance_images: u32,
+    /// One of AREALIGHT_RADIANCE_*.
+    pub radiance_format: u32,
     /// 0
     pub reserved: u32,
 }
@@ -322,8 +336,10 @@ pub struct ArealightResources {
     /// The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
     /// AREALIGHT_EFFECT_TEXTURED.
     pub light_textures: ArealightImage,
-    /// Where radiance goes: a storage image (rgba32f) in VK_IMAGE_LAYOUT_GENERAL.
+    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     pub radiance: ArealightImage,
+    /// Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
+    pub glossy: ArealightImage,
 }
 
 /// What differs from frame to frame.

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use arealight::Effects;
-use arealight::plan::{PositionSource, ShadeOptions};
+use arealight::plan::{PositionSource, RadianceFormat, ShadeOptions};
 use ash::vk::Format;
 
 /// The formats of the images that a host binds to the shade pass, which their views do not tell: check them once, where
@@ -37,7 +37,7 @@ pub struct ShadeFormats {
     pub base_color: Format,
     /// Of [`crate::ShadeResources::specular`], which is read only with [`Effects::SPECULAR_INPUT`].
     pub specular: Format,
-    /// Of [`crate::ShadeResources::radiance`].
+    /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
 }
 
@@ -65,6 +65,7 @@ const COLOR: &[Format] = &[
     Format::R32G32B32A32_SFLOAT,
 ];
 const RADIANCE: &[Format] = &[Format::R32G32B32A32_SFLOAT];
+const RADIANCE_HALF: &[Format] = &[Format::R16G16B16A16_SFLOAT];
 
 impl ShadeFormats {
     /// Checks that a pass of these options reads from every image what it should, and can store to the last.
@@ -76,13 +77,17 @@ impl ShadeFormats {
             PositionSource::Position => POSITION,
             PositionSource::Depth => DEPTH,
         };
+        let radiance = match options.format {
+            RadianceFormat::Rgba32Float => RADIANCE,
+            RadianceFormat::Rgba16Float => RADIANCE_HALF,
+        };
         let read_specular = options.effects.contains(Effects::SPECULAR_INPUT);
         let images = [
             ("position", self.position, position, true),
             ("normal", self.normal, NORMAL, true),
             ("base_color", self.base_color, COLOR, true),
             ("specular", self.specular, COLOR, read_specular),
-            ("radiance", self.radiance, RADIANCE, true),
+            ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {
             if used && !expected.contains(&format) {
@@ -119,6 +124,8 @@ mod tests {
         ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
         let without = ShadeOptions { effects: Effects::GLOSSY, ..ShadeOptions::all() };
         ShadeFormats { specular: Format::UNDEFINED, ..RIGHT }.check(without).unwrap();
+        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..ShadeOptions::all() };
+        ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }.check(half).unwrap();
     }
 
     #[test]
@@ -137,6 +144,8 @@ mod tests {
         }
         let depth = ShadeOptions { position: PositionSource::Depth, ..options };
         assert_eq!(field(RIGHT, depth), "position");
+        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..options };
+        assert_eq!(field(RIGHT, half), "radiance");
         let error = ShadeFormats { radiance: Format::R8G8B8A8_UNORM, ..RIGHT }.check(options).unwrap_err();
         assert_eq!(
             error.to_string(),

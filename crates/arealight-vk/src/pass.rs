@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use arealight::kernels::{BindingKind, Kernel};
+use arealight::plan::RadianceFormat;
 use ash::vk;
 
 /// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
@@ -98,6 +99,23 @@ impl ComputePass {
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
+        // SAFETY: the same contract.
+        unsafe { Self::with_format(context, kernel, specialization, RadianceFormat::default()) }
+    }
+
+    /// As [`ComputePass::new`], of a kernel that stores radiance, to images of this format.
+    ///
+    /// # Safety
+    /// As [`ComputePass::new`].
+    ///
+    /// # Errors
+    /// As [`ComputePass::new`].
+    pub unsafe fn with_format(
+        context: &Context,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+        format: RadianceFormat,
+    ) -> Result<Self, Error> {
         if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
             return Err(Error::InvalidArgument {
                 field: "specialization",
@@ -121,7 +139,7 @@ impl ComputePass {
             pass.make_sampler()?;
         }
         pass.make_layouts()?;
-        pass.make_pipeline(specialization)?;
+        pass.make_pipeline(&kernel.words_for(format), specialization)?;
         let names = &context.names;
         names.name(pass.set_layout, kernel.name);
         names.name(pass.pipeline_layout, kernel.name);
@@ -177,10 +195,9 @@ impl ComputePass {
         Ok(())
     }
 
-    fn make_pipeline(&mut self, specialization: &[(u32, u32)]) -> Result<(), Error> {
+    fn make_pipeline(&mut self, words: &[u32], specialization: &[(u32, u32)]) -> Result<(), Error> {
         let device = &self.context.device;
-        let words = self.kernel.words();
-        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        let info = vk::ShaderModuleCreateInfo::default().code(words);
         // SAFETY: the device is valid; the code is SPIR-V that a test validates.
         let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
 
@@ -313,6 +330,19 @@ impl ComputePass {
         constants: &[u8],
         groups: [u32; 3],
     ) -> Result<(), Error> {
+        self.check(set, constants, groups)?;
+        // SAFETY: the same contract.
+        unsafe { self.record_checked(command_buffer, set, constants, groups) };
+        Ok(())
+    }
+
+    /// What [`ComputePass::record`] refuses.
+    pub(crate) fn check(
+        &self,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
         if constants.len() != self.kernel.push_constant_size as usize {
             return Err(Error::InvalidArgument {
                 field: "constants",
@@ -333,7 +363,20 @@ impl ComputePass {
                 ),
             });
         }
-        self.context.written_sets.check(set)?;
+        self.context.written_sets.check(set)
+    }
+
+    /// Records what passed [`ComputePass::check`].
+    ///
+    /// # Safety
+    /// As [`ComputePass::record`].
+    pub(crate) unsafe fn record_checked(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) {
         let device = &self.context.device;
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {
@@ -355,7 +398,6 @@ impl ComputePass {
             );
             device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
         }
-        Ok(())
     }
 }
 

@@ -5,8 +5,8 @@ use crate::error::Error;
 use crate::pass::{ComputePass, Resource};
 use arealight::gpu::{GpuShape, ShadeConstants};
 use arealight::kernels::{Access, BindingKind, SHADE};
-use arealight::plan::{self, PositionSource, ShadeOptions};
-use arealight::{PackedLights, PolygonLight, ShapeLight};
+use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions};
+use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
 
@@ -29,8 +29,10 @@ pub struct ShadeResources {
     pub base_color: Resource,
     /// Dielectric reflectance; read only with [`arealight::Effects::SPECULAR_INPUT`], else any sampled image.
     pub specular: Resource,
-    /// Where radiance goes (rgba32f).
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Apart`] that of the diffuse lobe.
     pub radiance: Resource,
+    /// Where the glossy lobe's goes with [`RadianceImages::Apart`]: another image of that format. Else it is not used.
+    pub glossy: Option<Resource>,
     /// The lights' textures ([`crate::LightTextures`]); the host sees to it that every light's layer is there. Read only with
     /// [`arealight::Effects::TEXTURED`]: without it any 2D array image, the table's for instance.
     pub light_textures: Resource,
@@ -42,7 +44,7 @@ pub struct ShadeResources {
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadeFrame {
-    /// Size of the radiance image in pixels. The G-buffer's images are of the same size.
+    /// Size of the radiance images in pixels. The G-buffer's images are of the same size.
     pub size: [u32; 2],
     /// The camera's position relative to the origin that lights and positions are packed with.
     pub camera: Vec3,
@@ -87,7 +89,9 @@ impl ShadePass {
     /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
         // SAFETY: the same contract.
-        let pass = unsafe { ComputePass::new(context, &SHADE, &plan::shade_specialization(options)) }?;
+        let pass = unsafe {
+            ComputePass::with_format(context, &SHADE, &plan::shade_specialization(options), options.format)
+        }?;
         Ok(Self { pass, options })
     }
 
@@ -173,8 +177,9 @@ impl ShadePass {
     /// As [`ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the resource that is null or of the wrong kind.
+    /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
+        let glossy = self.glossy_image(resources)?;
         let resources = [
             resources.table,
             resources.lights,
@@ -186,9 +191,25 @@ impl ShadePass {
             resources.radiance,
             resources.light_textures,
             resources.shapes,
+            glossy,
         ];
         // SAFETY: the same contract.
         unsafe { self.pass.write_set(set, &resources) }
+    }
+
+    /// What is bound for the glossy lobe's radiance: where there is one image, that again.
+    fn glossy_image(&self, resources: &ShadeResources) -> Result<Resource, Error> {
+        let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
+        match (self.options.images, resources.glossy) {
+            (RadianceImages::One, _) => Ok(resources.radiance),
+            (RadianceImages::Apart, None) => {
+                Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
+            }
+            (RadianceImages::Apart, Some(glossy)) if glossy.view() == resources.radiance.view() => {
+                Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
+            }
+            (RadianceImages::Apart, Some(glossy)) => Ok(glossy),
+        }
     }
 
     /// Records the pass. The host's barriers make the resources visible before, by [`ShadePass::accesses`].
@@ -219,6 +240,15 @@ impl ShadePass {
             let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
             return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
         }
+        if frame.shape_count > 0 && !self.options.effects.intersects(Effects::SHAPES) {
+            return Err(Error::InvalidArgument {
+                field: "shape_count",
+                message: format!(
+                    "is {}, but the pass was made without an effect of Effects::SHAPES and would shade none",
+                    frame.shape_count
+                ),
+            });
+        }
         if frame.size.contains(&0) {
             return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
         }
@@ -229,10 +259,12 @@ impl ShadePass {
             shape_count: frame.shape_count,
         };
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
+        self.pass.check(set, bytemuck::bytes_of(&constants), groups)?;
         // SAFETY: the same contract.
         unsafe {
             let _label = self.pass.context().names.label(command_buffer, c"arealight shade");
-            self.pass.record(command_buffer, set, bytemuck::bytes_of(&constants), groups)
+            self.pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
         }
+        Ok(())
     }
 }

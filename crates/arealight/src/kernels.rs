@@ -1,6 +1,8 @@
 //! The manifest: every kernel with its SPIR-V, bindings, constants and group size. A test reads the same
 //! facts back out of the SPIR-V, so the two cannot drift.
 
+use crate::plan::RadianceFormat;
+
 /// What a binding holds. All are in descriptor set 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BindingKind {
@@ -79,6 +81,39 @@ impl Kernel {
     pub fn words(&self) -> Vec<u32> {
         self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     }
+
+    /// As [`Kernel::words`], with images of this format where the module stores to rgba32f: a word a type, so that one
+    /// module serves both.
+    pub fn words_for(&self, format: RadianceFormat) -> Vec<u32> {
+        let mut words = self.words();
+        if format == RadianceFormat::Rgba16Float {
+            store_to_half(&mut words);
+        }
+        words
+    }
+}
+
+/// Makes every type of a storage image of rgba32f in a module one of rgba16f.
+fn store_to_half(words: &mut [u32]) {
+    const HEADER: usize = 5;
+    const TYPE_IMAGE: u32 = 25;
+    // Operands of OpTypeImage, and their values (the SPIR-V specification, 3.42.6 and 3.11)
+    const SAMPLED: usize = 7;
+    const FORMAT: usize = 8;
+    const STORAGE: u32 = 2;
+    const RGBA32F: u32 = 1;
+    const RGBA16F: u32 = 2;
+    let mut at = HEADER;
+    while at < words.len() {
+        let length = (words[at] >> 16).max(1) as usize;
+        let instruction = words[at] & 0xffff;
+        if instruction == TYPE_IMAGE
+            && let Some([STORAGE, format @ RGBA32F]) = words.get_mut(at + SAMPLED..=at + FORMAT)
+        {
+            *format = RGBA16F;
+        }
+        at += length;
+    }
 }
 
 /// Ids of the specialisation constants, the same in every kernel.
@@ -89,7 +124,7 @@ pub mod constant {
     pub const FORM_FACTOR: u32 = 1;
     /// [`crate::plan::PositionSource`].
     pub const POSITION_SOURCE: u32 = 2;
-    /// [`crate::plan::Output`].
+    /// [`crate::plan::ShadeOptions::output_bits`].
     pub const OUTPUT: u32 = 3;
     /// [`crate::Horizon`].
     pub const HORIZON: u32 = 4;
@@ -177,10 +212,17 @@ pub static SHADE: Kernel = Kernel {
             "radiance_image",
             BindingKind::StorageImage,
             Access::ReadWrite,
-            "outgoing radiance in rgb, 1 in a where there is a surface (rgba32f)",
+            "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Apart; 1 in a where there is a \
+             surface (rgba32f, or by RadianceFormat)",
         ),
         LIGHT_TEXTURES,
         SHAPES,
+        write(
+            "glossy_image",
+            BindingKind::StorageImage,
+            Access::ReadWrite,
+            "the glossy lobe's, likewise; used only with RadianceImages::Apart, else bind radiance_image's again",
+        ),
     ],
     constants: &[
         constant::EFFECTS,
@@ -346,5 +388,18 @@ mod tests {
             assert_eq!(kernel.spirv.len() % 4, 0, "{}", kernel.name);
             assert_eq!(kernel.words()[0], 0x0723_0203, "{}: SPIR-V's magic number", kernel.name);
         }
+    }
+
+    #[test]
+    fn one_word_makes_the_shade_kernel_store_to_half_floats() {
+        let words = SHADE.words();
+        assert_eq!(SHADE.words_for(RadianceFormat::Rgba32Float), words);
+        let half = SHADE.words_for(RadianceFormat::Rgba16Float);
+        let changed: Vec<_> = words.iter().zip(&half).filter(|(from, to)| from != to).collect();
+        // Both images have one type
+        assert_eq!(changed, [(&1, &2)]);
+        // A module that is cut off is left as it is from there on, without a panic
+        let end = words.iter().zip(&half).position(|(from, to)| from != to).unwrap();
+        store_to_half(&mut words[..end].to_vec());
     }
 }

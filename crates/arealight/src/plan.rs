@@ -29,6 +29,29 @@ pub enum Output {
     Add = 1,
 }
 
+/// Where the shade kernel stores the radiance of a surface's two lobes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum RadianceImages {
+    /// Their sum in one image.
+    #[default]
+    One = 0,
+    /// The diffuse lobe's and the glossy lobe's in an image each, for what treats them apart: denoisers, skin, fog.
+    Apart = 2,
+}
+
+/// The texel format of the images that the shade kernel stores radiance to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum RadianceFormat {
+    /// Sixteen bytes a texel.
+    #[default]
+    Rgba32Float = 0,
+    /// Eight bytes a texel: rounded to the nearest of 11 bits (a relative error of 4.9e-4), and what is above 65,504 is
+    /// stored as that. Lights added by several passes are rounded by each.
+    Rgba16Float = 4,
+}
+
 /// Everything that a shade pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
@@ -40,17 +63,28 @@ pub struct ShadeOptions {
     pub position: PositionSource,
     /// Overwrite or add.
     pub output: Output,
+    /// One image, or one a lobe.
+    pub images: RadianceImages,
+    /// Their format.
+    pub format: RadianceFormat,
 }
 
 impl ShadeOptions {
-    /// The catch-all: every effect, the exact rung, positions from an image, overwriting.
+    /// The catch-all: every effect, the exact rung, positions from an image, overwriting one image of 32-bit floats.
     pub fn all() -> Self {
         Self {
             effects: Effects::all(),
             quality: Quality::default(),
             position: PositionSource::default(),
             output: Output::default(),
+            images: RadianceImages::default(),
+            format: RadianceFormat::default(),
         }
+    }
+
+    /// [`ShadeOptions::output`], [`ShadeOptions::images`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
+    pub fn output_bits(self) -> u32 {
+        self.output as u32 | self.images as u32 | self.format as u32
     }
 }
 
@@ -65,7 +99,8 @@ pub struct Dispatch {
     pub groups: [u32; 3],
 }
 
-/// The shade pass over a G-buffer of `width` × `height` pixels.
+/// The shade pass over a G-buffer of `width` × `height` pixels. Its module is that of
+/// [`Kernel::words_for`] with [`ShadeOptions::format`].
 pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
     Dispatch {
         kernel: &kernels::SHADE,
@@ -79,7 +114,7 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
     let mut values = lobe_specialization(options.effects, options.quality);
     values.extend([
         (kernels::constant::POSITION_SOURCE, options.position as u32),
-        (kernels::constant::OUTPUT, options.output as u32),
+        (kernels::constant::OUTPUT, options.output_bits()),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
     ]);
     values

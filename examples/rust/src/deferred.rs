@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, M
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::gpu::GpuLight;
-use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::plan::{Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Quality};
 use arealight_vk::{
     Context, HostDevice, Resource, ShadeFormats, ShadeFrame, ShadePass, ShadeResources, TableFormat,
@@ -77,6 +77,8 @@ impl<'a> Deferred<'a> {
             quality: Quality::default(),
             position: PositionSource::Depth,
             output: Output::Add, // to the emission that was drawn
+            images: RadianceImages::One,
+            format: RadianceFormat::Rgba32Float,
         };
         g_buffer.formats().check(options)?; // says which image has another format than it should
         // SAFETY: the pass is dropped after the frames, and before the device.
@@ -122,8 +124,9 @@ impl<'a> Deferred<'a> {
                 base_color,
                 specular: base_color, // not read without Effects::SPECULAR_INPUT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
+                glossy: None, // its radiance is in that image too, without RadianceImages::Apart
                 light_textures: image.in_place_of_textures(), // nor these without Effects::TEXTURED
-                shapes: Resource::buffer(place.lights.raw),   // nor these without Effects::SHAPES
+                shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
             };
             // SAFETY: the set is new, and goes before the resources.
             unsafe { shade.write_set(place.set, &resources) }?;

@@ -241,12 +241,13 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, vec3 normal, ArealightSeenLight 
     return lobe.albedo * color;
 }
 
-// Outgoing radiance towards the viewer from one polygon light, W/(m^2 sr), without visibility.
+// What a surface reflects of one polygon light of unit radiance towards the viewer, without visibility, lobe by lobe; a
+// lobe that `effects` lacks reflects nothing.
 //
 // The Lambert lobe is exact to the form factor's error; the GGX lobe is the fitted one: exact for the table's lobe, and
 // as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
-vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
-                                ArealightQuality quality) {
+ArealightReflected arealight_polygon_reflected(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
+                                               ArealightQuality quality) {
     // What is fixed comes first in each condition: compilers drop the rest
     light.two_sided = (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u && light.two_sided;
     // The vertices are read once for all lobes
@@ -255,13 +256,14 @@ vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLig
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         quad = arealight_light_quad(light);
     }
-    vec3 reflected = vec3(0.0);
+    ArealightReflected reflected = ArealightReflected(vec3(0.0), vec3(0.0));
     if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        reflected = arealight_lobe_polygon(point.glossy, point.normal, seen, light, quad, effects, quality);
+        reflected.glossy = arealight_lobe_polygon(point.glossy, point.normal, seen, light, quad, effects, quality);
         if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {
             // Where F90 is below F0 this part is negative
-            reflected += arealight_lobe_polygon(point.schlick, point.normal, seen, light, quad, effects, quality);
-            reflected = max(reflected, vec3(0.0));
+            reflected.glossy +=
+                arealight_lobe_polygon(point.schlick, point.normal, seen, light, quad, effects, quality);
+            reflected.glossy = max(reflected.glossy, vec3(0.0));
         }
     }
     if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
@@ -269,9 +271,16 @@ vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLig
         if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
             quality.horizon = AREALIGHT_HORIZON_COSINE;
         }
-        reflected += arealight_lobe_polygon(point.diffuse, point.normal, seen, light, quad, effects, quality);
+        reflected.diffuse = arealight_lobe_polygon(point.diffuse, point.normal, seen, light, quad, effects, quality);
     }
-    return light.radiance * reflected;
+    return reflected;
+}
+
+// Outgoing radiance towards the viewer from one polygon light, W/(m^2 sr), without visibility: of both lobes.
+vec3 arealight_polygon_radiance(ArealightShadingPoint point, ArealightPolygonLight light, uint effects,
+                                ArealightQuality quality) {
+    ArealightReflected reflected = arealight_polygon_reflected(point, light, effects, quality);
+    return light.radiance * (reflected.glossy + reflected.diffuse);
 }
 
 #endif

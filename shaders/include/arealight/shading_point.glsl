@@ -30,6 +30,12 @@ struct ArealightShadingPoint {
     ArealightLobe schlick; // with AREALIGHT_FRESNEL_SPLIT alone: the part that grows with (1 - cos)^5
 };
 
+// What a surface reflects of a light of unit radiance, a channel, lobe by lobe.
+struct ArealightReflected {
+    vec3 diffuse;
+    vec3 glossy;
+};
+
 ArealightCosineSpace arealight_cosine_space(mat3 to_cosine) {
     float square = dot(to_cosine[0], to_cosine[0]) + dot(to_cosine[1], to_cosine[1])
                  + dot(to_cosine[2], to_cosine[2]);

@@ -141,18 +141,18 @@ vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape se
     return lobe.albedo * min(form_factor * lobe.gain, 1.0);
 }
 
-// Outgoing radiance towards the viewer from one shape, W/(m^2 sr), without visibility. Errors: as those of the shape's
-// form factor; see arealight_polygon_radiance.
-vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape, uint effects,
-                              ArealightQuality quality) {
+// What a surface reflects of one shape of unit radiance towards the viewer, without visibility, lobe by lobe. Errors: as
+// those of the shape's form factor; see arealight_polygon_reflected.
+ArealightReflected arealight_shape_reflected(ArealightShadingPoint point, ArealightShape shape, uint effects,
+                                             ArealightQuality quality) {
     shape.two_sided = shape.two_sided && (effects & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
     ArealightSeenShape seen = arealight_see_shape(point.position, shape, effects);
-    vec3 reflected = vec3(0.0);
+    ArealightReflected reflected = ArealightReflected(vec3(0.0), vec3(0.0));
     if ((effects & AREALIGHT_EFFECT_GLOSSY) != 0u) {
-        reflected = arealight_lobe_shape(point.glossy, point.normal, seen, shape, false, effects, quality);
+        reflected.glossy = arealight_lobe_shape(point.glossy, point.normal, seen, shape, false, effects, quality);
         if (quality.fresnel == AREALIGHT_FRESNEL_SPLIT) {
-            reflected += arealight_lobe_shape(point.schlick, point.normal, seen, shape, false, effects, quality);
-            reflected = max(reflected, vec3(0.0));
+            reflected.glossy += arealight_lobe_shape(point.schlick, point.normal, seen, shape, false, effects, quality);
+            reflected.glossy = max(reflected.glossy, vec3(0.0));
         }
     }
     if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
@@ -160,9 +160,16 @@ vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape,
         if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
             quality.horizon = AREALIGHT_HORIZON_COSINE;
         }
-        reflected += arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, effects, quality);
+        reflected.diffuse = arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, effects, quality);
     }
-    return shape.radiance * reflected;
+    return reflected;
+}
+
+// Outgoing radiance towards the viewer from one shape, W/(m^2 sr), without visibility: of both lobes.
+vec3 arealight_shape_radiance(ArealightShadingPoint point, ArealightShape shape, uint effects,
+                              ArealightQuality quality) {
+    ArealightReflected reflected = arealight_shape_reflected(point, shape, effects, quality);
+    return shape.radiance * (reflected.glossy + reflected.diffuse);
 }
 
 #endif

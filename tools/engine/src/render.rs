@@ -3,7 +3,7 @@
 use crate::{BoundPass, Engine, EngineError, GBuffer};
 use arealight::gpu::{GpuShape, ReferenceConstants, ShadeConstants, VisibilityConstants};
 use arealight::kernels::{Kernel, REFERENCE, VISIBILITY};
-use arealight::plan::{Output, PositionSource, ShadeOptions};
+use arealight::plan::{Output, ShadeOptions};
 use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality, ShapeLight};
 use arealight_host::{Buffer, DescriptorPool, Usage};
 use arealight_scene::SceneBuffers;
@@ -113,8 +113,7 @@ impl<'a> SceneRenderer<'a> {
     /// [`EngineError`] names a light that calls for more than `effects`, or says why the device fails.
     pub fn shade(&mut self, effects: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let options =
-            ShadeOptions { effects, quality, position: PositionSource::Position, output: Output::Add };
+        let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
         let pass = self.engine.shade_pass(options)?;
         pass.check_lights(self.lights)?;
         pass.check_shapes(self.shapes)?;
@@ -131,6 +130,7 @@ impl<'a> SceneRenderer<'a> {
             base_color,
             specular,
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            glossy: None,
             light_textures: self.engine.light_textures(),
             shapes: Resource::buffer(self.shape_buffer.handle()),
         };

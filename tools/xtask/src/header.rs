@@ -83,7 +83,8 @@ fn layouts() -> [Layout; 12] {
             memory, memory_offset, staging_data, staging_size, staging_buffer, staging_offset, command_buffer,
         }
         ArealightPassOptions {
-            effects, form_factor, horizon, fresnel, lobes, one_point, footprint, position, output, reserved,
+            effects, form_factor, horizon, fresnel, lobes, one_point, footprint, position, output,
+            radiance_images, radiance_format, reserved,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
@@ -94,6 +95,7 @@ fn layouts() -> [Layout; 12] {
         ArealightImage { view, layout, reserved }
         ArealightResources {
             lights, light_vertices, shapes, position, normal, base_color, specular, light_textures, radiance,
+            glossy,
         }
         ArealightFrame { width, height, camera, light_count, shape_count, reserved, position_from_clip }
     }

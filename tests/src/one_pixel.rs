@@ -1,0 +1,163 @@
+//! The shade pass over a G-buffer of one pixel.
+
+use crate::TestEngine;
+use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::{Effects, PolygonLight};
+use arealight_host::{Image, ImageDescription, Usage};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use bytemuck::Pod;
+use glam::{DVec3, Mat4, Vec3, Vec4};
+use half::f16;
+
+/// What is in the images for radiance before a pass.
+pub const BEFORE: Vec4 = Vec4::new(0.25, 0.5, 1.0, 1.0);
+
+/// One pixel that sees a point, through a G-buffer that the test makes itself.
+pub struct OnePixel<'a> {
+    engine: &'a TestEngine,
+    position: Image,
+    depth: Image,
+    normal: Image,
+    base_color: Image,
+}
+
+impl<'a> OnePixel<'a> {
+    /// A grey, half rough, a quarter metallic surface that looks up, at `position` (w = 0: none), and what the depth buffer says of it.
+    ///
+    /// # Panics
+    /// Where the device fails; so below.
+    pub fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
+        let float = vk::Format::R32G32B32A32_SFLOAT;
+        Self {
+            engine,
+            position: sampled(engine, float, position.to_array()),
+            depth: sampled(engine, vk::Format::R32_SFLOAT, depth),
+            normal: sampled(engine, float, [0.0_f32, 0.0, 2.0, 0.5]),
+            base_color: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
+        }
+    }
+
+    /// The one image of a pass that has one.
+    ///
+    /// # Panics
+    /// Where the options say that there are two.
+    pub fn shade(
+        &self,
+        options: ShadeOptions,
+        lights: &[PolygonLight],
+        camera: Vec3,
+        matrix: Option<Mat4>,
+    ) -> Vec4 {
+        assert_eq!(options.images, RadianceImages::One);
+        self.shade_images(options, lights, camera, matrix)[0]
+    }
+
+    /// The image of both lobes or of the diffuse one, and that of the glossy one, which held [`BEFORE`].
+    pub fn shade_images(
+        &self,
+        options: ShadeOptions,
+        lights: &[PolygonLight],
+        camera: Vec3,
+        matrix: Option<Mat4>,
+    ) -> [Vec4; 2] {
+        let host = self.engine.host();
+        let [radiance, glossy] = [(); 2].map(|()| stored(self.engine, options.format));
+        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        unsafe {
+            let pass = ShadePass::new(self.engine.context(), options).unwrap();
+            let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
+            let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
+            let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
+            let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+            let set = pool.allocate(pass.set_layout()).unwrap();
+            let sampled = |image: &Image| Resource::SampledImage {
+                view: image.view(),
+                layout: Usage::COMPUTE_READ.layout,
+            };
+            let from_depth = options.position == PositionSource::Depth;
+            let resources = ShadeResources {
+                table: self.engine.table(),
+                lights: Resource::buffer(light_buffer.handle()),
+                light_vertices: Resource::buffer(vertex_buffer.handle()),
+                position: sampled(if from_depth { &self.depth } else { &self.position }),
+                normal: sampled(&self.normal),
+                base_color: sampled(&self.base_color),
+                specular: sampled(&self.base_color),
+                radiance: Resource::StorageImage { view: radiance.view() },
+                glossy: Some(Resource::StorageImage { view: glossy.view() }),
+                light_textures: self.engine.light_textures(),
+                shapes: Resource::buffer(light_buffer.handle()),
+            };
+            pass.write_set(set, &resources).unwrap();
+            let frame = ShadeFrame {
+                size: [1, 1],
+                camera,
+                position_from_clip: matrix,
+                light_count: lights.len() as u32,
+                shape_count: 0,
+            };
+            host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
+        }
+        [radiance, glossy].map(|image| read(&image, options.format))
+    }
+}
+
+fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) -> Image {
+    let description = ImageDescription { name: "one pixel", extent: [1, 1], layers: 1, format, usage };
+    engine.host().image(&description).unwrap()
+}
+
+fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
+    let image = image(engine, format, vk::ImageUsageFlags::SAMPLED);
+    image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
+    image
+}
+
+/// An image for radiance, which holds [`BEFORE`].
+fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
+    let before = BEFORE.to_array();
+    match format {
+        RadianceFormat::Rgba32Float => {
+            let image = image(engine, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::STORAGE);
+            image.upload(&[before], Usage::COMPUTE_WRITE).unwrap();
+            image
+        }
+        RadianceFormat::Rgba16Float => {
+            let image = image(engine, vk::Format::R16G16B16A16_SFLOAT, vk::ImageUsageFlags::STORAGE);
+            image
+                .upload(&[before.map(|value| f16::from_f32(value).to_bits())], Usage::COMPUTE_WRITE)
+                .unwrap();
+            image
+        }
+    }
+}
+
+fn read(image: &Image, format: RadianceFormat) -> Vec4 {
+    match format {
+        RadianceFormat::Rgba32Float => {
+            let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();
+            Vec4::from_array(texels[0])
+        }
+        RadianceFormat::Rgba16Float => {
+            let texels: Vec<[u16; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();
+            Vec4::from_array(texels[0].map(|bits| f16::from_bits(bits).to_f32()))
+        }
+    }
+}
+
+/// A square over the pixel's point.
+pub fn lamp() -> PolygonLight {
+    let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    PolygonLight {
+        name: "lamp".into(),
+        vertices: square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect(),
+        radiance: Vec3::new(1.0, 2.0, 3.0),
+        ..PolygonLight::default()
+    }
+}
+
+/// Both lobes.
+pub fn options() -> ShadeOptions {
+    ShadeOptions { effects: Effects::DIFFUSE | Effects::GLOSSY, ..ShadeOptions::all() }
+}

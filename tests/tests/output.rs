@@ -1,0 +1,137 @@
+//! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
+
+use arealight::plan::{Output, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::{Effects, Horizon, PolygonLight, Quality};
+use arealight_tests::TestEngine;
+use arealight_tests::one_pixel::{self, BEFORE, OnePixel, lamp};
+use arealight_vk::{Error, Resource, ShadePass, ShadeResources};
+use ash::vk::{self, Handle as _};
+use glam::{Vec3, Vec4};
+use half::f16;
+
+const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
+
+/// Nothing is clipped, as the lamp is above the surface: the smallest kernel, which is soon compiled.
+fn options() -> ShadeOptions {
+    let quality = Quality { horizon: Horizon::Bare, ..Quality::default() };
+    ShadeOptions { quality, ..one_pixel::options() }
+}
+
+fn surface(engine: &TestEngine) -> OnePixel<'_> {
+    OnePixel::new(engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5)
+}
+
+fn no_surface(engine: &TestEngine) -> OnePixel<'_> {
+    OnePixel::new(engine, Vec4::ZERO, 1.0)
+}
+
+#[test]
+fn output_overwrites_or_adds() {
+    let Some(engine) = TestEngine::new() else { return };
+    let add = ShadeOptions { output: Output::Add, ..options() };
+    let over = surface(&engine).shade(options(), &[lamp()], CAMERA, None);
+    assert!(over.min_element() > 0.05 && over.w == 1.0, "{over}");
+    let added = surface(&engine).shade(add, &[lamp()], CAMERA, None);
+    assert_eq!(added.truncate(), over.truncate() + BEFORE.truncate());
+
+    // Without a surface: overwriting clears, adding leaves alone
+    assert_eq!(no_surface(&engine).shade(options(), &[lamp()], CAMERA, None), Vec4::ZERO);
+    assert_eq!(no_surface(&engine).shade(add, &[lamp()], CAMERA, None), BEFORE);
+}
+
+#[test]
+fn lobes_apart_are_those_of_one_image() {
+    let Some(engine) = TestEngine::new() else { return };
+    let lights = [lamp(), PolygonLight { radiance: Vec3::new(0.5, 0.25, 7.0), ..lamp() }];
+    let shade = |options| surface(&engine).shade_images(options, &lights, CAMERA, None);
+    let only = |effects| shade(ShadeOptions { effects, ..options() })[0];
+    let apart = ShadeOptions { images: RadianceImages::Apart, ..options() };
+
+    // Each is to the bit what a pass of that lobe alone gives
+    let [diffuse, glossy] = shade(apart);
+    assert_eq!([diffuse, glossy], [only(Effects::DIFFUSE), only(Effects::GLOSSY)]);
+    assert!(diffuse.min_element() > 0.0 && glossy.min_element() > 0.0 && diffuse != glossy);
+    let [both, untouched] = shade(options());
+    assert_eq!(untouched, BEFORE);
+    // Three sums of two lights or lobes, each rounded by 2^-24 of up to the whole
+    let error = ((diffuse + glossy - both).truncate() / both.truncate()).abs().max_element();
+    assert!(error <= 3.0 * 2.0_f32.powi(-24), "{diffuse} + {glossy} = {both}: {error}");
+
+    // Added, and left where there is no surface
+    let add = ShadeOptions { output: Output::Add, ..apart };
+    let added = shade(add);
+    assert_eq!(added.map(Vec4::truncate), [diffuse, glossy].map(|lobe| BEFORE.truncate() + lobe.truncate()));
+    let nothing = |options| no_surface(&engine).shade_images(options, &lights, CAMERA, None);
+    assert_eq!(nothing(add), [BEFORE; 2]);
+    // A lobe that the pass was made without reflects nothing
+    let without = shade(ShadeOptions { effects: Effects::DIFFUSE, ..apart });
+    assert_eq!(without, [diffuse, Vec4::W]);
+}
+
+#[test]
+fn sixteen_bits_are_the_nearest_to_thirty_two() {
+    let Some(engine) = TestEngine::new() else { return };
+    let nearest = |value: Vec4| Vec4::from_array(value.to_array().map(|v| f16::from_f32(v).to_f32()));
+    for (output, images) in [(Output::Overwrite, RadianceImages::One), (Output::Add, RadianceImages::Apart)] {
+        let single = ShadeOptions { output, images, ..options() };
+        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..single };
+        let shade = |options| surface(&engine).shade_images(options, &[lamp()], CAMERA, None);
+        let expected = shade(single).map(nearest);
+        assert_eq!(shade(half), expected, "{output:?} {images:?}");
+        assert_ne!(shade(single), expected, "sixteen bits do not hold what thirty-two do");
+    }
+}
+
+#[test]
+fn sixteen_bits_saturate() {
+    let Some(engine) = TestEngine::new() else { return };
+    let bright = PolygonLight { radiance: Vec3::new(1e7, 2e38, 1e-4), ..lamp() };
+    for output in [Output::Overwrite, Output::Add] {
+        let single = ShadeOptions { output, images: RadianceImages::Apart, ..options() };
+        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..single };
+        let shade = |options| surface(&engine).shade_images(options, &[bright.clone()], CAMERA, None);
+        for (half, single) in shade(half).into_iter().zip(shade(single)) {
+            // As 32 bits hold it, what is above the largest of 16 bits is that, never infinite
+            assert!(single.x > 65_504.0 && single.y.is_finite(), "{single}");
+            assert_eq!((half.x, half.y), (65_504.0, 65_504.0));
+            assert_eq!(half.z, f16::from_f32(single.z).to_f32());
+        }
+    }
+}
+
+#[test]
+fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
+    let Some(engine) = TestEngine::new() else { return };
+    let view = |number| Resource::StorageImage { view: vk::ImageView::from_raw(number) };
+    let image = Resource::SampledImage { view: vk::ImageView::from_raw(1), layout: vk::ImageLayout::GENERAL };
+    let buffer = Resource::buffer(vk::Buffer::from_raw(1));
+    let resources = ShadeResources {
+        table: image,
+        lights: buffer,
+        light_vertices: buffer,
+        position: image,
+        normal: image,
+        base_color: image,
+        specular: image,
+        radiance: view(7),
+        glossy: None,
+        light_textures: engine.light_textures(),
+        shapes: buffer,
+    };
+    let apart = ShadeOptions { images: RadianceImages::Apart, ..options() };
+    // SAFETY: no submission uses the pass, and nothing is written where an error is returned.
+    let pass = unsafe { ShadePass::new(engine.context(), apart) }.unwrap();
+    for (glossy, words) in [
+        (None, "glossy: is missing"),
+        (Some(view(7)), "glossy: is the image of `radiance`"),
+        (Some(view(0)), "glossy_image: is a null handle"),
+        (Some(buffer), "glossy_image: is a StorageBuffer"),
+    ] {
+        // SAFETY: as above.
+        let error =
+            unsafe { pass.write_set(vk::DescriptorSet::null(), &ShadeResources { glossy, ..resources }) };
+        let error = error.unwrap_err();
+        assert!(matches!(error, Error::InvalidArgument { .. }), "{error:?}");
+        assert!(error.to_string().starts_with(words), "{error}");
+    }
+}
