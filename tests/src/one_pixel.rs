@@ -4,7 +4,7 @@ use crate::TestEngine;
 use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, PolygonLight};
 use arealight_host::{Image, ImageDescription, Usage};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
 use glam::{DVec3, Mat4, Vec3, Vec4};
@@ -26,7 +26,7 @@ impl<'a> OnePixel<'a> {
     /// A grey, half rough, a quarter metallic surface that looks up, at `position` (w = 0: none), and what the depth buffer says of it.
     ///
     /// # Panics
-    /// Where the device fails; so below.
+    /// Where the device fails.
     pub fn new(engine: &'a TestEngine, position: Vec4, depth: f32) -> Self {
         let float = vk::Format::R32G32B32A32_SFLOAT;
         Self {
@@ -41,7 +41,7 @@ impl<'a> OnePixel<'a> {
     /// The one image of a pass that has one.
     ///
     /// # Panics
-    /// Where the options say that there are two.
+    /// Where the options say that there are two, or the device fails.
     pub fn shade(
         &self,
         options: ShadeOptions,
@@ -54,6 +54,9 @@ impl<'a> OnePixel<'a> {
     }
 
     /// The image of both lobes or of the diffuse one, and that of the glossy one, which held [`BEFORE`].
+    ///
+    /// # Panics
+    /// Where the device fails.
     pub fn shade_images(
         &self,
         options: ShadeOptions,
@@ -63,9 +66,9 @@ impl<'a> OnePixel<'a> {
     ) -> [Vec4; 2] {
         let host = self.engine.host();
         let [radiance, glossy] = [(); 2].map(|()| stored(self.engine, options.format));
+        let pass = self.engine.shade_pass(options).unwrap();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
-            let pass = ShadePass::new(self.engine.context(), options).unwrap();
             let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
             let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
             let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();

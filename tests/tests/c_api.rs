@@ -345,7 +345,7 @@ fn calls_out_of_order_are_refused() {
             storage_buffers: 0,
         };
         good(arealight_pass_set_layout(pass, &raw mut layout));
-        assert!(layout.layout != 0 && layout.sampled_images > 0 && layout.storage_images == 1);
+        assert!(layout.layout != 0 && layout.sampled_images > 0 && layout.storage_images == 2);
         // A frame that cannot be recorded
         let commands = null_mut::<c_void>().wrapping_add(8);
         let record =

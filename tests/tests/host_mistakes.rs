@@ -7,9 +7,11 @@ use arealight::plan::ShadeOptions;
 use arealight_host::Location;
 use arealight_tests::TestEngine;
 use arealight_vk::{
-    ComputePass, Context, Error, HostDevice, LightTextures, Resource, ShadePass, TableFormat, TableImage,
+    ComputePass, Context, Error, HostDevice, LightTextures, Resource, ShadeFrame, ShadePass, TableFormat,
+    TableImage,
 };
 use ash::vk;
+use glam::Vec3;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
@@ -196,7 +198,19 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         let staging = engine.host().buffer("staging", bytes.len() as u64, usage, Location::Upload).unwrap();
         staging.upload(&bytes).unwrap();
         engine.host().submit(|commands| image.record_upload(commands, staging.handle(), 0)).unwrap();
-        ShadePass::new(&context, ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() }).unwrap();
+        let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
+        let pass = ShadePass::new(&context, options).unwrap();
+        // What is not recorded has no label either
+        let frame = ShadeFrame {
+            size: [u32::MAX, 8],
+            camera: Vec3::ZERO,
+            position_from_clip: None,
+            light_count: 0,
+            shape_count: 0,
+        };
+        let none = vk::DescriptorSet::null();
+        engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();
+        drop(pass);
         drop(image);
         engine.host().with_allocator(|allocator| allocator.free(memory)).unwrap();
     }

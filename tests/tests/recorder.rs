@@ -51,6 +51,12 @@ fn frames_that_cannot_be_shaded_are_refused_by_field() {
             assert_eq!(field(&error), expected, "{error}");
         }
     });
+    let without_shapes = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
+    recording(&engine, without_shapes, |pass, commands, set| {
+        // SAFETY: As above.
+        let error = unsafe { pass.record(commands, set, &ShadeFrame { shape_count: 1, ..frame() }) };
+        assert_eq!(field(&error.unwrap_err()), "shape_count");
+    });
     let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::all() };
     recording(&engine, from_depth, |pass, commands, set| {
         // SAFETY: As above.
