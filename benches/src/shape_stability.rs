@@ -19,11 +19,8 @@ use std::fmt::Write as _;
 
 /// The largest backward error: the distance to the values of shapes whose numbers differ by [`MOVE`] of their length.
 const BACKWARD: f64 = 1e-6;
-/// Far disks and spheres: the largest error as a part of what one sends at the zenith.
+/// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
 const RELATIVE: f64 = 1e-5;
-/// Far tubes: the same, by the difference form. Most are within 1e-5, but one that is seen along its axis is no line and has an
-/// outline's absolute precision, and one on the horizon is cut where its axis meets it.
-const RELATIVE_TUBE: f64 = 5e-2;
 /// The difference form's rung.
 const DIFFERENCE: u32 = 2;
 
@@ -183,11 +180,10 @@ fn families() -> Vec<Family> {
             Place::EndOn,
             Place::Far,
             Place::FarCrossing,
+            Place::FarSlim,
         ] {
             let judgement = match place {
-                // A capsule has no end to look into
-                Place::Far if ends == Ends::Round => Judgement::Relative(RELATIVE),
-                Place::Far | Place::FarCrossing => Judgement::Relative(RELATIVE_TUBE),
+                Place::Far | Place::FarCrossing | Place::FarSlim => Judgement::Relative(RELATIVE),
                 _ => Judgement::Backward,
             };
             let is_far = !matches!(judgement, Judgement::Backward);
@@ -230,6 +226,8 @@ enum Place {
     /// Wholly above the horizon.
     Far,
     FarCrossing,
+    /// A hundred to a hundred thousand times as long as thick; every other one crosses the horizon.
+    FarSlim,
 }
 
 impl Place {
@@ -242,6 +240,7 @@ impl Place {
             Self::EndOn => "end-on",
             Self::Far => "far",
             Self::FarCrossing => "far-crossing",
+            Self::FarSlim => "far-slim",
         }
     }
 }
@@ -264,13 +263,24 @@ fn hard_tube(place: Place, ends: Ends, index: u64) -> Tube {
             start = axis * stream.between(0.2, 2.0) + beside;
         }
         Place::Far => {
-            start *= stream.power(10.0, 17.0);
+            start *= stream.power(7.0, 17.0);
             start.z = start.z.abs() + axis.z.abs() + radius;
         }
         Place::FarCrossing => {
-            start *= stream.power(10.0, 17.0);
+            start *= stream.power(7.0, 17.0);
             start.z = -axis.z * stream.unit();
         }
+        Place::FarSlim => {
+            start *= stream.power(6.0, 17.0);
+            if stream.one_in(2) {
+                start.z = -axis.z * stream.unit();
+            }
+            radius = axis.length() * stream.power(-18.0, -7.0);
+        }
+    }
+    if matches!(place, Place::Far | Place::FarCrossing) {
+        // Its ends are to be small before their distance
+        radius = radius.min(start.length().min((start + axis).length()) / 64.0);
     }
     let (center, half) = (round(start + axis * 0.5), round(axis * 0.5));
     Tube { start: center - half, end: center + half, radius: f64::from(radius as f32), ends }
@@ -443,7 +453,7 @@ mod tests {
             assert!(off(f64::NAN).all(|error| error == f64::INFINITY), "{}", family.name);
         }
         assert_eq!(out_of_range(&[0.0, 1.0, f32::NAN, 1.5, -0.5]), 3);
-        assert_eq!(family_count(), 41);
+        assert_eq!(family_count(), 44);
     }
 
     #[test]

@@ -14,6 +14,7 @@ const int AREALIGHT_TUBE_ROUND = 2; // half spheres: a capsule
 
 // A tube as seen from the shading point, in the space of its arguments, scaled by a power of two.
 struct ArealightTube {
+    vec3 center;
     vec3 start;
     vec3 end;
     vec3 half_axis;
@@ -36,17 +37,16 @@ ArealightRim arealight_tube_rim(ArealightTube tube, vec3 center, float outwards,
     vec3 towards = tube.towards;
     ArealightRim rim;
     if (tube.ends == AREALIGHT_TUBE_ROUND) {
-        // The circle where the cone of tangents meets the sphere
-        float square = dot(center, center);
-        float share = tube.radius * tube.radius / max(square, AREALIGHT_TINY);
-        rim.center = center * (1.0 - share);
-        vec3 away = outwards * (tube.axis - center * (dot(tube.axis, center) / max(square, AREALIGHT_TINY)));
-        vec3 middle = arealight_normalize_or(away, towards);
+        // The circle where the cone of tangents meets the sphere, and of that the outer part
+        float place = dot(center, tube.axis);
+        float square = place * place + tube.distance * tube.distance;
+        float reciprocal = inversesqrt(max(square, AREALIGHT_TINY));
+        float share = tube.radius * tube.radius * (reciprocal * reciprocal);
         float ring = tube.radius * sqrt(max(1.0 - share, 0.0));
-        rim.middle = middle * ring;
+        rim.center = center * (1.0 - share);
+        rim.middle = (outwards * ring * reciprocal) * (tube.distance * tube.axis + place * towards);
         rim.side = tube.side * ring;
-        vec3 contact = tube.radius * (towards * cosine + tube.side * sine) + center * share;
-        vec2 half_width = vec2(dot(contact, middle), dot(contact, tube.side));
+        vec2 half_width = vec2(outwards * cosine * place * reciprocal, sine);
         rim.half_width = half_width * inversesqrt(dot(half_width, half_width) + AREALIGHT_TINY);
         return rim;
     }
@@ -65,9 +65,10 @@ ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends
     ArealightTube tube;
     float largest = max(max(arealight_max_component(center), arealight_max_component(half_axis)), radius);
     float scale = arealight_power_of_two_scale(largest);
+    tube.center = center * scale;
     tube.half_axis = half_axis * scale;
-    tube.start = center * scale - tube.half_axis;
-    tube.end = center * scale + tube.half_axis;
+    tube.start = tube.center - tube.half_axis;
+    tube.end = tube.center + tube.half_axis;
     tube.radius = radius * scale;
     tube.ends = ends;
     tube.axis = arealight_normalize_or(tube.half_axis, vec3(1.0, 0.0, 0.0));

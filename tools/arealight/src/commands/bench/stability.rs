@@ -78,10 +78,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 /// What is promised of shapes, for the document.
 const SHAPE_PROMISES: &str = "\
 Each result is held against float64, by its bits: a finite number in [0, 1]; a backward error (the distance to the values of shapes \
-whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights an error of at most 1e-5 of what they \
-would send from the zenith, of far tubes (by the difference form) 5e-2: most are within 1e-5, but one that is seen along its axis is no \
-line and has an outline's absolute precision, and one on the horizon is cut where its axis meets it. Beside the disks is the published disk, its discriminant kept from being \
-negative, on the same device: how many of its results are not finite, and the largest error of those that are.";
+whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights (of tubes those whose radius is \
+a 64th of their distance or less, by the difference form) an error of at most 1e-5 of what they would send from the zenith. Beside the \
+disks is the published disk, its discriminant kept from being negative, on the same device: how many of its results are not finite, \
+and the largest error of those that are.";
 
 fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
