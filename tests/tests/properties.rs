@@ -19,7 +19,7 @@ use arealight_tests::{
     Cases, Comparison, Path, Property, Random, Rung, TestEngine, glossy_surface, lambert_surface, point,
 };
 use glam::DVec3;
-use relations::RELATIONS;
+use relations::{HOLE, RELATIONS};
 use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
@@ -64,7 +64,7 @@ fn lambert(vertices: Vec<DVec3>) -> EvalPoint {
 /// Every relation, for every rung of a path that clips at `horizon`.
 fn assert_relations(engine: &TestEngine, path: Path, table: Option<&LightTable>, horizon: Horizon) {
     let rungs = Rung::of(&[path], &[horizon]);
-    for relation in &RELATIONS {
+    for relation in RELATIONS.iter().chain((path == Path::Walk).then_some(&HOLE)) {
         let groups = relation.groups(path, table.is_some(), COUNT);
         let property = Property::new(relation.what, table, &groups);
         property.assert(engine, &rungs, relation.sides);

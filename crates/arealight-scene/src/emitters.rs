@@ -40,7 +40,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
         loader.warn(place.as_str(), text);
     }
     if outlines.split > 0 {
-        let text = format!("has holes or touches itself: {} more polygon lights make it up", outlines.split);
+        let text = format!("touches itself: {} more polygon lights make it up", outlines.split);
         loader.warn(place.as_str(), text);
     }
     let mut uvs = outlines.uvs.into_iter();

@@ -25,6 +25,7 @@
 
 mod accessor;
 mod area_lights;
+mod borders;
 pub mod bvh;
 mod camera;
 mod document;

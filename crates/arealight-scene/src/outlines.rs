@@ -3,12 +3,14 @@
 //! A flat part grows triangle by triangle from its largest one, and its outline stays a simple loop all the
 //! way: a triangle that would close a ring around a hole, or make the loop touch itself, waits, and what
 //! still waits at the end starts a polygon of its own. A part without holes always becomes one polygon
-//! (planar discs can be shelled from any start); a ring becomes two.
+//! (planar discs can be shelled from any start). A part with holes becomes one, too, whose outline goes around the holes
+//! by bridges; only where its borders touch is it several.
 //!
 //! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the mapping
 //! bends, another part begins.
 
 use crate::Bounds;
+use crate::borders::{borders, with_holes};
 use crate::uv_map::{UvMap, UvTolerance};
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -28,7 +30,8 @@ const SHARED: usize = 4;
 /// The polygons that a set of triangles is.
 #[derive(Debug, Default)]
 pub(crate) struct Outlines {
-    /// In the orientation of the triangles; without vertices in the middle of straight edges.
+    /// In the orientation of the triangles; without vertices in the middle of straight edges. One that goes around holes passes
+    /// each bridge to them twice.
     pub polygons: Vec<Vec<DVec3>>,
     /// Texture coordinates of the polygons' vertices; empty if none were given.
     pub uvs: Vec<Vec<DVec2>>,
@@ -75,9 +78,16 @@ pub(crate) fn outlines(
         let members = mesh.flat_part(seed, &plane, parts, &mut part, &mut outlines);
         parts += 1;
         let before = outlines.polygons.len();
-        for outline in mesh.simple_loops(&members) {
-            let outline: Vec<DVec3> = outline.into_iter().map(|i| mesh.positions[i as usize]).collect();
-            let Some(polygon) = straightened(&outline, flat) else { continue };
+        let polygons = mesh.outline_with_holes(&members, plane.normal, flat).map_or_else(
+            || {
+                mesh.simple_loops(&members)
+                    .iter()
+                    .filter_map(|outline| mesh.straightened(outline, flat))
+                    .collect()
+            },
+            |polygon| vec![polygon],
+        );
+        for polygon in polygons {
             if let Some(map) = &plane.map {
                 outlines.uvs.push(polygon.iter().map(|vertex| map.at(*vertex)).collect());
             }
@@ -210,6 +220,23 @@ impl Mesh {
             next += 1;
         }
         members
+    }
+
+    /// The outline around `members`, a connected flat part, and around its holes. None if it has no holes, or its borders
+    /// touch.
+    fn outline_with_holes(&self, members: &[usize], normal: DVec3, flat: f64) -> Option<Vec<DVec3>> {
+        let loops = borders(members.iter().map(|&member| self.triangles[member]))?;
+        if loops.len() < 2 {
+            return None;
+        }
+        let loops: Option<Vec<_>> = loops.iter().map(|outline| self.straightened(outline, flat)).collect();
+        with_holes(loops?, normal)
+    }
+
+    /// The outline's positions, see [`straightened`].
+    fn straightened(&self, outline: &[u32], tolerance: f64) -> Option<Vec<DVec3>> {
+        let outline: Vec<DVec3> = outline.iter().map(|&i| self.positions[i as usize]).collect();
+        straightened(&outline, tolerance)
     }
 
     /// Simple outlines that cover `members`, a connected flat part, once.

@@ -94,17 +94,15 @@ fn corners_that_touch_do_not_connect() {
 }
 
 #[test]
-fn a_ring_becomes_two_simple_outlines() {
+fn a_ring_becomes_one_outline_around_its_hole() {
     let (positions, triangles) = grid(5, 5, |x, y| !(1..4).contains(&x) || !(1..4).contains(&y));
     let merged = outlines(&positions, &triangles, 0.0, None);
-    assert_eq!((merged.polygons.len(), merged.split, merged.bent), (2, 1, false));
+    assert_eq!((counts(&merged), merged.split, merged.bent), (vec![4 + 4 + 2], 0, false));
     assert_eq!(total_area(&merged), DVec3::Z * 16.0);
-    // Each outline is simple: no vertex twice
-    for polygon in &merged.polygons {
-        for (i, a) in polygon.iter().enumerate() {
-            assert!(polygon[..i].iter().all(|b| a != b));
-        }
-    }
+    // The bridge is all that is there twice
+    let polygon = &merged.polygons[0];
+    let twice = polygon.iter().enumerate().filter(|(i, a)| polygon[..*i].contains(a)).count();
+    assert_eq!(twice, 2);
 }
 
 #[test]
@@ -112,7 +110,22 @@ fn many_holes_are_covered_once() {
     let (positions, triangles) = grid(9, 9, |x, y| x % 2 == 0 || y % 2 == 0);
     let merged = outlines(&positions, &triangles, 0.0, None);
     assert_eq!(total_area(&merged), DVec3::Z * (81.0 - 16.0));
+    assert_eq!((counts(&merged), merged.split), (vec![4 + 16 * (4 + 2)], 0));
+}
+
+#[test]
+fn holes_that_touch_make_several_simple_outlines() {
+    // Two holes that share a corner
+    let (positions, triangles) = grid(4, 4, |x, y| !((x, y) == (1, 1) || (x, y) == (2, 2)));
+    let merged = outlines(&positions, &triangles, 0.0, None);
+    assert_eq!(total_area(&merged), DVec3::Z * 14.0);
     assert!(merged.split > 0);
+    // Each outline is simple: no vertex twice
+    for polygon in &merged.polygons {
+        for (i, a) in polygon.iter().enumerate() {
+            assert!(polygon[..i].iter().all(|b| a != b));
+        }
+    }
 }
 
 /// A cube of 2 × 2 × 2 around the origin with `n` by `n` cells a face, and `shape` applied to its vertices.

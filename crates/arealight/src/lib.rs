@@ -18,6 +18,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
+//! | [`holes`] | polygon lights with holes |
 //! | [`shape`] | disks, spheres, cylinders and capsules as lights |
 //! | [`light_texture`] | what a light shows |
 //! | [`texture_part`] | which part of an image becomes one |
@@ -35,6 +36,7 @@
 pub mod budget;
 pub mod effects;
 pub mod gpu;
+pub mod holes;
 pub mod kernels;
 pub mod light;
 pub mod light_sampling;
@@ -49,6 +51,7 @@ pub mod texture_part;
 
 pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileRung};
 pub use effects::{Effects, UnknownEffect};
+pub use holes::HoleError;
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
 pub use light_texture::{LightTexture, TextureError, TextureMap};

@@ -2,13 +2,17 @@
 
 use crate::Effects;
 use crate::gpu::GpuLight;
+use crate::holes::HoleError;
 use crate::light_texture::{LightTexture, TextureError, TextureMap};
 use glam::{DVec3, Vec3};
 
+/// How far a vertex of a flat polygon may be off its plane, as a part of its size.
+pub(crate) const FLAT: f64 = 1e-4;
+
 /// A flat polygon that emits constant radiance, or shows an image.
 ///
-/// Any number of vertices from three on, convex or concave; its edges do not cross, and it has no holes. The front is the
-/// right-hand side of the vertex order: seen from the front, the vertices run counter-clockwise.
+/// Any number of vertices from three on, convex or concave; its edges do not cross. Holes are cut by
+/// [`PolygonLight::cut_holes`]. The front is the right-hand side of the vertex order: seen from the front, the vertices run counter-clockwise.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PolygonLight {
     /// A name for messages; it need not be unique.
@@ -52,6 +56,16 @@ pub enum LightError {
         light: String,
         /// The radiance given.
         value: Vec3,
+    },
+    /// A hole cannot be cut into it.
+    #[error("light '{light}': holes[{hole}]: {reason}")]
+    BadHole {
+        /// The light's name.
+        light: String,
+        /// The hole.
+        hole: usize,
+        /// What is wrong.
+        reason: HoleError,
     },
     /// Its texture cannot be mapped onto it.
     #[error("light '{light}': texture: {reason}")]
@@ -144,19 +158,18 @@ impl PolygonLight {
     /// Whether the outline is convex and flat, both to a ten-thousandth of its size, and has at most four vertices:
     /// what is shaded without [`Effects::POLYGON`], as if its vertices were moved by that much.
     pub fn is_convex_quad(&self) -> bool {
-        const TOLERANCE: f64 = 1e-4;
         if self.vertices.len() > 4 {
             return false;
         }
         let normal = self.area_vector().normalize_or_zero();
         let center = self.center();
         let size = self.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
-        let flat = self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= TOLERANCE * size);
+        let flat = self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= FLAT * size);
         // Every corner turns the outline's way, or not at all
         let count = self.vertices.len();
         let convex = (0..count).all(|i| {
             let [a, b, c] = [i, i + 1, i + 2].map(|j| self.vertices[j % count]);
-            (b - a).cross(c - b).dot(normal) >= -TOLERANCE * (b - a).length() * (c - b).length()
+            (b - a).cross(c - b).dot(normal) >= -FLAT * (b - a).length() * (c - b).length()
         });
         flat && convex
     }

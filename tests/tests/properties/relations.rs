@@ -49,6 +49,10 @@ pub const RELATIONS: [Relation; 9] = [
     },
 ];
 
+/// A light with a hole and its hole are the whole: of any outline alone.
+pub const HOLE: Relation =
+    Relation { what: "hole", others: cut, sides: |f| [f[1] + f[2], f[0]], twin: |f| [f[1], f[0]] };
+
 impl Relation {
     /// Groups for a path and a lobe.
     pub fn groups(&self, path: Path, glossy: bool, count: usize) -> Vec<Vec<EvalPoint>> {
@@ -138,6 +142,17 @@ fn part(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     let middle = star_middle(outline);
     let factor = 1.0 - 10.0_f64.powf(random.between(-7.0, -0.3));
     vec![with_outline(given, outline.iter().map(|v| middle.lerp(*v, factor)).collect())]
+}
+
+/// With a hole, and what was cut out of it: the outline shrunk towards its middle.
+fn cut(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
+    let outline = &given.light.vertices;
+    let middle = star_middle(outline);
+    let factor = random.between(0.1, 0.95);
+    let hole: Vec<_> = outline.iter().map(|v| middle.lerp(*v, factor)).collect();
+    let mut with_hole = given.clone();
+    with_hole.light.cut_holes(std::slice::from_ref(&hole)).expect("it is inside");
+    vec![with_hole, with_outline(given, hole)]
 }
 
 /// Everything together: anyhow, and about the normal.

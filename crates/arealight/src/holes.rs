@@ -1,0 +1,348 @@
+//! Polygons with holes: several outlines of one light.
+//!
+//! A hole is joined to the outline by a bridge, an edge there and the same edge back, which makes one outline of both. What
+//! the two edges of a bridge add to a sum over edges cancels but for rounding, wherever it is cut: so all that takes any
+//! outline takes this one, and the light is one record with one radiance.
+
+use crate::light::{FLAT, LightError, PolygonLight};
+use glam::{DVec2, DVec3};
+
+/// Why a hole cannot be cut.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum HoleError {
+    /// A hole has three vertices or more.
+    #[error("{count} vertices given, a hole has at least 3")]
+    TooFewVertices {
+        /// How many it has.
+        count: usize,
+    },
+    /// A vertex is NaN, infinite, or farther from the origin than float32 reaches.
+    #[error("vertices[{index}]: {value} is not a finite float32 position")]
+    VertexNotFinite {
+        /// The vertex.
+        index: usize,
+        /// Its position.
+        value: DVec3,
+    },
+    /// A vertex is not in the polygon's plane.
+    #[error("vertices[{index}]: {distance} off the polygon's plane: a hole lies in it")]
+    OffPlane {
+        /// The vertex.
+        index: usize,
+        /// How far it is off.
+        distance: f64,
+    },
+    /// A vertex is outside the polygon, or in another hole.
+    #[error("vertices[{index}]: outside the polygon, or in another hole: merge holes that overlap")]
+    Outside {
+        /// The vertex.
+        index: usize,
+    },
+    /// It touches or crosses the outline, another hole or itself.
+    #[error("touches or crosses the outline, another hole or itself")]
+    Crosses,
+    /// It has no area, or the polygon has none.
+    #[error("no area: of the hole, or of the polygon it is in")]
+    NoArea,
+    /// There is no way to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
+    #[error("no straight way to the outline: vertices lie too near to each other")]
+    NoBridge,
+}
+
+impl PolygonLight {
+    /// Cuts holes into the light, each an outline of its own, in either direction. The light's vertices become one outline
+    /// that goes around all of them; its area and center are those of what is left. A light has as many vertices more as the holes
+    /// have, and two for each hole.
+    ///
+    /// ```
+    /// # use arealight::PolygonLight;
+    /// # use glam::DVec3;
+    /// let square = |size: f64| vec![DVec3::ZERO, DVec3::X * size, DVec3::new(size, size, 0.0), DVec3::Y * size];
+    /// let hole = square(1.0).into_iter().map(|vertex| vertex + DVec3::new(1.0, 1.0, 0.0)).collect();
+    /// let mut frame = PolygonLight { vertices: square(3.0), ..PolygonLight::default() };
+    /// frame.cut_holes(&[hole])?;
+    /// assert_eq!((frame.vertices.len(), frame.area_vector()), (10, DVec3::Z * 8.0));
+    /// # Ok::<(), arealight::LightError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What [`PolygonLight::validate`] refuses, and [`LightError::BadHole`], which names the hole; then the light is as it was.
+    pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightError> {
+        self.validate()?;
+        let bad = |(hole, reason)| LightError::BadHole { light: self.name.clone(), hole, reason };
+        self.vertices = with_holes(self, holes).map_err(bad)?;
+        Ok(())
+    }
+}
+
+/// A vertex in space and in the polygon's plane.
+#[derive(Debug, Clone, Copy)]
+struct Vertex {
+    space: DVec3,
+    flat: DVec2,
+}
+
+/// The vertices of one outline around a polygon and its holes; else the hole that cannot be cut.
+fn with_holes(light: &PolygonLight, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, (usize, HoleError)> {
+    // Project onto the plane, so that the front is counter-clockwise
+    let Some(normal) = light.area_vector().try_normalize() else {
+        return if holes.is_empty() { Ok(light.vertices.clone()) } else { Err((0, HoleError::NoArea)) };
+    };
+    let (tangent, bitangent) = normal.any_orthonormal_pair();
+    let anchor = light.vertices[0];
+    let flatten = |space: &DVec3| {
+        let offset = *space - anchor;
+        Vertex { space: *space, flat: DVec2::new(offset.dot(tangent), offset.dot(bitangent)) }
+    };
+    let mut outline: Vec<Vertex> = light.vertices.iter().map(flatten).collect();
+    let size = light.vertices.iter().map(|vertex| vertex.distance(anchor)).fold(0.0, f64::max);
+    let mut loops = Vec::new();
+    for (number, hole) in holes.iter().enumerate() {
+        check_vertices(hole, |vertex| (vertex - anchor).dot(normal), size)
+            .map_err(|reason| (number, reason))?;
+        // Holes go around clockwise
+        let mut hole: Vec<Vertex> = hole.iter().map(flatten).collect();
+        let area = doubled_area(&hole);
+        if area == 0.0 {
+            return Err((number, HoleError::NoArea));
+        }
+        if area > 0.0 {
+            hole.reverse();
+        }
+        loops.push((number, hole));
+    }
+    check_places(&outline, &loops)?;
+    // From the right: so the rightmost vertex of a hole sees the outline of what was joined before
+    let rightmost = |hole: &[Vertex]| {
+        (0..hole.len()).max_by(|a, b| hole[*a].flat.x.total_cmp(&hole[*b].flat.x)).unwrap_or_default()
+    };
+    loops.sort_by(|(_, a), (_, b)| b[rightmost(b)].flat.x.total_cmp(&a[rightmost(a)].flat.x));
+    for index in 0..loops.len() {
+        let (number, hole) = &loops[index];
+        let start = rightmost(hole);
+        let obstacles = loops[index..].iter().flat_map(|(_, hole)| edges(hole));
+        let bridge = bridge(&outline, hole[start], &obstacles.collect::<Vec<_>>());
+        let at = bridge.ok_or((*number, HoleError::NoBridge))?;
+        // There, around, and back
+        let around = (0..=hole.len()).map(|i| hole[(start + i) % hole.len()]);
+        let rest = outline.split_off(at + 1);
+        let corner = outline[at];
+        outline.extend(around.chain([corner]).chain(rest));
+    }
+    Ok(outline.into_iter().map(|vertex| vertex.space).collect())
+}
+
+/// Checks what can be told of a hole by itself.
+fn check_vertices(hole: &[DVec3], height: impl Fn(DVec3) -> f64, size: f64) -> Result<(), HoleError> {
+    if hole.len() < 3 {
+        return Err(HoleError::TooFewVertices { count: hole.len() });
+    }
+    for (index, &value) in hole.iter().enumerate() {
+        if !value.as_vec3().is_finite() {
+            return Err(HoleError::VertexNotFinite { index, value });
+        }
+        let distance = height(value).abs();
+        if distance > FLAT * size {
+            return Err(HoleError::OffPlane { index, distance });
+        }
+    }
+    Ok(())
+}
+
+/// Checks that holes are in the outline, none in another, and that nothing touches.
+fn check_places(outline: &[Vertex], holes: &[(usize, Vec<Vertex>)]) -> Result<(), (usize, HoleError)> {
+    for (number, hole) in holes {
+        let others = || holes.iter().filter(|(other, _)| other != number).map(|(_, other)| &other[..]);
+        let misplaced = hole.iter().position(|vertex| {
+            !is_inside(vertex.flat, outline) || others().any(|other| is_inside(vertex.flat, other))
+        });
+        if let Some(index) = misplaced {
+            return Err((*number, HoleError::Outside { index }));
+        }
+        let around = || edges(outline).chain(others().flat_map(edges));
+        let meets_others = edges(hole).any(|edge| around().any(|other| meet(edge, other)));
+        // Edges that follow one another share a vertex
+        let count = hole.len();
+        let own: Vec<_> = edges(hole).collect();
+        let meets_itself = (0..count).any(|i| {
+            (i + 2..count).any(|j| (j + 1) % count != i && meet(own[i], own[j])) || own[i][0] == own[i][1]
+        });
+        if meets_others || meets_itself {
+            return Err((*number, HoleError::Crosses));
+        }
+    }
+    Ok(())
+}
+
+/// The vertex of an outline that a bridge from `start` goes to: the nearest that it reaches without meeting an edge.
+fn bridge(outline: &[Vertex], start: Vertex, obstacles: &[[DVec2; 2]]) -> Option<usize> {
+    let mut candidates: Vec<usize> = (0..outline.len()).collect();
+    let distance = |index: &usize| outline[*index].flat.distance_squared(start.flat);
+    candidates.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    candidates.into_iter().find(|&index| {
+        let end = outline[index].flat;
+        let [before, after] = [index + outline.len() - 1, index + 1].map(|i| outline[i % outline.len()].flat);
+        // Where bridges meet, a corner of the outline is there several times: the one whose inside the bridge comes from
+        let (of_before, of_after) = (turn(before, end, start.flat), turn(end, after, start.flat));
+        let convex = turn(before, end, after) > 0.0;
+        let inside =
+            if convex { of_before >= 0.0 && of_after >= 0.0 } else { of_before >= 0.0 || of_after >= 0.0 };
+        let shares = |edge: &[DVec2; 2]| edge.iter().any(|place| *place == end || *place == start.flat);
+        let mut others = edges(outline).chain(obstacles.iter().copied()).filter(|edge| !shares(edge));
+        inside && others.all(|edge| !meet([start.flat, end], edge))
+    })
+}
+
+fn edges(outline: &[Vertex]) -> impl Iterator<Item = [DVec2; 2]> + '_ {
+    (0..outline.len()).map(|i| [outline[i].flat, outline[(i + 1) % outline.len()].flat])
+}
+
+/// Twice the area that an outline goes around counter-clockwise.
+fn doubled_area(outline: &[Vertex]) -> f64 {
+    let anchor = outline.first().map_or(DVec2::ZERO, |vertex| vertex.flat);
+    edges(outline).map(|[a, b]| (a - anchor).perp_dot(b - anchor)).sum()
+}
+
+/// Positive where the way from a over b to c turns left.
+fn turn(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+    (b - a).perp_dot(c - b)
+}
+
+/// Whether two edges meet, if only in a point.
+fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let apart = a.max(b).cmplt(c.min(d)).any() || c.max(d).cmplt(a.min(b)).any();
+    let sides = |x: f64, y: f64| x == 0.0 || y == 0.0 || (x > 0.0) != (y > 0.0);
+    !apart && sides(turn(a, b, c), turn(a, b, d)) && sides(turn(c, d, a), turn(c, d, b))
+}
+
+/// Whether a point is inside an outline, in either direction: a ray to the right meets it an odd number of times.
+fn is_inside(point: DVec2, outline: &[Vertex]) -> bool {
+    let crossings = edges(outline)
+        .filter(|[a, b]| (a.y > point.y) != (b.y > point.y) && (turn(*a, *b, point) > 0.0) == (b.y > a.y));
+    crossings.count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A regular polygon about a point of the plane z = 2, counter-clockwise from above.
+    fn regular(center: [f64; 2], radius: f64, count: u32) -> Vec<DVec3> {
+        let vertex = |i: u32| {
+            let (sine, cosine) = (f64::from(i) * std::f64::consts::TAU / f64::from(count)).sin_cos();
+            DVec3::new(center[0] + radius * cosine, center[1] + radius * sine, 2.0)
+        };
+        (0..count).map(vertex).collect()
+    }
+
+    fn disk() -> PolygonLight {
+        PolygonLight { name: "disk".into(), vertices: regular([0.0; 2], 4.0, 24), ..PolygonLight::default() }
+    }
+
+    /// That the triangles of a light cover its area once, all from the front.
+    fn assert_covered(light: &PolygonLight, area: f64) {
+        assert!((light.area_vector() - DVec3::Z * area).length() < 1e-12, "{}", light.area_vector());
+        let triangles = light.triangles();
+        let areas = triangles.chunks_exact(3).map(|triangle| {
+            let [a, b, c] = [0, 1, 2].map(|i| light.vertices[triangle[i] as usize]);
+            (b - a).cross(c - a).z * 0.5
+        });
+        assert!(areas.clone().all(|area| area >= 0.0));
+        let sum: f64 = areas.sum();
+        assert!((sum - area).abs() < 1e-12, "{sum} is not {area}");
+    }
+
+    fn area(outline: &[DVec3]) -> f64 {
+        PolygonLight { vertices: outline.to_vec(), ..PolygonLight::default() }.area_vector().z.abs()
+    }
+
+    #[test]
+    fn a_ring_is_one_outline_in_either_direction() {
+        let hole = regular([0.5, 0.0], 3.0, 24);
+        let reversed: Vec<_> = hole.iter().rev().copied().collect();
+        for hole in [hole, reversed] {
+            let mut ring = disk();
+            ring.cut_holes(std::slice::from_ref(&hole)).unwrap();
+            assert_eq!(ring.vertices.len(), 24 + 24 + 2);
+            assert_covered(&ring, area(&disk().vertices) - area(&hole));
+            // What is left lies to the left
+            assert!(ring.center().x < -0.1 && ring.center().y.abs() < 1e-12, "{}", ring.center());
+            assert!(!ring.is_convex_quad());
+        }
+    }
+
+    #[test]
+    fn many_holes_are_all_cut() {
+        let places = (0..25).map(|i| [f64::from(i % 5) - 2.0, f64::from(i / 5) - 2.0]);
+        let holes: Vec<_> = places.map(|center| regular(center, 0.45, 7)).collect();
+        let mut sieve = disk();
+        sieve.cut_holes(&holes).unwrap();
+        assert_eq!(sieve.vertices.len(), 24 + 25 * (7 + 2));
+        assert_covered(&sieve, area(&disk().vertices) - 25.0 * area(&holes[0]));
+        // The twin: one hole less
+        sieve = disk();
+        sieve.cut_holes(&holes[1..]).unwrap();
+        assert!(sieve.area_vector().z > area(&disk().vertices) - 24.5 * area(&holes[0]));
+    }
+
+    #[test]
+    fn holes_in_a_concave_outline() {
+        // A comb whose teeth point up, with a hole in each
+        let mut comb = vec![DVec3::new(9.0, -1.0, 0.0)];
+        let mut holes = Vec::new();
+        for tooth in (0..5).rev() {
+            let left = f64::from(tooth) * 2.0;
+            let corners = [[1.0, 0.0], [1.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
+            comb.extend(corners.map(|[x, y]| DVec3::new(left + x, y, 0.0)));
+            let low = 4.0 - f64::from(tooth) * 0.7;
+            holes.push(
+                [[0.2, 0.0], [0.8, 0.0], [0.5, 0.5]]
+                    .map(|[x, y]| DVec3::new(left + x, low + y, 0.0))
+                    .to_vec(),
+            );
+        }
+        comb.push(DVec3::new(0.0, -1.0, 0.0));
+        let mut light = PolygonLight { vertices: comb, ..PolygonLight::default() };
+        let whole = light.area_vector().z;
+        light.cut_holes(&holes).unwrap();
+        assert_covered(&light, whole - 5.0 * area(&holes[0]));
+    }
+
+    #[test]
+    fn holes_that_cannot_be_are_refused() {
+        let refused = |holes: &[Vec<DVec3>]| {
+            let mut light = disk();
+            let error = light.cut_holes(holes).unwrap_err();
+            assert_eq!(light, disk(), "as it was");
+            match error {
+                LightError::BadHole { hole, reason, .. } => (hole, reason),
+                other => panic!("{other}"),
+            }
+        };
+        let good = regular([0.0; 2], 1.0, 5);
+        let two = good[..2].to_vec();
+        assert_eq!(refused(&[good.clone(), two]), (1, HoleError::TooFewVertices { count: 2 }));
+        let mut lifted = good.clone();
+        lifted[3].z += 0.1;
+        assert!(matches!(refused(&[lifted]), (0, HoleError::OffPlane { index: 3, .. })));
+        let mut not_finite = good.clone();
+        not_finite[4].x = f64::NAN;
+        assert!(matches!(refused(&[not_finite]), (0, HoleError::VertexNotFinite { index: 4, .. })));
+        assert_eq!(refused(&[regular([7.0, 0.0], 1.0, 5)]), (0, HoleError::Outside { index: 0 }));
+        assert_eq!(refused(&[good.clone(), good.clone()]).0, 0);
+        let inner = regular([0.0; 2], 0.5, 5);
+        assert_eq!(refused(&[good.clone(), inner]), (1, HoleError::Outside { index: 0 }));
+        // Around all of another, across another, across itself, along a line
+        assert_eq!(refused(&[good.clone(), regular([0.0; 2], 2.0, 5)]), (0, HoleError::Outside { index: 0 }));
+        let needle = [[-3.0, 0.35], [3.0, 0.3], [3.0, 0.4]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec();
+        assert_eq!(refused(&[good.clone(), needle]), (0, HoleError::Crosses));
+        let bow_tie =
+            [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.5]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec();
+        assert_eq!(refused(&[bow_tie]), (0, HoleError::Crosses));
+        let line = [0.0, 1.0, 0.5].map(|x| DVec3::new(x, 0.0, 2.0)).to_vec();
+        assert_eq!(refused(&[line]), (0, HoleError::NoArea));
+        let message = disk().cut_holes(&[good[..2].to_vec()]).unwrap_err().to_string();
+        assert_eq!(message, "light 'disk': holes[0]: 2 vertices given, a hole has at least 3");
+    }
+}
