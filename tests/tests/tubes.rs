@@ -145,9 +145,9 @@ fn thin_and_far_tubes_keep_relative_precision() {
                 let whole = truth + transformed_form_factor(&mirror, &tube);
                 let thickness = tube.radius / distance(&tube);
                 // A line's own error is the thickness's square. What is no line is walked: near by its error is absolute, of which the
-                // vertices' rounding leaves some 2^-28. Heights in the lobe's space are rounded to 2^-23 of the
+                // vertices' rounding leaves some 2^-27. Heights in the lobe's space are rounded to 2^-23 of the
                 // distance, of which they are a hundredth
-                let walked = if is_thin(&tube, &lobe) { 0.0 } else { 5e-9 / whole };
+                let walked = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
                 let bound = walked + 1e-4 + 10.0 * thickness * thickness;
                 if whole > 0.0 {
                     comparison.add(found / whole, truth / whole, bound, || {
