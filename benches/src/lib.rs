@@ -16,6 +16,7 @@
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
+//! | [`svg`] | drawing charts |
 //! | [`start`] | what a benchmark begins with |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
@@ -34,5 +35,6 @@ pub mod shape_stability;
 pub mod shapes;
 pub mod stability;
 pub mod start;
+pub mod svg;
 mod table;
 pub mod textures;

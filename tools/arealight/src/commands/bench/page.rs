@@ -2,15 +2,14 @@
 
 mod charts;
 mod images;
-mod svg;
 
 use crate::failure::Failure;
 use arealight_benches::ladder::{
     DEFAULT, Ladder, PRACTICE, Picture, Pictures, Row, error_cells, number, percent,
 };
+use arealight_benches::svg::escape;
 use glam::DVec3;
 use std::fmt::Write as _;
-use svg::escape;
 
 const STYLE: &str = include_str!("page/style.css");
 

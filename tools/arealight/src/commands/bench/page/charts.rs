@@ -1,7 +1,7 @@
 //! The charts.
 
-use super::svg::{Axis, Drawing, Labels};
 use arealight_benches::ladder::{Growth, Ladder, Row, number, percent};
+use arealight_benches::svg::{Axis, Drawing, Labels, grid, label, number_short};
 use std::fmt::Write as _;
 
 /// The colours of what is ours, of others', and of Monte Carlo, in words.
@@ -90,43 +90,6 @@ fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
         better
     });
     ours.into_iter().map(|(_, dot)| dot).collect()
-}
-
-fn label(drawing: &mut Drawing, labels: &mut Labels, dot: [f64; 2], text: &str, bounds: [f64; 4]) {
-    let (at, anchor) = labels.place(dot, text, bounds);
-    // A label that had to move away is tied to its dot
-    let away = (at[0] - dot[0]).hypot(at[1] - 4.0 - dot[1]);
-    if away > 12.0 {
-        let (dx, dy) = ((at[0] - dot[0]) / away, (at[1] - 4.0 - dot[1]) / away);
-        drawing.line(
-            "leader",
-            [dot[0] + 5.0 * dx, dot[1] + 5.0 * dy],
-            [at[0] - 2.0 * dx, at[1] - 4.0 - 2.0 * dy],
-        );
-    }
-    drawing.text("", anchor, at, text);
-}
-
-fn grid(drawing: &mut Drawing, x: &Axis, y: &Axis, bounds: [f64; 4], name: &dyn Fn(f64) -> String) {
-    for tick in x.ticks() {
-        let at = x.at(tick);
-        drawing.line("grid", [at, bounds[1]], [at, bounds[3]]);
-        drawing.text("axis", "middle", [at, bounds[3] + 16.0], &number_short(tick));
-    }
-    for tick in y.ticks() {
-        let at = y.at(tick);
-        drawing.line("grid", [bounds[0], at], [bounds[2], at]);
-        drawing.text("axis", "end", [bounds[0] - 6.0, at + 4.0], &name(tick));
-    }
-}
-
-/// A tick: no digits that say nothing.
-fn number_short(value: f64) -> String {
-    match value {
-        large if large >= 1e6 => format!("{} M", large / 1e6),
-        large if large >= 1e4 => format!("{} k", large / 1e3),
-        _ => format!("{value}"),
-    }
 }
 
 /// The parts of each rung's error, side by side.

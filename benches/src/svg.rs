@@ -1,4 +1,4 @@
-//! Drawing: axes of powers of ten, and what stands on them.
+//! Drawing: logarithmic axes, and what stands on them.
 
 use std::fmt::Write as _;
 
@@ -106,6 +106,15 @@ impl Drawing {
         );
     }
 
+    /// As a file of its own, for light and dark pages.
+    pub fn into_file(self, style: &str) -> String {
+        let Self { body, width, height, label } = self;
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+             aria-label=\"{label}\">\n<style>\n{style}</style>\n{body}\n</svg>\n"
+        )
+    }
+
     /// As an element of a page.
     pub fn into_html(self) -> String {
         let Self { body, width, height, label } = self;
@@ -160,6 +169,45 @@ impl Labels {
             }
         }
         ([x + 9.0, y + 4.0], "start")
+    }
+}
+
+/// A label of a dot, where there is room for it.
+pub fn label(drawing: &mut Drawing, labels: &mut Labels, dot: [f64; 2], text: &str, bounds: [f64; 4]) {
+    let (at, anchor) = labels.place(dot, text, bounds);
+    // A label that had to move away is tied to its dot
+    let away = (at[0] - dot[0]).hypot(at[1] - 4.0 - dot[1]);
+    if away > 12.0 {
+        let (dx, dy) = ((at[0] - dot[0]) / away, (at[1] - 4.0 - dot[1]) / away);
+        drawing.line(
+            "leader",
+            [dot[0] + 5.0 * dx, dot[1] + 5.0 * dy],
+            [at[0] - 2.0 * dx, at[1] - 4.0 - 2.0 * dy],
+        );
+    }
+    drawing.text("", anchor, at, text);
+}
+
+/// The grid of two axes within bounds, its lines named: across by their numbers, up by `name`.
+pub fn grid(drawing: &mut Drawing, x: &Axis, y: &Axis, bounds: [f64; 4], name: &dyn Fn(f64) -> String) {
+    for tick in x.ticks() {
+        let at = x.at(tick);
+        drawing.line("grid", [at, bounds[1]], [at, bounds[3]]);
+        drawing.text("axis", "middle", [at, bounds[3] + 16.0], &number_short(tick));
+    }
+    for tick in y.ticks() {
+        let at = y.at(tick);
+        drawing.line("grid", [bounds[0], at], [bounds[2], at]);
+        drawing.text("axis", "end", [bounds[0] - 6.0, at + 4.0], &name(tick));
+    }
+}
+
+/// A tick: no digits that say nothing.
+pub fn number_short(value: f64) -> String {
+    match value {
+        large if large >= 1e6 => format!("{} M", large / 1e6),
+        large if large >= 1e4 => format!("{} k", large / 1e3),
+        _ => format!("{value}"),
     }
 }
 
