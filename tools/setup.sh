@@ -30,6 +30,8 @@ has_program() { command -v "$1" >/dev/null; }
 has_loader() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
 has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
 has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
+# The validator is a program, whichever library the compiler is linked with.
+has_spirv_tools() { has_program spirv-val && has_library libSPIRV-Tools-opt.a; }
 has_header() { any_file "/usr/include/$1" "/usr/local/include/$1"; }
 has_c_library() { any_file "/usr/lib/$(uname -m)-linux-gnu/crt1.o" /usr/lib64/crt1.o /usr/lib/crt1.o; }
 has_library() {
@@ -65,7 +67,7 @@ if [[ "$mode" == test ]]; then
     need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
     need libshaderc-dev "the shader compiler" has_library libshaderc_combined.a
     need glslang-dev "a part of it" has_library libMachineIndependent.a
-    need spirv-tools "another part of it, and the SPIR-V validator" has_library libSPIRV-Tools-opt.a
+    need spirv-tools "another part of it, and the SPIR-V validator" has_spirv_tools
     need glslang-tools "a second shader compiler, for the GLSL library's check" has_program glslangValidator
     need glslc "the first as a program, for the same" has_program glslc
     need libvulkan-dev "Vulkan's headers, for the host in C++" has_header vulkan/vulkan.h

@@ -1,31 +1,90 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four.
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, and G_BUFFER_LAYOUT where it knows
+// other layouts than our own.
 
 #include "arealight/effects.glsl"
 #include "arealight/surface.glsl"
 
+// How surfaces are stored: the same as arealight::plan::GBufferLayout, which says what each image holds.
+const int G_BUFFER_AREALIGHT = 0;
+const int G_BUFFER_UNREAL = 1;
+const int G_BUFFER_UNITY = 2;
+const int G_BUFFER_OCTAHEDRAL = 3;
+
+#ifndef G_BUFFER_LAYOUT
+#define G_BUFFER_LAYOUT G_BUFFER_AREALIGHT
+#endif
+
+// 1: the host's own shader says how its surfaces are stored.
+#ifndef AREALIGHT_HOST_G_BUFFER
+#define AREALIGHT_HOST_G_BUFFER 0
+#endif
+
 layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
+
+#if AREALIGHT_HOST_G_BUFFER
+
+// Of the host: declares the images of the next three bindings as it likes, and defines arealight_bridge_surface, which sets
+// all but position and view of the surface that a pixel sees. It lies in an include folder of the host's compiler.
+ArealightSurface arealight_bridge_surface(ivec2 pixel);
+#include "host_g_buffer.glsl"
+
+ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera, uint effects) {
+    ArealightSurface surface = arealight_bridge_surface(pixel);
+    surface.position = position;
+    surface.view = camera - position;
+    return surface;
+}
+
+#else
+
 layout(set = 0, binding = G_BUFFER_BINDING + 1) uniform texture2D g_normal;
 layout(set = 0, binding = G_BUFFER_BINDING + 2) uniform texture2D g_base_color;
 layout(set = 0, binding = G_BUFFER_BINDING + 3) uniform texture2D g_specular;
+
+// A direction, of any length, from its place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
+vec3 from_octahedron(vec2 place) {
+    vec3 direction = vec3(place, 1.0 - abs(place.x) - abs(place.y));
+    float below = max(-direction.z, 0.0);
+    direction.x += direction.x >= 0.0 ? -below : below;
+    direction.y += direction.y >= 0.0 ? -below : below;
+    return direction;
+}
 
 // The surface that a pixel sees from `camera`, at `position`.
 ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera, uint effects) {
     vec4 normal = texelFetch(g_normal, pixel, 0);
     vec4 base_color = texelFetch(g_base_color, pixel, 0);
     vec4 specular = vec4(0.04, 0.04, 0.04, 1.0);
-    if ((effects & AREALIGHT_EFFECT_SPECULAR_INPUT) != 0u) {
+    if (G_BUFFER_LAYOUT != G_BUFFER_AREALIGHT || (effects & AREALIGHT_EFFECT_SPECULAR_INPUT) != 0u) {
         specular = texelFetch(g_specular, pixel, 0);
     }
     ArealightSurface surface;
     surface.position = position;
-    surface.normal = normal.xyz;
     surface.view = camera - position;
-    surface.roughness = normal.w;
-    arealight_surface_from_metalness(surface, base_color.rgb, base_color.a, specular.rgb, specular.a);
+    if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
+        surface.normal = normal.xyz * 2.0 - 1.0;
+        surface.roughness = specular.b;
+        arealight_surface_from_metalness(surface, base_color.rgb, specular.r, vec3(0.08 * specular.g), 1.0);
+    } else if (G_BUFFER_LAYOUT == G_BUFFER_UNITY) {
+        surface.normal = normal.xyz;
+        surface.roughness = 1.0 - normal.w;
+        float metalness = clamp((specular.r - 0.04) * (1.0 / 0.96), 0.0, 1.0);
+        arealight_surface_from_metalness(surface, base_color.rgb, metalness, vec3(0.04), 1.0);
+    } else if (G_BUFFER_LAYOUT == G_BUFFER_OCTAHEDRAL) {
+        surface.normal = from_octahedron(normal.xy);
+        surface.roughness = specular.g;
+        arealight_surface_from_metalness(surface, base_color.rgb, specular.b, vec3(0.04), 1.0);
+    } else {
+        surface.normal = normal.xyz;
+        surface.roughness = normal.w;
+        arealight_surface_from_metalness(surface, base_color.rgb, base_color.a, specular.rgb, specular.a);
+    }
     return surface;
 }
+
+#endif
 
 #endif

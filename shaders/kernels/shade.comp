@@ -14,11 +14,13 @@ layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
+layout(constant_id = 13) const int LAYOUT = 0;
 
 const int POSITION_FROM_DEPTH = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
+#define G_BUFFER_LAYOUT LAYOUT
 #define RADIANCE_BINDING 7
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9

@@ -4,7 +4,7 @@ use crate::TestEngine;
 use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, PolygonLight};
 use arealight_host::{Image, ImageDescription, Usage};
-use arealight_vk::{Resource, ShadeFrame, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
 use glam::{DVec3, Mat4, Vec3, Vec4};
@@ -18,8 +18,14 @@ pub struct OnePixel<'a> {
     engine: &'a TestEngine,
     position: Image,
     depth: Image,
-    normal: Image,
-    base_color: Image,
+    /// At the binding `g_normal`, of the G-buffer's layout; so the next two.
+    pub normal: Image,
+    /// At `g_base_color`.
+    pub base_color: Image,
+    /// At `g_specular`.
+    pub specular: Image,
+    /// Of a host that reads them in its own way.
+    pub module: Option<Vec<u32>>,
 }
 
 impl<'a> OnePixel<'a> {
@@ -35,6 +41,8 @@ impl<'a> OnePixel<'a> {
             depth: sampled(engine, vk::Format::R32_SFLOAT, depth),
             normal: sampled(engine, float, [0.0_f32, 0.0, 2.0, 0.5]),
             base_color: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
+            specular: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
+            module: None,
         }
     }
 
@@ -66,7 +74,15 @@ impl<'a> OnePixel<'a> {
     ) -> [Vec4; 2] {
         let host = self.engine.host();
         let [radiance, glossy] = [(); 2].map(|()| stored(self.engine, options.format));
-        let pass = self.engine.shade_pass(options).unwrap();
+        let (kept, own);
+        let pass: &ShadePass = if let Some(module) = &self.module {
+            // SAFETY: Host::submit waits; the module is the test's.
+            own = unsafe { ShadePass::with_module(self.engine.context(), options, module.clone()) }.unwrap();
+            &own
+        } else {
+            kept = self.engine.shade_pass(options).unwrap();
+            &kept
+        };
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
             let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
@@ -86,7 +102,7 @@ impl<'a> OnePixel<'a> {
                 position: sampled(if from_depth { &self.depth } else { &self.position }),
                 normal: sampled(&self.normal),
                 base_color: sampled(&self.base_color),
-                specular: sampled(&self.base_color),
+                specular: sampled(&self.specular),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: self.engine.light_textures(),
@@ -111,7 +127,11 @@ fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) ->
     engine.host().image(&description).unwrap()
 }
 
-fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
+/// An image of one texel, to be read.
+///
+/// # Panics
+/// Where the device fails, or the texel is not of the format's size.
+pub fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Image {
     let image = image(engine, format, vk::ImageUsageFlags::SAMPLED);
     image.upload(&[texel], Usage::COMPUTE_READ).unwrap();
     image

@@ -1,7 +1,7 @@
 //! The constants of the GLSL sources, which Rust and the shaders must number alike: effects, flags, choices.
 
 use arealight::gpu;
-use arealight::plan::{Output, PositionSource, RadianceFormat, RadianceImages};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
 use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TubeEnds};
 use std::collections::BTreeMap;
@@ -41,6 +41,7 @@ const SHAPE_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/shape_buffer
 const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
 const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
 const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
+const G_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/g_buffer.glsl");
 const OUTPUT_GLSL: &str = include_str!("../../shaders/kernels/output.glsl");
 const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
 
@@ -128,6 +129,13 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(EFFECTS_GLSL, "AREALIGHT_LOBES_", &lobes);
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
+    let layouts = [
+        ("AREALIGHT", number(GBufferLayout::Arealight as u32)),
+        ("UNREAL", number(GBufferLayout::Unreal as u32)),
+        ("UNITY", number(GBufferLayout::Unity as u32)),
+        ("OCTAHEDRAL", number(GBufferLayout::Octahedral as u32)),
+    ];
+    assert_constants(G_BUFFER_GLSL, "G_BUFFER_", &layouts);
     let output = [
         ("ADD", number(Output::Add as u32)),
         ("APART", number(RadianceImages::Apart as u32)),

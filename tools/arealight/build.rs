@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// What is embedded: folders of the checkout, and where their files go in an export.
-const FOLDERS: [(&str, &str); 2] =
-    [("shaders/include/arealight", "include/arealight"), ("shaders/examples", "examples")];
+const FOLDERS: [(&str, &str); 3] = [
+    ("shaders/include/arealight", "include/arealight"),
+    ("shaders/kernels", "kernels"),
+    ("shaders/examples", "examples"),
+];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -107,6 +107,19 @@
 // It holds depth as stored; exactly 0 or 1 where there is no surface.
 #define AREALIGHT_POSITION_DEPTH 1
 
+// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
+// F0 and F90.
+#define AREALIGHT_G_BUFFER_AREALIGHT 0
+
+// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
+#define AREALIGHT_G_BUFFER_UNREAL 1
+
+// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
+#define AREALIGHT_G_BUFFER_UNITY 2
+
+// A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
+#define AREALIGHT_G_BUFFER_OCTAHEDRAL 3
+
 // Radiance replaces what is in the image.
 #define AREALIGHT_OUTPUT_OVERWRITE 0
 
@@ -330,8 +343,8 @@ typedef struct ArealightPassOptions {
     uint32_t radiance_images;
     // One of AREALIGHT_RADIANCE_*.
     uint32_t radiance_format;
-    // 0
-    uint32_t reserved;
+    // One of AREALIGHT_G_BUFFER_*.
+    uint32_t g_buffer;
 } ArealightPassOptions;
 
 // What a descriptor set of a pass is made with.
@@ -383,7 +396,8 @@ typedef struct ArealightResources {
     struct ArealightImage normal;
     // Linear base colour in rgb, metalness in a (rgba8).
     struct ArealightImage base_color;
-    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT.
+    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
+    // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
     // The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
     // AREALIGHT_EFFECT_TEXTURED.
@@ -569,7 +583,7 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, reserved) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 44);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);

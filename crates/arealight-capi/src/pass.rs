@@ -7,7 +7,7 @@ use crate::types::{
     ArealightSetLayout,
 };
 use crate::{arguments, handles};
-use arealight::plan::{Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -74,6 +74,16 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         effects,
         quality,
         position: rung(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
+        g_buffer: rung(
+            options.g_buffer,
+            &[
+                GBufferLayout::Arealight,
+                GBufferLayout::Unreal,
+                GBufferLayout::Unity,
+                GBufferLayout::Octahedral,
+            ],
+            "g_buffer",
+        )?,
         output: rung(options.output, &[Output::Overwrite, Output::Add], "output")?,
         images: rung(
             options.radiance_images,
@@ -150,13 +160,12 @@ pub unsafe extern "C" fn arealight_pass_write_set(
         })?;
         // What is not read needs only be there
         let effects = pass.options().effects;
-        let read = |effect, image: ArealightImage| effects.contains(effect) || image.view != 0;
         let specular = match resources.specular {
-            image if read(Effects::SPECULAR_INPUT, image) => sampled(image),
+            image if pass.options().reads_specular() || image.view != 0 => sampled(image),
             _ => sampled(resources.position),
         };
         let light_textures = match resources.light_textures {
-            image if read(Effects::TEXTURED, image) => filtered(image),
+            image if effects.contains(Effects::TEXTURED) || image.view != 0 => filtered(image),
             _ => in_place_of_textures,
         };
         let resources = ShadeResources {
@@ -304,6 +313,7 @@ mod tests {
             (ArealightPassOptions { footprint: 4, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),
             (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),
+            (ArealightPassOptions { g_buffer: 4, ..zero }, "options.g_buffer"),
             (ArealightPassOptions { radiance_images: 2, ..zero }, "options.radiance_images"),
             (ArealightPassOptions { radiance_format: 2, ..zero }, "options.radiance_format"),
         ] {

@@ -68,6 +68,16 @@ pub const AREALIGHT_POSITION_IMAGE: u32 = 0;
 /// It holds depth as stored; exactly 0 or 1 where there is no surface.
 pub const AREALIGHT_POSITION_DEPTH: u32 = 1;
 
+/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
+/// F0 and F90.
+pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;
+/// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
+pub const AREALIGHT_G_BUFFER_UNREAL: u32 = 1;
+/// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
+pub const AREALIGHT_G_BUFFER_UNITY: u32 = 2;
+/// A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
+pub const AREALIGHT_G_BUFFER_OCTAHEDRAL: u32 = 3;
+
 /// Radiance replaces what is in the image.
 pub const AREALIGHT_OUTPUT_OVERWRITE: u32 = 0;
 /// Radiance is added to it.
@@ -211,8 +221,8 @@ pub struct ArealightPassOptions {
     pub radiance_images: u32,
     /// One of AREALIGHT_RADIANCE_*.
     pub radiance_format: u32,
-    /// 0
-    pub reserved: u32,
+    /// One of AREALIGHT_G_BUFFER_*.
+    pub g_buffer: u32,
 }
 
 /// What a descriptor set of a pass is made with.
@@ -331,7 +341,8 @@ pub struct ArealightResources {
     pub normal: ArealightImage,
     /// Linear base colour in rgb, metalness in a (rgba8).
     pub base_color: ArealightImage,
-    /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT.
+    /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
+    /// AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     pub specular: ArealightImage,
     /// The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
     /// AREALIGHT_EFFECT_TEXTURED.

@@ -1,8 +1,7 @@
 //! Which formats the images of a host may have.
 
 use crate::error::Error;
-use arealight::Effects;
-use arealight::plan::{PositionSource, RadianceFormat, ShadeOptions};
+use arealight::plan::{GBufferLayout, PositionSource, RadianceFormat, ShadeOptions};
 use ash::vk::Format;
 
 /// The formats of the images that a host binds to the shade pass, which their views do not tell: check them once, where
@@ -31,11 +30,11 @@ use ash::vk::Format;
 pub struct ShadeFormats {
     /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::position`].
     pub position: Format,
-    /// Of [`crate::ShadeResources::normal`]: signed, with four channels.
+    /// Of [`crate::ShadeResources::normal`]: signed, with four channels, or as [`ShadeOptions::g_buffer`] has it.
     pub normal: Format,
     /// Of [`crate::ShadeResources::base_color`]: with four channels.
     pub base_color: Format,
-    /// Of [`crate::ShadeResources::specular`], which is read only with [`Effects::SPECULAR_INPUT`].
+    /// Of [`crate::ShadeResources::specular`], where [`ShadeOptions::reads_specular`].
     pub specular: Format,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
@@ -53,6 +52,29 @@ const DEPTH: &[Format] = &[
 ];
 const NORMAL: &[Format] =
     &[Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT, Format::R16G16B16A16_SNORM];
+const NORMAL_UNSIGNED: &[Format] = &[
+    Format::A2B10G10R10_UNORM_PACK32,
+    Format::A2R10G10B10_UNORM_PACK32,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R16G16B16A16_UNORM,
+    Format::R8G8B8A8_UNORM,
+    Format::B8G8R8A8_UNORM,
+    Format::R32G32B32A32_SFLOAT,
+];
+const NORMAL_UNITY: &[Format] = &[
+    Format::R8G8B8A8_SNORM,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R16G16B16A16_SNORM,
+    Format::R32G32B32A32_SFLOAT,
+];
+const OCTAHEDRAL: &[Format] = &[
+    Format::R16G16_SNORM,
+    Format::R16G16_SFLOAT,
+    Format::R32G32_SFLOAT,
+    Format::R16G16B16A16_SNORM,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R32G32B32A32_SFLOAT,
+];
 const COLOR: &[Format] = &[
     Format::R8G8B8A8_UNORM,
     Format::R8G8B8A8_SRGB,
@@ -81,12 +103,17 @@ impl ShadeFormats {
             RadianceFormat::Rgba32Float => RADIANCE,
             RadianceFormat::Rgba16Float => RADIANCE_HALF,
         };
-        let read_specular = options.effects.contains(Effects::SPECULAR_INPUT);
+        let normal = match options.g_buffer {
+            GBufferLayout::Arealight => NORMAL,
+            GBufferLayout::Unreal => NORMAL_UNSIGNED,
+            GBufferLayout::Unity => NORMAL_UNITY,
+            GBufferLayout::Octahedral => OCTAHEDRAL,
+        };
         let images = [
             ("position", self.position, position, true),
-            ("normal", self.normal, NORMAL, true),
+            ("normal", self.normal, normal, true),
             ("base_color", self.base_color, COLOR, true),
-            ("specular", self.specular, COLOR, read_specular),
+            ("specular", self.specular, COLOR, options.reads_specular()),
             ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {
@@ -101,6 +128,7 @@ impl ShadeFormats {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use arealight::Effects;
 
     const RIGHT: ShadeFormats = ShadeFormats {
         position: Format::R32G32B32A32_SFLOAT,
@@ -144,6 +172,17 @@ mod tests {
         }
         let depth = ShadeOptions { position: PositionSource::Depth, ..options };
         assert_eq!(field(RIGHT, depth), "position");
+        // A layout's normals, and its third image, which is read without an effect that calls for it
+        let unreal =
+            ShadeOptions { effects: Effects::GLOSSY, g_buffer: GBufferLayout::Unreal, ..ShadeOptions::all() };
+        let ten_bits = ShadeFormats { normal: Format::A2B10G10R10_UNORM_PACK32, ..RIGHT };
+        ten_bits.check(unreal).unwrap();
+        assert_eq!(field(ten_bits, options), "normal");
+        assert_eq!(field(ShadeFormats { specular: Format::UNDEFINED, ..ten_bits }, unreal), "specular");
+        let octahedral = ShadeOptions { g_buffer: GBufferLayout::Octahedral, ..unreal };
+        assert_eq!(field(ten_bits, octahedral), "normal");
+        let unity = ShadeOptions { g_buffer: GBufferLayout::Unity, ..unreal };
+        assert_eq!(field(ten_bits, unity), "normal");
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..options };
         assert_eq!(field(RIGHT, half), "radiance");
         let error = ShadeFormats { radiance: Format::R8G8B8A8_UNORM, ..RIGHT }.check(options).unwrap_err();

@@ -3,7 +3,6 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use arealight::kernels::{BindingKind, Kernel};
-use arealight::plan::RadianceFormat;
 use ash::vk;
 
 /// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
@@ -99,23 +98,29 @@ impl ComputePass {
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        // SAFETY: the same contract.
-        unsafe { Self::with_format(context, kernel, specialization, RadianceFormat::default()) }
+        // SAFETY: the same contract; the module is the kernel's.
+        unsafe { Self::with_module(context, kernel, &kernel.words(), specialization) }
     }
 
-    /// As [`ComputePass::new`], of a kernel that stores radiance, to images of this format.
+    /// As [`ComputePass::new`], with a SPIR-V module in the place of the kernel's own.
     ///
     /// # Safety
-    /// As [`ComputePass::new`].
+    /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry point.
     ///
     /// # Errors
-    /// As [`ComputePass::new`].
-    pub unsafe fn with_format(
+    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    pub unsafe fn with_module(
         context: &Context,
         kernel: &'static Kernel,
+        module: &[u32],
         specialization: &[(u32, u32)],
-        format: RadianceFormat,
     ) -> Result<Self, Error> {
+        if module.first() != Some(&SPIRV_MAGIC) {
+            return Err(Error::InvalidArgument {
+                field: "module",
+                message: "does not begin as SPIR-V does, in this machine's byte order".into(),
+            });
+        }
         if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
             return Err(Error::InvalidArgument {
                 field: "specialization",
@@ -139,7 +144,7 @@ impl ComputePass {
             pass.make_sampler()?;
         }
         pass.make_layouts()?;
-        pass.make_pipeline(&kernel.words_for(format), specialization)?;
+        pass.make_pipeline(module, specialization)?;
         let names = &context.names;
         names.name(pass.set_layout, kernel.name);
         names.name(pass.pipeline_layout, kernel.name);
@@ -414,6 +419,8 @@ impl Drop for ComputePass {
         }
     }
 }
+
+const SPIRV_MAGIC: u32 = 0x0723_0203;
 
 /// Only the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {

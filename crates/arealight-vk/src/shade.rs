@@ -4,7 +4,7 @@ use crate::context::Context;
 use crate::error::Error;
 use crate::pass::{ComputePass, Resource};
 use arealight::gpu::{GpuShape, ShadeConstants};
-use arealight::kernels::{Access, BindingKind, SHADE};
+use arealight::kernels::{Access, BindingKind, SHADE, store_to};
 use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions};
 use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
@@ -23,11 +23,12 @@ pub struct ShadeResources {
     pub light_vertices: Resource,
     /// Positions or depth, by [`ShadeOptions::position`].
     pub position: Resource,
-    /// Normal and roughness.
+    /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
     pub normal: Resource,
     /// Base colour and metalness.
     pub base_color: Resource,
-    /// Dielectric reflectance; read only with [`arealight::Effects::SPECULAR_INPUT`], else any sampled image.
+    /// Dielectric reflectance, or the third image of another layout; read only where [`ShadeOptions::reads_specular`], else
+    /// any sampled image.
     pub specular: Resource,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Apart`] that of the diffuse lobe.
     pub radiance: Resource,
@@ -88,9 +89,27 @@ impl ShadePass {
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
+        // SAFETY: the same contract; the module is the kernel's.
+        unsafe { Self::with_module(context, options, SHADE.words()) }
+    }
+
+    /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of its own
+    /// (docs/embedding.md): [`ShadeOptions::g_buffer`] does not count then.
+    ///
+    /// # Safety
+    /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
+    ///
+    /// # Errors
+    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    pub unsafe fn with_module(
+        context: &Context,
+        options: ShadeOptions,
+        mut module: Vec<u32>,
+    ) -> Result<Self, Error> {
+        store_to(options.format, &mut module);
         // SAFETY: the same contract.
         let pass = unsafe {
-            ComputePass::with_format(context, &SHADE, &plan::shade_specialization(options), options.format)
+            ComputePass::with_module(context, &SHADE, &module, &plan::shade_specialization(options))
         }?;
         Ok(Self { pass, options })
     }

@@ -86,15 +86,13 @@ impl Kernel {
     /// module serves both.
     pub fn words_for(&self, format: RadianceFormat) -> Vec<u32> {
         let mut words = self.words();
-        if format == RadianceFormat::Rgba16Float {
-            store_to_half(&mut words);
-        }
+        store_to(format, &mut words);
         words
     }
 }
 
-/// Makes every type of a storage image of rgba32f in a module one of rgba16f.
-fn store_to_half(words: &mut [u32]) {
+/// Makes every type of a storage image of rgba32f in a SPIR-V module one of `format`.
+pub fn store_to(format: RadianceFormat, words: &mut [u32]) {
     const HEADER: usize = 5;
     const TYPE_IMAGE: u32 = 25;
     // Operands of OpTypeImage, and their values (the SPIR-V specification, 3.42.6 and 3.11)
@@ -103,6 +101,9 @@ fn store_to_half(words: &mut [u32]) {
     const STORAGE: u32 = 2;
     const RGBA32F: u32 = 1;
     const RGBA16F: u32 = 2;
+    if format == RadianceFormat::Rgba32Float {
+        return;
+    }
     let mut at = HEADER;
     while at < words.len() {
         let length = (words[at] >> 16).max(1) as usize;
@@ -140,6 +141,8 @@ pub mod constant {
     pub const CALLED_FOR: u32 = 9;
     /// [`crate::ShapeKind`].
     pub const SHAPE: u32 = 10;
+    /// [`crate::plan::GBufferLayout`].
+    pub const LAYOUT: u32 = 13;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -167,18 +170,20 @@ const G_POSITION: Binding = read(
 const G_NORMAL: Binding = read(
     "g_normal",
     BindingKind::SampledImage,
-    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors)",
+    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors); the shade kernel: by \
+     GBufferLayout",
 );
 const G_BASE_COLOR: Binding = read(
     "g_base_color",
     BindingKind::SampledImage,
-    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves)",
+    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves); the shade kernel: by \
+     GBufferLayout",
 );
 const G_SPECULAR: Binding = read(
     "g_specular",
     BindingKind::SampledImage,
     "dielectric F0 in rgb, dielectric F90 in a (rgba8 unorm); read only with Effects::SPECULAR_INPUT, \
-     else bind any image",
+     else bind any image; the shade kernel: by GBufferLayout",
 );
 
 const LIGHT_TEXTURES: Binding = read(
@@ -233,6 +238,7 @@ pub static SHADE: Kernel = Kernel {
         constant::FRESNEL,
         constant::LOBES,
         constant::FOOTPRINT,
+        constant::LAYOUT,
     ],
 };
 
@@ -400,6 +406,6 @@ mod tests {
         assert_eq!(changed, [(&1, &2)]);
         // A module that is cut off is left as it is from there on, without a panic
         let end = words.iter().zip(&half).position(|(from, to)| from != to).unwrap();
-        store_to_half(&mut words[..end].to_vec());
+        store_to(RadianceFormat::Rgba16Float, &mut words[..end].to_vec());
     }
 }

@@ -18,6 +18,27 @@ pub enum PositionSource {
     Depth = 1,
 }
 
+/// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
+/// when they are read: in images of sRGB formats they are stored as sRGB. A G-buffer of any other layout is read by a
+/// bridge function in GLSL of the host's (docs/embedding.md).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum GBufferLayout {
+    /// Normal in xyz, of any length, and perceptual roughness; base colour and metalness; with
+    /// [`Effects::SPECULAR_INPUT`] dielectric F0 in rgb and F90.
+    #[default]
+    Arealight = 0,
+    /// Of Unreal Engine, for surfaces of its default shading model: `GBufferA` (normal, times 0.5, plus 0.5), `GBufferC` (base
+    /// colour) and `GBufferB` (metallic, specular, roughness). Dielectric F0 is 0.08 × specular.
+    Unreal = 1,
+    /// Of Unity's Universal Render Pipeline, for metallic materials, without its option Accurate G-buffer normals: `GBuffer2` (normal,
+    /// smoothness), `GBuffer0` (albedo) and `GBuffer1` (reflectivity). Dielectric F0 is 0.04.
+    Unity = 2,
+    /// Of engines that store directions on an octahedron and materials as glTF does: a signed place on the octahedron in
+    /// xy; base colour in rgb; occlusion, which is not used, roughness and metalness. Dielectric F0 is 0.04.
+    Octahedral = 3,
+}
+
 /// What the shade kernel does to the radiance image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -61,6 +82,8 @@ pub struct ShadeOptions {
     pub quality: Quality,
     /// Where positions come from.
     pub position: PositionSource,
+    /// How surfaces are stored.
+    pub g_buffer: GBufferLayout,
     /// Overwrite or add.
     pub output: Output,
     /// One image, or one a lobe.
@@ -76,10 +99,16 @@ impl ShadeOptions {
             effects: Effects::all(),
             quality: Quality::default(),
             position: PositionSource::default(),
+            g_buffer: GBufferLayout::default(),
             output: Output::default(),
             images: RadianceImages::default(),
             format: RadianceFormat::default(),
         }
+    }
+
+    /// Whether the image at the binding `g_specular` is read.
+    pub fn reads_specular(self) -> bool {
+        self.g_buffer != GBufferLayout::Arealight || self.effects.contains(Effects::SPECULAR_INPUT)
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::images`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
@@ -115,6 +144,7 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
     values.extend([
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::OUTPUT, options.output_bits()),
+        (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
     ]);
     values

@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, M
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::gpu::GpuLight;
-use arealight::plan::{Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Quality};
 use arealight_vk::{
     Context, HostDevice, Resource, ShadeFormats, ShadeFrame, ShadePass, ShadeResources, TableFormat,
@@ -76,6 +76,7 @@ impl<'a> Deferred<'a> {
             effects: Effects::DIFFUSE | Effects::GLOSSY,
             quality: Quality::default(),
             position: PositionSource::Depth,
+            g_buffer: GBufferLayout::Arealight,
             output: Output::Add, // to the emission that was drawn
             images: RadianceImages::One,
             format: RadianceFormat::Rgba32Float,

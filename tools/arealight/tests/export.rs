@@ -65,8 +65,14 @@ fn the_manifest_says_what_a_host_defines_and_binds() {
     assert_eq!(table["prototype"], "vec4 arealight_bridge_table(int layer, ivec2 texel)");
     assert_eq!(table["needed_with"], "always");
     assert_eq!(bridge("arealight_bridge_light_texture")["needed_with"], "AREALIGHT_LIGHT_TEXTURES 1");
+    let surface = bridge("arealight_bridge_surface");
+    assert_eq!(
+        (&surface["declared_in"], &surface["needed_with"]),
+        (&Value::from("kernels/g_buffer.glsl"), &Value::from("AREALIGHT_HOST_G_BUFFER 1"),)
+    );
     let needed = |header: &str| manifest["headers"][header].as_array().unwrap().len();
-    assert_eq!(needed("arealight/arealight.glsl"), manifest["bridges"].as_array().unwrap().len());
+    // All but the one of a kernel
+    assert_eq!(needed("arealight/arealight.glsl"), manifest["bridges"].as_array().unwrap().len() - 1);
     assert_eq!(needed("arealight/surface.glsl"), 0);
     let shade = &manifest["kernels"]["shade"];
     assert_eq!(shade["bindings"][0]["name"], "table_image");

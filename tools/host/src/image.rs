@@ -307,13 +307,16 @@ fn texel_size(format: vk::Format) -> Option<u64> {
         vk::Format::R8_UNORM => 1,
         vk::Format::R16_SFLOAT | vk::Format::D16_UNORM => 2,
         vk::Format::R8G8B8A8_UNORM
+        | vk::Format::R8G8B8A8_SNORM
         | vk::Format::R8G8B8A8_SRGB
+        | vk::Format::A2B10G10R10_UNORM_PACK32
+        | vk::Format::R16G16_SNORM
         | vk::Format::R16G16_SFLOAT
         | vk::Format::R32_SFLOAT
         | vk::Format::R32_UINT
         | vk::Format::D32_SFLOAT => 4,
         vk::Format::R16G16B16A16_SFLOAT | vk::Format::R32G32_SFLOAT => 8,
-        vk::Format::R32G32B32A32_SFLOAT => 16,
+        vk::Format::R32G32B32A32_SFLOAT | vk::Format::R32G32B32A32_UINT => 16,
         _ => return None,
     })
 }

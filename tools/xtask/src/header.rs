@@ -84,7 +84,7 @@ fn layouts() -> [Layout; 12] {
         }
         ArealightPassOptions {
             effects, form_factor, horizon, fresnel, lobes, one_point, footprint, position, output,
-            radiance_images, radiance_format, reserved,
+            radiance_images, radiance_format, g_buffer,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {

@@ -59,6 +59,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
 
     let mut cases = hosts(&root.join(HOST), &library);
     cases.extend(examples(&root.join(EXAMPLES))?);
+    cases.extend(host_g_buffer(&folder));
     let found = in_parallel(&cases, |index, case| {
         if arguments.verbose {
             println!("{}", case.title());
@@ -153,13 +154,30 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
     let mut cases = vec![];
     for entry in std::fs::read_dir(folder).map_err(TaskError::file(folder))? {
         let shader = entry.map_err(TaskError::file(folder))?.path();
-        let compute = shader.extension().is_some_and(|extension| extension == "comp");
+        let compute = match shader.extension().and_then(std::ffi::OsStr::to_str) {
+            Some("comp") => true,
+            Some("frag") => false,
+            _ => continue,
+        };
         for tool in [Tool::Glslang, Tool::Glslc] {
             let (shader, macros) = (shader.clone(), vec![]);
             cases.push(Case { tool, compute, shader, name: "example".into(), macros, lacks: None });
         }
     }
     Ok(cases)
+}
+
+/// The exported kernel with the example's G-buffer.
+fn host_g_buffer(folder: &Path) -> Vec<Case> {
+    let case = |tool| Case {
+        tool,
+        compute: true,
+        shader: folder.join("kernels/shade.comp"),
+        name: "a G-buffer of the host".into(),
+        macros: vec![("AREALIGHT_HOST_G_BUFFER".into(), "1".into())],
+        lacks: None,
+    };
+    [Tool::Glslang, Tool::Glslc].map(case).to_vec()
 }
 
 impl Case {
@@ -198,13 +216,14 @@ impl Case {
                 let stage = if self.compute { "comp" } else { "frag" };
                 command.args(["--target-env", "vulkan1.1", "-S", stage]);
                 command.arg(format!("-I{}", include.display()));
+                command.arg(format!("-I{}", include.join("../examples").display()));
                 (command, "glslangValidator", "glslang-tools")
             }
             Tool::Glslc => {
                 let mut command = Command::new("glslc");
                 let stage = if self.compute { "compute" } else { "fragment" };
                 command.args(["--target-env=vulkan1.1", "-c", &format!("-fshader-stage={stage}"), "-I"]);
-                command.arg(include);
+                command.arg(include).arg("-I").arg(include.join("../examples"));
                 (command, "glslc", "glslc")
             }
         };

@@ -52,6 +52,7 @@ const CONVENTIONS: [&str; 7] = [
 pub fn content_of(path: &str) -> &'static str {
     match path.split('/').next() {
         Some("include") => "GLSL library; include it as \"arealight/...\"",
+        Some("kernels") => "GLSL of our kernels: shade.comp reads a G-buffer of yours by a bridge",
         Some("examples") => "an example of a host's shader",
         _ => "licence: either, as you like",
     }
@@ -133,7 +134,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 11] = [
+    const NAMES: [(u32, &str); 12] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -145,6 +146,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::RADIUS, "RADIUS"),
         (constant::CALLED_FOR, "CALLED_FOR"),
         (constant::SHAPE, "SHAPE"),
+        (constant::LAYOUT, "LAYOUT"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }
