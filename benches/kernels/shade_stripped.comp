@@ -94,7 +94,8 @@ void main() {
 
     // Sum the lights
     vec3 radiance = vec3(0.0);
-    for (uint index = 0u; index < constants.light_count; index++) {
+    uint index = 0u;
+    do {
         vec3 center = lights[index].center - position.xyz;
         float scale = arealight_power_of_two_scale(arealight_max_component(center) + lights[index].radius);
         center *= scale;
@@ -108,7 +109,8 @@ void main() {
         }
         reflected += stripped_reflected(diffuse, center, scale, quad);
         radiance += lights[index].radiance * reflected;
-    }
+        index++;
+    } while (index < constants.light_count);
     vec4 before = imageLoad(radiance_image, pixel);
     imageStore(radiance_image, pixel, vec4(before.rgb + radiance, 1.0));
 }

@@ -60,7 +60,8 @@ void main() {
                                                     AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
                                                     AREALIGHT_FOOTPRINT_ROUND);
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
-        for (uint index = 0u; index < constants.light_count; index++) {
+        uint index = 0u;
+        do {
             ArealightPolygonLight light = load_light(index);
             vec3 center = light.center - point.position;
             if (dot(light.area, center) < 0.0) {
@@ -69,7 +70,8 @@ void main() {
                 radiance += light.radiance * (point.glossy.albedo * seen_by(point.glossy, quad)
                                               + point.diffuse.albedo * seen_by(point.diffuse, quad));
             }
-        }
+            index++;
+        } while (index < constants.light_count);
     }
     imageStore(radiance_image, pixel, vec4(radiance, position.w != 0.0 ? 1.0 : 0.0));
 }

@@ -223,6 +223,8 @@ int render(const char *path, const std::string &validation, bool mistake) {
     frame.width = WIDTH;
     frame.height = HEIGHT;
     frame.light_count = 3;
+    frame.quad_count = packed.quad_count;
+    frame.unused = packed.unused;
     frame.shape_count = 1; // frame.camera stays zero: the origin is the camera's position
     check(arealight_pass_record(pass, commands, number(set), &frame));
     barrier(commands, radiance.handle, compute, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, copy,

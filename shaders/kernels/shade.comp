@@ -14,6 +14,8 @@ layout(constant_id = 4) const int HORIZON = 0;
 layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
+// Some polygon light is a convex quad without an image
+layout(constant_id = 11) const bool QUADS = true;
 layout(constant_id = 13) const int LAYOUT = 0;
 
 const int POSITION_FROM_DEPTH = 1;
@@ -31,11 +33,14 @@ const int POSITION_FROM_DEPTH = 1;
 #include "shape_buffer.glsl"
 #include "output.glsl"
 
+const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
+
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
     vec3 camera;
     uint light_count;
     uint shape_count;
+    uint quad_count; // of the first lights: convex quads without an image
 } constants;
 
 // The pixel's position relative to the origin; false where there is no surface.
@@ -66,16 +71,33 @@ void main() {
         ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
         ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
-        for (uint index = 0u; index < constants.light_count; index++) {
-            ArealightPolygonLight light = load_light(index);
-            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, quality));
+        // Every loop ends with its condition: devices that run masked passes have none to run then. Not by functions: so
+        // compilers drop what is not called for before they inline it
+        uint quad_count = (EFFECTS & BEYOND_QUADS) != 0u ? constants.quad_count : constants.light_count;
+        if (QUADS && quad_count != 0u) {
+            uint index = 0u;
+            do {
+                ArealightPolygonLight light = load_light(index);
+                add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS & ~BEYOND_QUADS, quality));
+                index++;
+            } while (index < quad_count);
         }
-        // Not by a function: so compilers drop the shapes' code before they inline it
-        if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u) {
-            for (uint index = 0u; index < constants.shape_count; index++) {
+        if ((EFFECTS & BEYOND_QUADS) != 0u && quad_count < constants.light_count) {
+            uint index = quad_count;
+            do {
+                ArealightPolygonLight light = load_light(index);
+                add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, quality));
+                index++;
+            } while (index < constants.light_count);
+        }
+        if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u
+            && constants.shape_count != 0u) {
+            uint index = 0u;
+            do {
                 ArealightShape shape = load_shape(index, SHAPE_ANY);
                 add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, quality));
-            }
+                index++;
+            } while (index < constants.shape_count);
         }
     }
 

@@ -114,6 +114,8 @@ impl<'a> OnePixel<'a> {
                 camera,
                 position_from_clip: matrix,
                 light_count: lights.len() as u32,
+                quad_count: packed.quad_count,
+                unused: packed.unused,
                 shape_count: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();

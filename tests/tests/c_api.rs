@@ -1,14 +1,15 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TUBE,
-    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightFunction,
-    ArealightHost, ArealightLight, ArealightMemory, ArealightPackedLights, ArealightPass,
-    ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout, ArealightShape,
-    ArealightTable, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
-    arealight_last_error, arealight_pass_create, arealight_pass_destroy, arealight_pass_pack_lights,
-    arealight_pass_pack_shapes, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
-    arealight_table_memory, arealight_table_upload,
+    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_SPHERE,
+    AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_SHAPE_SPHERE,
+    AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightFunction, ArealightHost, ArealightLight,
+    ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
+    ArealightResult, ArealightSetLayout, ArealightShape, ArealightTable, ArealightUpload,
+    arealight_abi_version, arealight_create, arealight_destroy, arealight_last_error, arealight_pass_create,
+    arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes, arealight_pass_prepare,
+    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory,
+    arealight_table_upload,
 };
 use arealight_host::testing::{TestHost, device_or_skip};
 use ash::vk::{self, Handle as _};
@@ -192,8 +193,14 @@ fn light() -> ArealightLight {
     }
 }
 
-const NO_ARRAYS: ArealightPackedLights =
-    ArealightPackedLights { lights: null_mut(), vertices: null_mut(), lights_size: 0, vertices_size: 0 };
+const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
+    lights: null_mut(),
+    vertices: null_mut(),
+    lights_size: 0,
+    vertices_size: 0,
+    quad_count: 0,
+    unused: 0,
+};
 
 /// Packs one light about the origin.
 fn pack(
@@ -247,6 +254,8 @@ fn lights_that_cannot_be_shaded_are_named() {
     // Sizes first; then arrays, which may be too small
     good(pack(pass, &light(), &mut arrays));
     assert_eq!((arrays.lights_size, arrays.vertices_size), (128, 48));
+    let unused = AREALIGHT_EFFECT_TWO_SIDED | AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
+    assert_eq!((arrays.quad_count, arrays.unused), (1, unused), "a triangle is a quad");
     let (mut lights, mut vertices) = ([0u32; 32], [0.0f32; 12]);
     let (to_lights, to_vertices) = (lights.as_mut_ptr().cast(), vertices.as_mut_ptr().cast());
     arrays = ArealightPackedLights {
@@ -254,6 +263,7 @@ fn lights_that_cannot_be_shaded_are_named() {
         vertices: to_vertices,
         lights_size: 128,
         vertices_size: 47,
+        ..arrays
     };
     refused(pack(pass, &light(), &mut arrays), ErrorTooSmall, "packed.vertices_size: 47, but 48 are needed");
     good(pack(pass, &light(), &mut arrays));
@@ -321,6 +331,8 @@ fn calls_out_of_order_are_refused() {
         camera: [0.0; 3],
         light_count: 0,
         shape_count: 0,
+        quad_count: 0,
+        unused: 0,
         reserved: 0,
         position_from_clip: null(),
     };
@@ -355,6 +367,11 @@ fn calls_out_of_order_are_refused() {
         refused(record(commands, 8, &frame(0)), ErrorArgument, "size");
         let blind = ArealightFrame { camera: [f32::NAN; 3], ..frame(8) };
         refused(record(commands, 8, &blind), ErrorArgument, "camera");
+        let too_many = ArealightFrame { quad_count: 1, ..frame(8) };
+        refused(record(commands, 8, &too_many), ErrorArgument, "quad_count");
+        // A pipeline ahead
+        refused(arealight_pass_prepare(pass, &blind), ErrorArgument, "camera");
+        good(arealight_pass_prepare(pass, &frame(8)));
     }
 
     // An upload that lacks something

@@ -186,6 +186,8 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
         camera: Vec3::ZERO,
         position_from_clip: None,
         light_count: packed.lights.len() as u32,
+        quad_count: packed.quad_count,
+        unused: packed.unused,
         shape_count: 1,
     };
     // SAFETY: the set is new, and what it points to lives until the submission was waited for.

@@ -1,6 +1,8 @@
 //! Effects are switches of what is computed, never of what comes out: one that no pixel uses changes no bit of a
 //! picture, and the set of a scene shows what the set of all does.
 
+use arealight::kernels::SHADE;
+use arealight::plan::{Output, ShadeOptions, shade_specialization};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Quality};
 use arealight_engine::SceneRenderer;
 use arealight_scene::{Camera, Scene, SceneBuffers};
@@ -25,19 +27,29 @@ impl<'a> View<'a> {
         Self { engine, scene, buffers, camera }
     }
 
-    /// The picture's bits.
-    fn shade(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+    fn renderer(&self) -> SceneRenderer<'_> {
         let constants = self.buffers.constants(&self.camera, SIZE, Vec3::ZERO);
-        let mut renderer =
-            SceneRenderer::new(self.engine, &self.buffers, &self.scene.lights, constants, SIZE).unwrap();
-        renderer.shade(effects, quality).unwrap();
-        renderer
-            .radiance()
-            .unwrap()
-            .into_iter()
-            .map(|texel: Vec4| texel.to_array().map(f32::to_bits))
-            .collect()
+        SceneRenderer::new(self.engine, &self.buffers, &self.scene.lights, constants, SIZE).unwrap()
     }
+
+    /// The picture's bits, by the shade pass, which drops what no light calls for.
+    fn shade(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+        let mut renderer = self.renderer();
+        renderer.shade(effects, quality).unwrap();
+        bits(&mut renderer)
+    }
+
+    /// The same by the kernel with the code of every one of the effects.
+    fn shade_by_all_of(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+        let mut renderer = self.renderer();
+        let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
+        renderer.shade_by(&SHADE, &shade_specialization(options)).unwrap();
+        bits(&mut renderer)
+    }
+}
+
+fn bits(renderer: &mut SceneRenderer<'_>) -> Vec<[u32; 4]> {
+    renderer.radiance().unwrap().into_iter().map(|texel: Vec4| texel.to_array().map(f32::to_bits)).collect()
 }
 
 fn scene(name: &str) -> Scene {
@@ -55,7 +67,27 @@ fn difference(a: &[[u32; 4]], b: &[[u32; 4]]) -> (usize, f32) {
 }
 
 #[test]
-fn an_effect_that_no_pixel_uses_changes_no_bit() {
+fn an_effect_that_no_light_calls_for_changes_no_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let view = View::new(&engine, &scene);
+    let required = scene.effects();
+    let one_point = Quality { one_point: true, ..Quality::default() };
+    let expected = view.shade(required, one_point);
+    for effects in [Effects::all(), Effects::all() - Effects::SHAPES] {
+        let (pixels, largest) = difference(&expected, &view.shade(effects, one_point));
+        assert_eq!(pixels, 0, "{effects}: {largest:e} at most");
+    }
+    // The twin: one that pixels use changes most of them
+    let (pixels, _) = difference(
+        &view.shade(required, Quality::default()),
+        &view.shade(required - Effects::GLOSSY, Quality::default()),
+    );
+    assert!(pixels > 1000, "{pixels}");
+}
+
+#[test]
+fn code_that_no_light_calls_for_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
     let view = View::new(&engine, &scene);
@@ -70,27 +102,16 @@ fn an_effect_that_no_pixel_uses_changes_no_bit() {
         footprint: Footprint::Ellipse,
         ..Quality::default()
     };
-    // Pipelines take their time: each effect once, and all but one of them at once on rungs that bring code of their own
+    // Pipelines take their time: each effect once, and all at once on rungs that bring code of their own
     let mut sets: Vec<_> = unused.iter().map(|effect| (effect, one_point)).collect();
-    sets.push((unused - Effects::POLYGON, dear));
-    let mut wrong = Vec::new();
-    for (added, quality) in sets {
+    sets.push((unused, dear));
+    let wrong = sets.into_iter().filter_map(|(added, quality)| {
         let (pixels, largest) =
-            difference(&view.shade(required, quality), &view.shade(required | added, quality));
-        // The walk goes around a light in another order than the quad: the sum of its edges is rounded
-        // otherwise, by 2^-24 for each of four edges and the horizon's arc in two lobes
-        let allowed = if added == Effects::POLYGON { 10.0 * f32::EPSILON / 2.0 } else { 0.0 };
-        if largest > allowed || (pixels > 0 && allowed == 0.0) {
-            wrong.push(format!("{quality:?}, {added}: {pixels} pixels, {largest:e} at most"));
-        }
-    }
+            difference(&view.shade(required, quality), &view.shade_by_all_of(required | added, quality));
+        (pixels > 0).then(|| format!("{quality:?}, {added}: {pixels} pixels, {largest:e} at most"))
+    });
+    let wrong: Vec<String> = wrong.collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // The twin: one that pixels use changes most of them
-    let (pixels, _) = difference(
-        &view.shade(required, Quality::default()),
-        &view.shade(required - Effects::GLOSSY, Quality::default()),
-    );
-    assert!(pixels > 1000, "{pixels}");
 }
 
 #[test]

@@ -206,6 +206,8 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
             camera: Vec3::ZERO,
             position_from_clip: None,
             light_count: 0,
+            quad_count: 0,
+            unused: Effects::empty(),
             shape_count: 0,
         };
         let none = vk::DescriptorSet::null();

@@ -244,7 +244,7 @@ fn every_structure_has_the_same_offsets() {
         (
             &shade,
             "ShadeConstants",
-            layout!(gpu::ShadeConstants, position_from_clip, camera, light_count, shape_count),
+            layout!(gpu::ShadeConstants, position_from_clip, camera, light_count, shape_count, quad_count),
         ),
         (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
         (

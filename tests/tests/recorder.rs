@@ -16,7 +16,15 @@ fn field(error: &Error) -> &'static str {
 }
 
 fn frame() -> ShadeFrame {
-    ShadeFrame { size: [8, 8], camera: Vec3::ZERO, position_from_clip: None, light_count: 0, shape_count: 0 }
+    ShadeFrame {
+        size: [8, 8],
+        camera: Vec3::ZERO,
+        position_from_clip: None,
+        light_count: 0,
+        quad_count: 0,
+        unused: Effects::empty(),
+        shape_count: 0,
+    }
 }
 
 /// Runs `check` with a pass and a command buffer that is being recorded.
@@ -39,6 +47,7 @@ fn frames_that_cannot_be_shaded_are_refused_by_field() {
     recording(&engine, ShadeOptions::all(), |pass, commands, set| {
         for (wrong, expected) in [
             (ShadeFrame { size: [8, 0], ..frame() }, "size"),
+            (ShadeFrame { light_count: 2, quad_count: 3, ..frame() }, "quad_count"),
             (ShadeFrame { camera: Vec3::new(0.0, f32::NAN, 0.0), ..frame() }, "camera"),
             (
                 ShadeFrame { position_from_clip: Some(Mat4::IDENTITY * f32::INFINITY), ..frame() },

@@ -169,6 +169,8 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             camera: CAMERA.as_vec3(),
             position_from_clip: None,
             light_count: 0,
+            quad_count: 0,
+            unused: Effects::empty(),
             shape_count: shapes.len() as u32,
         };
         host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");

@@ -163,6 +163,8 @@ impl<'a> Sweep<'a> {
                 camera: CAMERA,
                 position_from_clip: None,
                 light_count: 1,
+                quad_count: self.packed.quad_count,
+                unused: self.packed.unused,
                 shape_count: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();

@@ -5,7 +5,7 @@ use super::points::Point;
 use crate::textures::{is_software, timed};
 use arealight::gpu::{ReferenceConstants, ShadeConstants};
 use arealight::kernels::REFERENCE;
-use arealight::plan::{ShadeOptions, shade_specialization};
+use arealight::plan::{ShadeOptions, ShadeVariant, shade_variant_specialization};
 use arealight::{LightSampling, PackedLights, PolygonLight, kernels};
 use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass};
 use arealight_host::{Buffer, Usage};
@@ -58,6 +58,7 @@ pub struct Frame<'a> {
     g_buffer: &'a GBuffer,
     camera: Vec3,
     light_count: u32,
+    quad_count: u32,
     lights: Buffer,
     vertices: Buffer,
     sampling: Buffer,
@@ -89,6 +90,7 @@ impl<'a> Frame<'a> {
             g_buffer,
             camera,
             light_count: lights.len() as u32,
+            quad_count: packed.quad_count,
             lights: host.storage_buffer("lights", &packed.lights)?,
             vertices: host.storage_buffer("light vertices", &packed.vertices)?,
             sampling: host.storage_buffer("light sampling", &sampling.lights)?,
@@ -118,7 +120,8 @@ impl<'a> Frame<'a> {
         let (kernel, specialization) = match method {
             Method::Rung { effects, quality } => {
                 let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
-                (&kernels::SHADE, shade_specialization(options))
+                let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
+                (&kernels::SHADE, shade_variant_specialization(options, variant))
             }
             Method::Yardstick { effects, which } => {
                 (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, which as u32)])
@@ -165,6 +168,7 @@ impl<'a> Frame<'a> {
                 camera: self.camera.to_array(),
                 light_count,
                 shape_count: 0,
+                quad_count: self.quad_count.min(light_count),
             };
             return device_seconds(self.engine, |commands| {
                 // SAFETY: `commands` is being recorded, outside a render pass.

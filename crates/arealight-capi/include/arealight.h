@@ -295,6 +295,10 @@ typedef struct ArealightPackedLights {
     uint64_t lights_size;
     // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
     uint64_t vertices_size;
+    // Out: how many lights are convex quads without an image. They come first, else lights are in the given order.
+    uint32_t quad_count;
+    // Out: AREALIGHT_EFFECT_* of lights that none of these calls for.
+    uint32_t unused;
 } ArealightPackedLights;
 
 // A disk, sphere or tube of constant radiance, in world positions.
@@ -420,6 +424,11 @@ typedef struct ArealightFrame {
     uint32_t light_count;
     // How many disks, spheres and tubes of theirs.
     uint32_t shape_count;
+    // ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
+    // is not counted takes longer.
+    uint32_t quad_count;
+    // ArealightPackedLights.unused: AREALIGHT_EFFECT_* that no light calls for, which cost nothing then. 0 is always right.
+    uint32_t unused;
     // 0
     uint32_t reserved;
     // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
@@ -490,7 +499,8 @@ enum ArealightResult arealight_pass_pack_shapes(const struct ArealightPass *pass
                                                 void *packed,
                                                 uint64_t *size);
 
-// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
+// Makes a pass. Its pipelines are made when the first frame is recorded whose lights call for them, or ahead by
+// arealight_pass_prepare. `*out` is the host's to destroy.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -525,6 +535,14 @@ enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
                                            void *command_buffer,
                                            uint64_t set,
                                            const struct ArealightFrame *frame);
+
+// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet: what arealight_pass_record
+// would take a moment for otherwise.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_prepare(const struct ArealightPass *pass,
+                                            const struct ArealightFrame *frame);
 
 // Destroys a pass, before or after the object that it was made from. Null is nothing.
 //
@@ -608,11 +626,13 @@ AREALIGHT_ASSERT(offsetof(ArealightShape, axis_v) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightShape, radius) == 88);
 AREALIGHT_ASSERT(offsetof(ArealightShape, radiance) == 96);
 AREALIGHT_ASSERT(offsetof(ArealightShape, two_sided) == 108);
-AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 32);
+AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights_size) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices_size) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, quad_count) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, unused) == 36);
 AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
@@ -628,14 +648,16 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 168);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 40);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, light_count) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, shape_count) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, quad_count) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, unused) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 #undef AREALIGHT_ASSERT
 #endif
 

@@ -42,6 +42,7 @@ pub unsafe extern "C" fn arealight_pass_pack_lights(
         let bytes: [&[u8]; 2] = [bytemuck::cast_slice(&made.lights), bytemuck::cast_slice(&made.vertices)];
         let given = [(arrays.lights, arrays.lights_size), (arrays.vertices, arrays.vertices_size)];
         [arrays.lights_size, arrays.vertices_size] = bytes.map(|bytes| bytes.len() as u64);
+        (arrays.quad_count, arrays.unused) = (made.quad_count, made.unused.bits());
         // SAFETY: as above.
         unsafe { arguments::write(packed, arrays, "packed") }?;
         let fields = ["packed.lights_size", "packed.vertices_size"];

@@ -25,7 +25,8 @@ impl ArealightPass {
     }
 }
 
-/// Makes a pass: compiles its pipeline. `*out` is the host's to destroy.
+/// Makes a pass. Its pipelines are made when the first frame is recorded whose lights call for them, or ahead by
+/// arealight_pass_prepare. `*out` is the host's to destroy.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -230,21 +231,49 @@ pub unsafe extern "C" fn arealight_pass_record(
                 return Err(Failure::argument(format!("{argument}: is null")));
             }
         }
-        let matrix = frame.position_from_clip;
-        let matrix = (!matrix.is_null()).then_some(matrix);
         // SAFETY: as above.
-        let matrix = matrix.map(|matrix| unsafe { arguments::array(matrix, 16, "frame.position_from_clip") });
-        let frame = ShadeFrame {
-            size: [frame.width, frame.height],
-            camera: Vec3::from_array(frame.camera),
-            position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
-            light_count: frame.light_count,
-            shape_count: frame.shape_count,
-        };
+        let frame = unsafe { read_frame(frame) }?;
         let (command_buffer, set) =
             (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
         // SAFETY: the caller vouches for the command buffer and the set.
         Ok(unsafe { pass.record(command_buffer, set, &frame) }?)
+    })
+}
+
+/// # Safety
+/// The frame's pointer is null or valid.
+unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
+    let matrix = frame.position_from_clip;
+    let matrix = (!matrix.is_null()).then_some(matrix);
+    // SAFETY: the same contract.
+    let matrix = matrix.map(|matrix| unsafe { arguments::array(matrix, 16, "frame.position_from_clip") });
+    Ok(ShadeFrame {
+        size: [frame.width, frame.height],
+        camera: Vec3::from_array(frame.camera),
+        position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
+        light_count: frame.light_count,
+        quad_count: frame.quad_count,
+        // What is no effect is used by nobody
+        unused: Effects::from_bits_truncate(frame.unused),
+        shape_count: frame.shape_count,
+    })
+}
+
+/// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet: what arealight_pass_record
+/// would take a moment for otherwise.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_prepare(
+    pass: *const ArealightPass,
+    frame: *const ArealightFrame,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (pass, frame) =
+            unsafe { (&handles::borrow(pass, "pass")?.pass, read_frame(arguments::read(frame, "frame")?)?) };
+        Ok(pass.prepare(&frame)?)
     })
 }
 

@@ -298,6 +298,10 @@ pub struct ArealightPackedLights {
     pub lights_size: u64,
     /// In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
     pub vertices_size: u64,
+    /// Out: how many lights are convex quads without an image. They come first, else lights are in the given order.
+    pub quad_count: u32,
+    /// Out: AREALIGHT_EFFECT_* of lights that none of these calls for.
+    pub unused: u32,
 }
 
 /// An image of the host, in the layout that it has when the pass runs.
@@ -367,6 +371,11 @@ pub struct ArealightFrame {
     pub light_count: u32,
     /// How many disks, spheres and tubes of theirs.
     pub shape_count: u32,
+    /// ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
+    /// is not counted takes longer.
+    pub quad_count: u32,
+    /// ArealightPackedLights.unused: AREALIGHT_EFFECT_* that no light calls for, which cost nothing then. 0 is always right.
+    pub unused: u32,
     /// 0
     pub reserved: u32,
     /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May

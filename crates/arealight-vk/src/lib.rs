@@ -23,6 +23,8 @@
 //!     camera: glam::Vec3::ZERO,
 //!     position_from_clip: None,
 //!     light_count: packed.lights.len() as u32,
+//!     quad_count: packed.quad_count,
+//!     unused: packed.unused,
 //!     shape_count: 0,
 //! };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;

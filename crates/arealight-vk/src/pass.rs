@@ -4,6 +4,7 @@ use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
+use std::sync::Arc;
 
 /// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,85 +72,43 @@ impl Resource {
     }
 }
 
-/// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline and layouts.
+/// What every pipeline of a kernel has in common: a descriptor set is for all that share it.
 #[derive(Debug)]
-pub struct ComputePass {
+pub(crate) struct Layouts {
     context: Context,
     kernel: &'static Kernel,
     sampler: vk::Sampler,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
+}
+
+/// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline, and its layouts with the last that has them.
+#[derive(Debug)]
+pub struct ComputePass {
+    layouts: Arc<Layouts>,
     pipeline: vk::Pipeline,
 }
 
-impl ComputePass {
-    /// Makes the pipeline of `kernel` with pairs of specialisation constant id and value; constants that are
-    /// not given keep the shader's default, which is the catch-all.
-    ///
+impl Layouts {
     /// # Safety
-    /// The returned pass is dropped only when no recorded use of it is pending, and before the device is
-    /// destroyed.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::MissingFeature`] where
-    /// the kernel binds more than the device can, [`Error::Vulkan`] where a call fails.
-    pub unsafe fn new(
-        context: &Context,
-        kernel: &'static Kernel,
-        specialization: &[(u32, u32)],
-    ) -> Result<Self, Error> {
-        // SAFETY: the same contract; the module is the kernel's.
-        unsafe { Self::with_module(context, kernel, &kernel.words(), specialization) }
-    }
-
-    /// As [`ComputePass::new`], with a SPIR-V module in the place of the kernel's own.
-    ///
-    /// # Safety
-    /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry point.
-    ///
-    /// # Errors
-    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
-    pub unsafe fn with_module(
-        context: &Context,
-        kernel: &'static Kernel,
-        module: &[u32],
-        specialization: &[(u32, u32)],
-    ) -> Result<Self, Error> {
-        if module.first() != Some(&SPIRV_MAGIC) {
-            return Err(Error::InvalidArgument {
-                field: "module",
-                message: "does not begin as SPIR-V does, in this machine's byte order".into(),
-            });
-        }
-        if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
-            return Err(Error::InvalidArgument {
-                field: "specialization",
-                message: format!(
-                    "kernel '{}' has no constant {id}; it has {:?}",
-                    kernel.name, kernel.constants
-                ),
-            });
-        }
+    /// They are dropped before the device is destroyed, when no recorded use of them is pending.
+    pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
         check_limits(context, kernel)?;
-        // Handles that were made before a later call fails are destroyed with this half-made pass
-        let mut pass = Self {
+        // Handles that were made before a later call fails are destroyed with these half-made layouts
+        let mut layouts = Self {
             context: context.clone(),
             kernel,
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
-            pipeline: vk::Pipeline::null(),
         };
         if kernel.bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
-            pass.make_sampler()?;
+            layouts.make_sampler()?;
         }
-        pass.make_layouts()?;
-        pass.make_pipeline(module, specialization)?;
-        let names = &context.names;
-        names.name(pass.set_layout, kernel.name);
-        names.name(pass.pipeline_layout, kernel.name);
-        names.name(pass.pipeline, kernel.name);
-        Ok(pass)
+        layouts.make_layouts()?;
+        context.names.name(layouts.set_layout, kernel.name);
+        context.names.name(layouts.pipeline_layout, kernel.name);
+        Ok(Arc::new(layouts))
     }
 
     fn make_sampler(&mut self) -> Result<(), Error> {
@@ -200,52 +159,15 @@ impl ComputePass {
         Ok(())
     }
 
-    fn make_pipeline(&mut self, words: &[u32], specialization: &[(u32, u32)]) -> Result<(), Error> {
-        let device = &self.context.device;
-        let info = vk::ShaderModuleCreateInfo::default().code(words);
-        // SAFETY: the device is valid; the code is SPIR-V that a test validates.
-        let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
-
-        let data: Vec<u32> = specialization.iter().map(|&(_, value)| value).collect();
-        let entries: Vec<_> = (0u32..)
-            .zip(specialization)
-            .map(|(place, &(id, _))| {
-                vk::SpecializationMapEntry::default().constant_id(id).offset(place * 4).size(4)
-            })
-            .collect();
-        let specialization =
-            vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
-        let stage = vk::PipelineShaderStageCreateInfo::default()
-            .stage(vk::ShaderStageFlags::COMPUTE)
-            .module(module)
-            .name(c"main")
-            .specialization_info(&specialization);
-        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(self.pipeline_layout);
-        // SAFETY: module and layout are live; the cache is the host's, unused elsewhere by contract.
-        let made = unsafe { device.create_compute_pipelines(self.context.pipeline_cache, &[info], None) };
-        // SAFETY: a module may go as soon as pipelines were made from it.
-        unsafe { device.destroy_shader_module(module, None) };
-        let pipelines = made.map_err(|(_, result)| result).call("vkCreateComputePipelines")?;
-        self.pipeline = pipelines[0];
-        Ok(())
-    }
-
     pub(crate) fn context(&self) -> &Context {
         &self.context
     }
 
-    /// The kernel.
-    pub fn kernel(&self) -> &'static Kernel {
-        self.kernel
-    }
-
-    /// The layout that the host allocates a descriptor set with.
-    pub fn set_layout(&self) -> vk::DescriptorSetLayout {
+    pub(crate) fn set_layout(&self) -> vk::DescriptorSetLayout {
         self.set_layout
     }
 
-    /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
-    pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
+    pub(crate) fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
         BindingKind::ALL
             .into_iter()
             .filter_map(|kind| {
@@ -258,16 +180,13 @@ impl ComputePass {
             .collect()
     }
 
-    /// Points a descriptor set at the resources of a run, in the order of [`Kernel::bindings`].
-    ///
     /// # Safety
-    /// - `set` was allocated with [`ComputePass::set_layout`] and no pending command buffer uses it.
-    /// - The resources are valid, and stay so while recorded work that uses the set is pending.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] names the binding that is missing, null or of the wrong kind; then nothing
-    /// is written.
-    pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &[Resource]) -> Result<(), Error> {
+    /// As [`ComputePass::write_set`].
+    pub(crate) unsafe fn write_set(
+        &self,
+        set: vk::DescriptorSet,
+        resources: &[Resource],
+    ) -> Result<(), Error> {
         let bindings = self.kernel.bindings;
         if resources.len() != bindings.len() {
             return Err(Error::InvalidArgument {
@@ -317,30 +236,6 @@ impl ComputePass {
         Ok(())
     }
 
-    /// Records binding, push constants and one dispatch. Barriers before and after are the host's, by
-    /// [`Kernel::bindings`]' accesses: every resource is used in the compute stage.
-    ///
-    /// # Safety
-    /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
-    /// - `set` was written by [`ComputePass::write_set`].
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] where `constants` is not of the kernel's size or `groups` is beyond the
-    /// device's limit, [`Error::Destroyed`] (in debug builds) where the set points at an image of the recorder's that
-    /// is gone; then nothing is recorded.
-    pub unsafe fn record(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
-        constants: &[u8],
-        groups: [u32; 3],
-    ) -> Result<(), Error> {
-        self.check(set, constants, groups)?;
-        // SAFETY: the same contract.
-        unsafe { self.record_checked(command_buffer, set, constants, groups) };
-        Ok(())
-    }
-
     /// What [`ComputePass::record`] refuses.
     pub(crate) fn check(
         &self,
@@ -370,8 +265,137 @@ impl ComputePass {
         }
         self.context.written_sets.check(set)
     }
+}
 
-    /// Records what passed [`ComputePass::check`].
+impl Drop for Layouts {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of Layouts::new no recorded use is pending and the device is alive;
+        // null handles are ignored.
+        unsafe {
+            let device = &self.context.device;
+            device.destroy_pipeline_layout(self.pipeline_layout, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
+            device.destroy_sampler(self.sampler, None);
+        }
+    }
+}
+
+impl ComputePass {
+    /// Makes the pipeline of `kernel` with pairs of specialisation constant id and value; constants that are
+    /// not given keep the shader's default, which is the catch-all.
+    ///
+    /// # Safety
+    /// The returned pass is dropped only when no recorded use of it is pending, and before the device is
+    /// destroyed.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::MissingFeature`] where
+    /// the kernel binds more than the device can, [`Error::Vulkan`] where a call fails.
+    pub unsafe fn new(
+        context: &Context,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract; the module is the kernel's.
+        unsafe { Self::with_module(context, kernel, &kernel.words(), specialization) }
+    }
+
+    /// As [`ComputePass::new`], with a SPIR-V module in the place of the kernel's own.
+    ///
+    /// # Safety
+    /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry point.
+    ///
+    /// # Errors
+    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    pub unsafe fn with_module(
+        context: &Context,
+        kernel: &'static Kernel,
+        module: &[u32],
+        specialization: &[(u32, u32)],
+    ) -> Result<Self, Error> {
+        check_module(module)?;
+        // SAFETY: the same contract.
+        unsafe { Self::of(&Layouts::new(context, kernel)?, module, specialization) }
+    }
+
+    /// As [`ComputePass::with_module`], with layouts that others have too, of a module that [`check_module`] found good.
+    ///
+    /// # Safety
+    /// As [`ComputePass::with_module`].
+    pub(crate) unsafe fn of(
+        layouts: &Arc<Layouts>,
+        module: &[u32],
+        specialization: &[(u32, u32)],
+    ) -> Result<Self, Error> {
+        let kernel = layouts.kernel;
+        if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
+            return Err(Error::InvalidArgument {
+                field: "specialization",
+                message: format!(
+                    "kernel '{}' has no constant {id}; it has {:?}",
+                    kernel.name, kernel.constants
+                ),
+            });
+        }
+        let pipeline = make_pipeline(layouts, module, specialization)?;
+        layouts.context.names.name(pipeline, kernel.name);
+        Ok(Self { layouts: Arc::clone(layouts), pipeline })
+    }
+
+    /// The kernel.
+    pub fn kernel(&self) -> &'static Kernel {
+        self.layouts.kernel
+    }
+
+    /// The layout that the host allocates a descriptor set with.
+    pub fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.layouts.set_layout
+    }
+
+    /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
+    pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
+        self.layouts.pool_sizes(sets)
+    }
+
+    /// Points a descriptor set at the resources of a run, in the order of [`Kernel::bindings`].
+    ///
+    /// # Safety
+    /// - `set` was allocated with [`ComputePass::set_layout`] and no pending command buffer uses it.
+    /// - The resources are valid, and stay so while recorded work that uses the set is pending.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] names the binding that is missing, null or of the wrong kind; then nothing
+    /// is written.
+    pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &[Resource]) -> Result<(), Error> {
+        // SAFETY: the same contract.
+        unsafe { self.layouts.write_set(set, resources) }
+    }
+
+    /// Records binding, push constants and one dispatch. Barriers before and after are the host's, by
+    /// [`Kernel::bindings`]' accesses: every resource is used in the compute stage.
+    ///
+    /// # Safety
+    /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
+    /// - `set` was written by [`ComputePass::write_set`].
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] where `constants` is not of the kernel's size or `groups` is beyond the
+    /// device's limit, [`Error::Destroyed`] (in debug builds) where the set points at an image of the recorder's that
+    /// is gone; then nothing is recorded.
+    pub unsafe fn record(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
+        self.layouts.check(set, constants, groups)?;
+        // SAFETY: the same contract.
+        unsafe { self.record_checked(command_buffer, set, constants, groups) };
+        Ok(())
+    }
+
+    /// Records what passed [`Layouts::check`].
     ///
     /// # Safety
     /// As [`ComputePass::record`].
@@ -382,21 +406,21 @@ impl ComputePass {
         constants: &[u8],
         groups: [u32; 3],
     ) {
-        let device = &self.context.device;
+        let device = &self.layouts.context.device;
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {
             device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
             device.cmd_bind_descriptor_sets(
                 command_buffer,
                 vk::PipelineBindPoint::COMPUTE,
-                self.pipeline_layout,
+                self.layouts.pipeline_layout,
                 0,
                 &[set],
                 &[],
             );
             device.cmd_push_constants(
                 command_buffer,
-                self.pipeline_layout,
+                self.layouts.pipeline_layout,
                 vk::ShaderStageFlags::COMPUTE,
                 0,
                 constants,
@@ -408,19 +432,54 @@ impl ComputePass {
 
 impl Drop for ComputePass {
     fn drop(&mut self) {
-        // SAFETY: by the contract of ComputePass::new no recorded use is pending and the device is alive;
-        // null handles are ignored.
-        unsafe {
-            let device = &self.context.device;
-            device.destroy_pipeline(self.pipeline, None);
-            device.destroy_pipeline_layout(self.pipeline_layout, None);
-            device.destroy_descriptor_set_layout(self.set_layout, None);
-            device.destroy_sampler(self.sampler, None);
-        }
+        // SAFETY: by the contract of ComputePass::new no recorded use is pending and the device is alive.
+        unsafe { self.layouts.context.device.destroy_pipeline(self.pipeline, None) };
     }
 }
 
+fn make_pipeline(
+    layouts: &Layouts,
+    words: &[u32],
+    specialization: &[(u32, u32)],
+) -> Result<vk::Pipeline, Error> {
+    let device = &layouts.context.device;
+    let info = vk::ShaderModuleCreateInfo::default().code(words);
+    // SAFETY: the device is valid; the code is SPIR-V that a test validates.
+    let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
+
+    let data: Vec<u32> = specialization.iter().map(|&(_, value)| value).collect();
+    let entries: Vec<_> = (0u32..)
+        .zip(specialization)
+        .map(|(place, &(id, _))| {
+            vk::SpecializationMapEntry::default().constant_id(id).offset(place * 4).size(4)
+        })
+        .collect();
+    let specialization =
+        vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(&data));
+    let stage = vk::PipelineShaderStageCreateInfo::default()
+        .stage(vk::ShaderStageFlags::COMPUTE)
+        .module(module)
+        .name(c"main")
+        .specialization_info(&specialization);
+    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline_layout);
+    // SAFETY: module and layout are live; the cache is the host's, unused elsewhere by contract.
+    let made = unsafe { device.create_compute_pipelines(layouts.context.pipeline_cache, &[info], None) };
+    // SAFETY: a module may go as soon as pipelines were made from it.
+    unsafe { device.destroy_shader_module(module, None) };
+    let pipelines = made.map_err(|(_, result)| result).call("vkCreateComputePipelines")?;
+    Ok(pipelines[0])
+}
+
 const SPIRV_MAGIC: u32 = 0x0723_0203;
+
+/// Refuses what is no SPIR-V.
+pub(crate) fn check_module(module: &[u32]) -> Result<(), Error> {
+    if module.first() == Some(&SPIRV_MAGIC) {
+        return Ok(());
+    }
+    let message = "does not begin as SPIR-V does, in this machine's byte order".into();
+    Err(Error::InvalidArgument { field: "module", message })
+}
 
 /// Only the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {

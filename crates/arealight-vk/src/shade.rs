@@ -2,13 +2,16 @@
 
 use crate::context::Context;
 use crate::error::Error;
-use crate::pass::{ComputePass, Resource};
+use crate::pass::{ComputePass, Layouts, Resource, check_module};
 use arealight::gpu::{GpuShape, ShadeConstants};
 use arealight::kernels::{Access, BindingKind, SHADE, store_to};
-use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions};
+use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, ShadeVariant};
 use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
 ///
@@ -54,6 +57,11 @@ pub struct ShadeFrame {
     pub position_from_clip: Option<Mat4>,
     /// How many lights of the buffer are shaded.
     pub light_count: u32,
+    /// How many of the first lights are convex quads without an image, [`PackedLights::quad_count`]; the others take longer.
+    pub quad_count: u32,
+    /// What no polygon light of the frame calls for, [`PackedLights::unused`]: it costs nothing then. The empty set is
+    /// always right.
+    pub unused: Effects,
     /// How many shapes of their buffer are shaded; none where the pass was made without [`arealight::Effects::SHAPES`].
     pub shape_count: u32,
 }
@@ -74,14 +82,19 @@ pub struct ResourceAccess {
 }
 
 /// The shade kernel, specialised for a set of effects and a quality.
+///
+/// Of the set, pipelines have what the lights of a frame call for: a pass for every effect takes as long as one for just those.
+/// A pipeline is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 #[derive(Debug)]
 pub struct ShadePass {
-    pass: ComputePass,
+    layouts: Arc<Layouts>,
+    variants: Mutex<HashMap<ShadeVariant, ComputePass>>,
+    module: Vec<u32>,
     options: ShadeOptions,
 }
 
 impl ShadePass {
-    /// Makes the pipeline.
+    /// Makes what all pipelines of the pass have in common.
     ///
     /// # Safety
     /// As [`ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
@@ -106,12 +119,11 @@ impl ShadePass {
         options: ShadeOptions,
         mut module: Vec<u32>,
     ) -> Result<Self, Error> {
+        check_module(&module)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pass = unsafe {
-            ComputePass::with_module(context, &SHADE, &module, &plan::shade_specialization(options))
-        }?;
-        Ok(Self { pass, options })
+        let layouts = unsafe { Layouts::new(context, &SHADE) }?;
+        Ok(Self { layouts, variants: Mutex::default(), module, options })
     }
 
     /// What the pass was specialised for.
@@ -121,12 +133,12 @@ impl ShadePass {
 
     /// The layout that the host allocates a descriptor set with.
     pub fn set_layout(&self) -> vk::DescriptorSetLayout {
-        self.pass.set_layout()
+        self.layouts.set_layout()
     }
 
     /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
     pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
-        self.pass.pool_sizes(sets)
+        self.layouts.pool_sizes(sets)
     }
 
     /// How the pass uses each resource.
@@ -213,7 +225,18 @@ impl ShadePass {
             glossy,
         ];
         // SAFETY: the same contract.
-        unsafe { self.pass.write_set(set, &resources) }
+        unsafe { self.layouts.write_set(set, &resources) }
+    }
+
+    /// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet. That takes a moment,
+    /// which [`ShadePass::record`] would take otherwise.
+    ///
+    /// # Errors
+    /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
+    pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
+        let constants = self.constants(frame)?;
+        let variant = ShadeVariant::new(self.options.effects, frame.unused, &constants);
+        self.with(variant, |_| ())
     }
 
     /// What is bound for the glossy lobe's radiance: where there is one image, that again.
@@ -246,6 +269,36 @@ impl ShadePass {
         set: vk::DescriptorSet,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
+        let constants = self.constants(frame)?;
+        let variant = ShadeVariant::new(self.options.effects, frame.unused, &constants);
+        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
+        self.layouts.check(set, bytemuck::bytes_of(&constants), groups)?;
+        self.with(variant, |pass| {
+            // SAFETY: the same contract.
+            unsafe {
+                let _label = self.layouts.context().names.label(command_buffer, c"arealight shade");
+                pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
+            }
+        })
+    }
+
+    /// Does something with a variant's pipeline, which is made if it was not.
+    fn with(&self, variant: ShadeVariant, act: impl FnOnce(&ComputePass)) -> Result<(), Error> {
+        let mut variants = self.variants.lock().unwrap_or_else(PoisonError::into_inner);
+        let pass = match variants.entry(variant) {
+            Entry::Occupied(found) => found.into_mut(),
+            Entry::Vacant(place) => {
+                let specialization = plan::shade_variant_specialization(self.options, variant);
+                // SAFETY: by the contract of ShadePass::new.
+                place.insert(unsafe { ComputePass::of(&self.layouts, &self.module, &specialization) }?)
+            }
+        };
+        act(pass);
+        Ok(())
+    }
+
+    /// The push constants of a frame.
+    fn constants(&self, frame: &ShadeFrame) -> Result<ShadeConstants, Error> {
         let position_from_clip = match (self.options.position, frame.position_from_clip) {
             (PositionSource::Depth, None) => {
                 return Err(Error::InvalidArgument {
@@ -268,22 +321,19 @@ impl ShadePass {
                 ),
             });
         }
+        if frame.quad_count > frame.light_count {
+            let message = format!("{} of {} lights", frame.quad_count, frame.light_count);
+            return Err(Error::InvalidArgument { field: "quad_count", message });
+        }
         if frame.size.contains(&0) {
             return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
         }
-        let constants = ShadeConstants {
+        Ok(ShadeConstants {
             position_from_clip: position_from_clip.to_cols_array_2d(),
             camera: frame.camera.to_array(),
             light_count: frame.light_count,
             shape_count: frame.shape_count,
-        };
-        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
-        self.pass.check(set, bytemuck::bytes_of(&constants), groups)?;
-        // SAFETY: the same contract.
-        unsafe {
-            let _label = self.pass.context().names.label(command_buffer, c"arealight shade");
-            self.pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
-        }
-        Ok(())
+            quad_count: frame.quad_count,
+        })
     }
 }

@@ -91,6 +91,8 @@ pub struct ShadeConstants {
     pub light_count: u32,
     /// How many shapes are shaded.
     pub shape_count: u32,
+    /// How many of the first polygon lights are convex quads without an image, see [`crate::PackedLights::quad_count`].
+    pub quad_count: u32,
 }
 
 /// Push constants of the Monte Carlo reference kernel.

@@ -141,6 +141,8 @@ pub mod constant {
     pub const CALLED_FOR: u32 = 9;
     /// [`crate::ShapeKind`].
     pub const SHAPE: u32 = 10;
+    /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
+    pub const QUADS: u32 = 11;
     /// [`crate::plan::GBufferLayout`].
     pub const LAYOUT: u32 = 13;
 }
@@ -238,6 +240,7 @@ pub static SHADE: Kernel = Kernel {
         constant::FRESNEL,
         constant::LOBES,
         constant::FOOTPRINT,
+        constant::QUADS,
         constant::LAYOUT,
     ],
 };

@@ -233,12 +233,25 @@ impl PolygonLight {
 }
 
 /// Lights as the GPU reads them, relative to an origin.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PackedLights {
-    /// One record a light, in the given order.
+    /// One record a light: convex quads without an image first, else in the given order.
     pub lights: Vec<GpuLight>,
     /// Vertex positions relative to their light's center, in xyz; w is zero.
     pub vertices: Vec<[f32; 4]>,
+    /// Which of the given lights each record is of.
+    pub order: Vec<u32>,
+    /// How many records come first that are convex quads without an image.
+    pub quad_count: u32,
+    /// What none of the lights calls for, of [`Effects::TWO_SIDED`] and [`Effects::BEYOND_QUADS`].
+    pub unused: Effects,
+}
+
+impl Default for PackedLights {
+    fn default() -> Self {
+        let unused = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
+        Self { lights: vec![], vertices: vec![], order: vec![], quad_count: 0, unused }
+    }
 }
 
 impl PackedLights {
@@ -252,15 +265,21 @@ impl PackedLights {
         if u32::try_from(count).is_err() {
             return Err(LightError::TooMany { count });
         }
-        let mut packed = Self::default();
-        for light in lights {
-            packed.push(light, light.mapped()?, origin)?;
+        let maps = lights.iter().map(PolygonLight::mapped).collect::<Result<Vec<_>, _>>()?;
+        let effects: Vec<Effects> = lights.iter().map(PolygonLight::effects).collect();
+        let (quads, others): (Vec<usize>, Vec<usize>) =
+            (0..lights.len()).partition(|index| !effects[*index].intersects(Effects::BEYOND_QUADS));
+        let mut packed = Self { quad_count: quads.len() as u32, ..Self::default() };
+        for index in quads.into_iter().chain(others) {
+            packed.push(&lights[index], maps[index], origin)?;
+            packed.order.push(index as u32);
+            packed.unused -= effects[index];
         }
         Ok(packed)
     }
 
-    /// Adds the lights of `other`, which may be packed relative to another origin; their vertices come after
-    /// those that are here.
+    /// Adds the lights of `other`, which may be packed relative to another origin, after those that are here. Their quads are
+    /// counted as such only where none but quads are here.
     ///
     /// # Errors
     /// [`LightError::TooMany`] where a 32-bit index does not reach; then nothing is added.
@@ -269,6 +288,12 @@ impl PackedLights {
         if u32::try_from(count).is_err() {
             return Err(LightError::TooMany { count });
         }
+        if self.quad_count as usize == self.lights.len() {
+            self.quad_count += other.quad_count;
+        }
+        self.unused &= other.unused;
+        let before = self.lights.len() as u32;
+        self.order.extend(other.order.into_iter().map(|index| before + index));
         let shift = self.vertices.len() as u32;
         self.lights.extend(other.lights.into_iter().map(|mut light| {
             light.first_vertex += shift;
@@ -385,6 +410,37 @@ mod tests {
         let mut light = arrow();
         light.vertices = vec![DVec3::ONE; 4];
         assert!(light.triangles().is_empty());
+    }
+
+    #[test]
+    fn quads_come_first_and_every_record_says_whose_it_is() {
+        let light = |x: f64, concave: bool, two_sided: bool| {
+            let mut light = arrow();
+            light.vertices[3].x = if concave { 1.0 } else { -1.0 };
+            light.vertices.iter_mut().for_each(|vertex| vertex.x += x);
+            PolygonLight { two_sided, ..light }
+        };
+        let lights = [
+            light(0.0, true, false),
+            light(1.0, false, false),
+            light(2.0, true, true),
+            light(3.0, false, false),
+        ];
+        let mut packed = PackedLights::new(&lights, DVec3::ZERO).unwrap();
+        assert_eq!((&packed.order[..], packed.quad_count), (&[1, 3, 0, 2][..], 2));
+        assert_eq!(packed.unused, Effects::TEXTURED);
+        for (record, index) in packed.lights.iter().zip(&packed.order) {
+            let first = packed.vertices[record.first_vertex as usize][0] + record.center[0];
+            assert!((f64::from(first) - lights[*index as usize].vertices[0].x).abs() < 1e-6);
+        }
+        // What comes after other lights is not among the first quads
+        let quads = || PackedLights::new(&lights[1..2], DVec3::ZERO).unwrap();
+        packed.append(quads()).unwrap();
+        assert_eq!((&packed.order[..], packed.quad_count), (&[1, 3, 0, 2, 4][..], 2));
+        let mut two = quads();
+        two.append(quads()).unwrap();
+        assert_eq!((two.quad_count, two.unused), (2, Effects::TWO_SIDED | Effects::BEYOND_QUADS));
+        assert_eq!(PackedLights::new(&[], DVec3::ZERO).unwrap(), PackedLights::default());
     }
 
     #[test]

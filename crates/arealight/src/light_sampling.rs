@@ -6,7 +6,7 @@ use crate::{PackedLights, PolygonLight};
 /// The buffers of the reference kernel beside the lights themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct LightSampling {
-    /// One record a light, in the order of the lights.
+    /// One record a light, in the order of the packed lights.
     pub lights: Vec<GpuLightSampling>,
     /// The triangles of all lights. A light without area has none, and is passed over.
     pub triangles: Vec<GpuLightTriangle>,
@@ -16,7 +16,8 @@ impl LightSampling {
     /// Triangulates `lights`, which were packed as `packed`.
     pub fn new(lights: &[PolygonLight], packed: &PackedLights) -> Self {
         let mut sampling = Self::default();
-        for (light, record) in lights.iter().zip(&packed.lights) {
+        for (index, record) in packed.order.iter().zip(&packed.lights) {
+            let Some(light) = lights.get(*index as usize) else { continue };
             let first_triangle = sampling.triangles.len() as u32;
             let indices = light.triangles();
             let areas = indices.chunks_exact(3).map(|triangle| {

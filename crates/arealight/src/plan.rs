@@ -1,7 +1,7 @@
 //! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
 //! recorder of this project or for one of your own.
 
-use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
+use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
 use crate::{Effects, Quality, ShapeKind};
@@ -117,6 +117,35 @@ impl ShadeOptions {
     }
 }
 
+/// What is left of a shade pipeline for the lights of a frame: what none of them calls for costs nothing, and changes nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ShadeVariant {
+    /// The effects that it handles.
+    pub effects: Effects,
+    /// Whether there are convex quads without an image.
+    pub quads: bool,
+}
+
+impl ShadeVariant {
+    /// What a pass for `effects` needs for the lights that `constants` count, of which none calls for `unused`. Lights that
+    /// are counted beyond the quads are shaded by all that the pass has for such, whatever `unused` says.
+    pub fn new(effects: Effects, unused: Effects, constants: &ShadeConstants) -> Self {
+        let of = |count: u32, kinds: Effects| match effects & kinds {
+            _ if count == 0 => Effects::empty(),
+            all if (all - unused).is_empty() => all,
+            all => all - unused,
+        };
+        let lights = of(constants.light_count.saturating_sub(constants.quad_count), Effects::BEYOND_QUADS);
+        let shapes = of(constants.shape_count, Effects::SHAPES);
+        // Shapes have two sides too
+        let unused_sides =
+            if constants.shape_count == 0 { unused & Effects::TWO_SIDED } else { Effects::empty() };
+        let others = effects - Effects::BEYOND_QUADS - Effects::SHAPES - unused_sides;
+        let quad_count = if lights.is_empty() { constants.light_count } else { constants.quad_count };
+        Self { effects: others | lights | shapes, quads: quad_count > 0 }
+    }
+}
+
 /// One dispatch: a kernel, the values of its specialisation constants, and its number of groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dispatch {
@@ -147,6 +176,13 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
     ]);
+    values
+}
+
+/// As [`shade_specialization`], of what is left for the lights of a frame.
+pub fn shade_variant_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
+    let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
+    values.push((kernels::constant::QUADS, u32::from(variant.quads)));
     values
 }
 
@@ -224,6 +260,41 @@ pub fn texture_blur(
 mod tests {
     use super::*;
     use crate::TexturePart;
+    use bytemuck::Zeroable as _;
+
+    #[test]
+    fn a_pipeline_has_what_the_lights_of_a_frame_call_for() {
+        let counts = |light_count, quad_count, shape_count| ShadeConstants {
+            light_count,
+            quad_count,
+            shape_count,
+            ..ShadeConstants::zeroed()
+        };
+        let all = Effects::all();
+        let of_lights = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
+        let variant = |unused, counts| {
+            let ShadeVariant { effects, quads } = ShadeVariant::new(all, unused, &counts);
+            (all - effects, quads)
+        };
+        // Quads, one-sided or not
+        assert_eq!(variant(of_lights, counts(3, 3, 0)), (of_lights | Effects::SHAPES, true));
+        let beyond = Effects::BEYOND_QUADS;
+        assert_eq!(variant(beyond, counts(3, 3, 0)), (beyond | Effects::SHAPES, true));
+        // Others, with quads and without
+        let no_image = Effects::TEXTURED;
+        assert_eq!(variant(no_image, counts(3, 1, 0)), (no_image | Effects::SHAPES, true));
+        assert_eq!(variant(no_image, counts(3, 0, 0)), (no_image | Effects::SHAPES, false));
+        // Shapes may have two sides, whatever polygons have
+        assert_eq!(variant(of_lights, counts(0, 0, 2)), (beyond, false));
+        assert_eq!(variant(of_lights | Effects::TUBE, counts(0, 0, 2)), (beyond | Effects::TUBE, false));
+        // Nothing is known: right, and slower
+        assert_eq!(variant(Effects::empty(), counts(3, 0, 2)), (Effects::empty(), false));
+        // What is counted is shaded, even where nothing is said to call for it
+        assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::SHAPES), Effects::empty());
+        // A pass without those effects takes all lights for quads
+        let plain = ShadeVariant::new(Effects::GLOSSY, Effects::empty(), &counts(3, 0, 0));
+        assert_eq!(plain, ShadeVariant { effects: Effects::GLOSSY, quads: true });
+    }
 
     #[test]
     fn groups_cover_every_pixel() {

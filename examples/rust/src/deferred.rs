@@ -183,6 +183,8 @@ impl<'a> Deferred<'a> {
                 camera: Vec3::ZERO,
                 position_from_clip: Some(camera.clip_from_view.inverse()),
                 light_count: packed.lights.len() as u32,
+                quad_count: packed.quad_count,
+                unused: packed.unused,
                 shape_count: 0,
             };
             // SAFETY: the commands are being recorded; buffers and sets are this place's.

@@ -29,6 +29,8 @@ pub struct SceneRenderer<'a> {
     vertex_buffer: Buffer,
     shape_buffer: Buffer,
     sampling: LightSampling,
+    quad_count: u32,
+    unused: Effects,
     shown: bool,
 }
 
@@ -67,6 +69,8 @@ impl<'a> SceneRenderer<'a> {
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
             shape_buffer: engine.storage::<GpuShape>("shapes", &[])?,
             sampling: LightSampling::new(lights, &packed),
+            quad_count: packed.quad_count,
+            unused: packed.unused,
             shown: false,
         })
     }
@@ -141,6 +145,8 @@ impl<'a> SceneRenderer<'a> {
             camera: Vec3::from(self.camera.camera),
             position_from_clip: None,
             light_count: self.lights.len() as u32,
+            quad_count: self.quad_count,
+            unused: self.unused,
             shape_count: self.shapes.len() as u32,
         };
         self.engine.host().try_submit_timed(|commands| {
@@ -182,6 +188,7 @@ impl<'a> SceneRenderer<'a> {
             camera: self.camera.camera,
             light_count: self.lights.len() as u32,
             shape_count: self.shapes.len() as u32,
+            quad_count: self.quad_count,
         };
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);

@@ -91,13 +91,15 @@ fn layouts() -> [Layout; 12] {
             name, vertices, texture_coordinates, vertex_count, texture_layer, radiance, two_sided,
         }
         ArealightShape { name, kind, ends, center, axis_u, axis_v, radius, radiance, two_sided }
-        ArealightPackedLights { lights, vertices, lights_size, vertices_size }
+        ArealightPackedLights { lights, vertices, lights_size, vertices_size, quad_count, unused }
         ArealightImage { view, layout, reserved }
         ArealightResources {
             lights, light_vertices, shapes, position, normal, base_color, specular, light_textures, radiance,
             glossy,
         }
-        ArealightFrame { width, height, camera, light_count, shape_count, reserved, position_from_clip }
+        ArealightFrame {
+            width, height, camera, light_count, shape_count, quad_count, unused, reserved, position_from_clip,
+        }
     }
 }
 
