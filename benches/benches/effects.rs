@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let buffers = SceneBuffers::new(&scene, camera.position)?;
     let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(&engine, &buffers, &scene.lights, constants, SIZE)?;
-    let costs = measure(&mut renderer, rounds)?;
+    let costs = measure(engine.host(), &mut renderer, rounds)?;
     let device = engine.host().device_name();
     println!("{device}, the sweep, {} x {}, {rounds} rounds\n\n{}", SIZE[0], SIZE[1], markdown(&costs));
     Ok(())

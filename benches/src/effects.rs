@@ -1,16 +1,18 @@
-//! What effects cost on a device: the shade kernel with one set of effects after another over one frame, beside kernels
-//! that were stripped by hand.
+//! What absent effects cost on a device: the shade kernel and pass with one set of effects after another over one frame in which
+//! nothing calls for them, beside kernels that were stripped by hand.
 //!
 //! The machines that this runs on are shared: every method is run in turn, round after round, forwards and
-//! backwards, and read as a ratio to the yardstick in the same round.
+//! backwards, and read as a ratio to the yardstick in the same round; of software in processor time.
 
 use crate::cost::quantile;
+use crate::textures::clocked;
 use arealight::kernels::{Kernel, SHADE};
+use arealight::plan::{Output, ShadeOptions, shade_specialization};
 use arealight::{Effects, Quality};
 use arealight_engine::{EngineError, SceneRenderer};
+use arealight_host::Host;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::time::Instant;
 
 /// The shade kernel, stripped by hand to diffuse and glossy lobes of one-sided quads without images, or to the
 /// diffuse lobe; on the first rungs, positions from an image, adding.
@@ -28,8 +30,19 @@ const DIFFUSE_ONLY: u32 = 0;
 /// What is timed.
 #[derive(Debug, Clone)]
 enum Method {
-    Stripped { diffuse_only: bool },
-    Shade { effects: Effects, quality: Quality },
+    Stripped {
+        diffuse_only: bool,
+    },
+    /// The pass: of the effects it has what the frame's lights call for.
+    Pass {
+        effects: Effects,
+        quality: Quality,
+    },
+    /// The kernel with the code of all of the effects.
+    Kernel {
+        effects: Effects,
+        quality: Quality,
+    },
 }
 
 /// A method's time.
@@ -55,23 +68,25 @@ struct Run {
 }
 
 impl Run {
-    /// One frame; GPU time, or wall time where the queue has no timestamps.
-    fn once(&self, renderer: &mut SceneRenderer<'_>) -> Result<f64, EngineError> {
-        let start = Instant::now();
-        let took = match self.method {
+    /// Seconds of one frame.
+    fn once(&self, host: &Host, renderer: &mut SceneRenderer<'_>) -> Result<f64, EngineError> {
+        clocked(host, || match self.method {
             Method::Stripped { diffuse_only } => {
                 renderer.shade_by(&SHADE_STRIPPED, &[(DIFFUSE_ONLY, u32::from(diffuse_only))])
             }
-            Method::Shade { effects, quality } => renderer.shade(effects, quality),
-        }?;
-        Ok(took.unwrap_or_else(|| start.elapsed()).as_secs_f64())
+            Method::Pass { effects, quality } => renderer.shade(effects, quality),
+            Method::Kernel { effects, quality } => {
+                let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
+                renderer.shade_by(&SHADE, &shade_specialization(options))
+            }
+        })
     }
 }
 
 /// Every method: what it is a ratio to comes before it.
 fn runs() -> Vec<Run> {
     let run = |name: String, method, yardstick| Run { name, method, yardstick, seconds: Vec::new() };
-    let shade = |effects, quality| Method::Shade { effects, quality };
+    let shade = |effects, quality| Method::Pass { effects, quality };
     let both = Effects::DIFFUSE | Effects::GLOSSY;
     let exact = Quality::default();
     let one_point = Quality { one_point: true, ..exact };
@@ -85,25 +100,35 @@ fn runs() -> Vec<Run> {
     for added in (Effects::all() - both).iter() {
         let quality = if added == Effects::FAR { one_point } else { exact };
         let note = if added == Effects::FAR { "; one point" } else { "" };
-        runs.push(run(format!("{}{note}", both | added), shade(both | added, quality), 1));
+        let (effects, name) = (both | added, format!("{}{note}", both | added));
+        runs.push(run(format!("{name}, compiled in"), Method::Kernel { effects, quality }, 1));
+        runs.push(run(name, shade(effects, quality), 1));
     }
-    runs.push(run("every effect".into(), shade(Effects::all(), exact), 1));
+    runs.push(run(
+        "every effect of lights".into(),
+        shade(Effects::all() - Effects::SPECULAR_INPUT, exact),
+        1,
+    ));
     runs
 }
 
-/// Measures every method over the renderer's frame in `rounds` rounds, after one that warms up. The scene calls for no
+/// Measures every method on `host` over the renderer's frame in `rounds` rounds, after one that warms up. The scene calls for no
 /// effect but the lobes, so that each is one that no pixel uses.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
-pub fn measure(renderer: &mut SceneRenderer<'_>, rounds: usize) -> Result<Vec<EffectCost>, EngineError> {
+pub fn measure(
+    host: &Host,
+    renderer: &mut SceneRenderer<'_>,
+    rounds: usize,
+) -> Result<Vec<EffectCost>, EngineError> {
     let mut runs = runs();
     let count = runs.len();
     for round in 0..=rounds {
         for place in 0..count {
             // There and back, so that nobody always runs after the same one
             let run = &mut runs[if round % 2 == 0 { place } else { count - 1 - place }];
-            let seconds = run.once(renderer)?;
+            let seconds = run.once(host, renderer)?;
             if round > 0 {
                 run.seconds.push(seconds);
             }

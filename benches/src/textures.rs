@@ -167,8 +167,16 @@ pub(crate) fn timed(
     host: &Host,
     record: impl FnOnce(vk::CommandBuffer) -> Result<(), EngineError>,
 ) -> Result<f64, EngineError> {
+    clocked(host, || host.try_submit_timed(record))
+}
+
+/// Seconds of what says how long the device took.
+pub(crate) fn clocked<E>(
+    host: &Host,
+    run: impl FnOnce() -> Result<Option<std::time::Duration>, E>,
+) -> Result<f64, E> {
     let start = (Instant::now(), processor_seconds());
-    let took = host.try_submit_timed(record)?;
+    let took = run()?;
     Ok(match (start.1, processor_seconds()) {
         (Some(before), Some(after)) if is_software(host) => after - before,
         _ => took.unwrap_or_else(|| start.0.elapsed()).as_secs_f64(),

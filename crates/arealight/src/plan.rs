@@ -266,8 +266,8 @@ mod tests {
     fn a_pipeline_has_what_the_lights_of_a_frame_call_for() {
         let counts = |light_count, quad_count, shape_count| ShadeConstants {
             light_count,
-            quad_count,
             shape_count,
+            quad_count,
             ..ShadeConstants::zeroed()
         };
         let all = Effects::all();

@@ -181,6 +181,7 @@ impl<'a> SceneRenderer<'a> {
             Resource::StorageImage { view: self.g_buffer.radiance.view() },
             self.engine.light_textures(),
             Resource::buffer(self.shape_buffer.handle()),
+            Resource::StorageImage { view: self.g_buffer.radiance.view() },
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;
         let constants = ShadeConstants {
