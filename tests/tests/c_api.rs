@@ -370,8 +370,9 @@ fn calls_out_of_order_are_refused() {
         let too_many = ArealightFrame { quad_count: 1, ..frame(8) };
         refused(record(commands, 8, &too_many), ErrorArgument, "quad_count");
         // A pipeline ahead
-        refused(arealight_pass_prepare(pass, &blind), ErrorArgument, "camera");
-        good(arealight_pass_prepare(pass, &frame(8)));
+        refused(arealight_pass_prepare(pass, &raw const blind), ErrorArgument, "camera");
+        let right = frame(8);
+        good(arealight_pass_prepare(pass, &raw const right));
     }
 
     // An upload that lacks something
