@@ -212,6 +212,8 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         };
         let none = vk::DescriptorSet::null();
         engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();
+        // A pipeline is named once it is made
+        pass.prepare(&ShadeFrame { size: [8, 8], ..frame }).unwrap();
         drop(pass);
         drop(image);
         engine.host().with_allocator(|allocator| allocator.free(memory)).unwrap();
