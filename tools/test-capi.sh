@@ -7,7 +7,9 @@ scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 
 "$root/tools/install-capi.sh" "$scratch/prefix" --debug
-export PKG_CONFIG_PATH="$scratch/prefix/lib/pkgconfig" LD_LIBRARY_PATH="$scratch/prefix/lib"
+export PKG_CONFIG_PATH="$scratch/prefix/lib/pkgconfig"
+# Drivers and layers of this machine may be found by the rest of it
+export LD_LIBRARY_PATH="$scratch/prefix/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
 
 # shellcheck disable=SC2046 # flags are words
 c++ -std=c++14 -ffp-contract=off "$root/examples/cpp/host.cpp" -o "$scratch/host" \
@@ -25,9 +27,18 @@ if cmake -S "$scratch/later" -B "$scratch/later/build" -DCMAKE_PREFIX_PATH="$scr
     exit 1
 fi
 
-"$scratch/host" "$scratch/pkg-config.pfm" --validate core
+if ! said="$("$scratch/host" "$scratch/pkg-config.pfm" --validate core 2>&1)"; then
+    # -9: the loader has no driver
+    if [[ "${AREALIGHT_REQUIRE_GPU:-}" != 1 && "$said" =~ "no Vulkan device"|"vkCreateInstance failed: -9" ]]; then
+        echo "three builds of the host; none was run: there is no Vulkan device (tools/setup.sh run installs a driver)"
+        exit 0
+    fi
+    echo "$said" >&2
+    exit 1
+fi
 "$scratch/build/host" "$scratch/shared.pfm"
-env -u LD_LIBRARY_PATH "$scratch/build/host_static" "$scratch/static.pfm"
+# It has the library inside
+LD_LIBRARY_PATH="${LD_LIBRARY_PATH#"$scratch/prefix/lib"}" "$scratch/build/host_static" "$scratch/static.pfm"
 cmp "$scratch/pkg-config.pfm" "$scratch/shared.pfm"
 cmp "$scratch/pkg-config.pfm" "$scratch/static.pfm"
 echo "three builds of the host draw the same picture"

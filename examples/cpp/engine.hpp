@@ -4,8 +4,10 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cctype>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -106,13 +108,35 @@ struct Engine {
         }
     }
 
-    // Takes the first device that has a queue which computes.
+    // Whether AREALIGHT_DEVICE, where it is set, means a device: its number, or a part of its name.
+    static bool is_wanted(VkPhysicalDevice device, size_t number) {
+        const char *wanted = std::getenv("AREALIGHT_DEVICE");
+        if (!wanted) {
+            return true;
+        }
+        VkPhysicalDeviceProperties properties;
+        vkGetPhysicalDeviceProperties(device, &properties);
+        auto lower = [](std::string text) {
+            for (char &letter : text) {
+                letter = (char)std::tolower((unsigned char)letter);
+            }
+            return text;
+        };
+        return std::to_string(number) == wanted
+               || lower(properties.deviceName).find(lower(wanted)) != std::string::npos;
+    }
+
+    // Takes the first device that is wanted and has a queue which computes.
     void choose_device() {
         uint32_t count = 0;
         check(vkEnumeratePhysicalDevices(instance, &count, nullptr), "vkEnumeratePhysicalDevices");
         std::vector<VkPhysicalDevice> devices(count);
         check(vkEnumeratePhysicalDevices(instance, &count, devices.data()), "vkEnumeratePhysicalDevices");
-        for (VkPhysicalDevice candidate : devices) {
+        for (size_t number = 0; number < devices.size(); number++) {
+            VkPhysicalDevice candidate = devices[number];
+            if (!is_wanted(candidate, number)) {
+                continue;
+            }
             uint32_t family_count = 0;
             vkGetPhysicalDeviceQueueFamilyProperties(candidate, &family_count, nullptr);
             std::vector<VkQueueFamilyProperties> families(family_count);
@@ -124,7 +148,7 @@ struct Engine {
                 }
             }
         }
-        throw std::runtime_error("no Vulkan device with a compute queue");
+        throw std::runtime_error("no Vulkan device with a compute queue, or none that AREALIGHT_DEVICE means");
     }
 
     VkDeviceMemory allocate(uint64_t size, uint32_t type_bits, VkMemoryPropertyFlags wanted) {

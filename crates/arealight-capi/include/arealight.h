@@ -458,7 +458,8 @@ enum ArealightResult arealight_create(const struct ArealightHost *host,
 enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
 
 // Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
-// once; the commands run before any that shade.
+// once; the commands run before any that shade. Commands that were never run are made good by another call with the same
+// memory.
 //
 // The host sees to it:
 // Pointers are null or valid, and `upload` is as ArealightUpload says.

@@ -22,7 +22,8 @@ pub struct Arealight {
 
 struct Image {
     table: TableImage,
-    has_memory: bool,
+    /// The memory that is bound, and where in it.
+    memory: Option<(u64, u64)>,
 }
 
 impl Arealight {
@@ -38,7 +39,7 @@ impl Arealight {
     /// The table as a pass reads it, and in place of light textures; `None` before it has memory.
     pub(crate) fn table_resources(&self) -> Option<[arealight_vk::Resource; 2]> {
         let image = self.image();
-        image.has_memory.then(|| [image.table.resource(), image.table.in_place_of_textures()])
+        image.memory.map(|_| [image.table.resource(), image.table.in_place_of_textures()])
     }
 }
 
@@ -85,7 +86,7 @@ pub unsafe extern "C" fn arealight_create(
                 device: &device,
                 pipeline_cache: vk::PipelineCache::from_raw(host.pipeline_cache),
             })?;
-            let image = Image { table: TableImage::new(&context, &table, format)?, has_memory: false };
+            let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
             Arealight { context, format, table, image: Mutex::new(image) }
         };
         // SAFETY: as above.
@@ -147,7 +148,8 @@ impl Arealight {
 }
 
 /// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
-/// once; the commands run before any that shade.
+/// once; the commands run before any that shade. Commands that were never run are made good by another call with the same
+/// memory.
 ///
 /// # Safety
 /// Pointers are null or valid, and `upload` is as ArealightUpload says.
@@ -181,16 +183,19 @@ pub unsafe extern "C" fn arealight_table_upload(
             return Err(Failure::argument(message));
         }
         let mut image = arealight.image();
-        if image.has_memory {
+        let place = (upload.memory, upload.memory_offset);
+        if image.memory.is_some_and(|bound| bound != place) {
             return Err(Failure::argument(
-                "arealight: its table was uploaded already; make another for another table",
+                "upload.memory: the table has other memory already; upload again with that, or make another arealight",
             ));
         }
 
         // SAFETY: the caller vouches for memory, buffer and command buffer; the mapped memory is large enough.
         unsafe {
-            image.table.bind_memory(vk::DeviceMemory::from_raw(upload.memory), upload.memory_offset)?;
-            image.has_memory = true;
+            if image.memory.is_none() {
+                image.table.bind_memory(vk::DeviceMemory::from_raw(upload.memory), upload.memory_offset)?;
+                image.memory = Some(place);
+            }
             std::ptr::copy_nonoverlapping(bytes.as_ptr(), upload.staging_data.cast(), bytes.len());
             image.table.record_upload(
                 vk::CommandBuffer::from_raw(upload.command_buffer as u64),

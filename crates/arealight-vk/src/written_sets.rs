@@ -5,12 +5,36 @@ use crate::error::Error;
 use crate::pass::Resource;
 use arealight::kernels::Kernel;
 use ash::vk;
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The sets that passes of one context have written.
 #[derive(Clone, Default)]
-pub(crate) struct WrittenSets(Arc<Mutex<HashMap<vk::DescriptorSet, Written>>>);
+pub(crate) struct WrittenSets(Arc<Mutex<Sets>>);
+
+/// How many sets are kept. Some hosts take new ones for every frame, and do not say when they free them.
+const MOST: usize = 4096;
+
+#[derive(Default)]
+struct Sets {
+    written: HashMap<vk::DescriptorSet, Written>,
+    /// From the one that was kept first to the one that was kept last.
+    order: VecDeque<vk::DescriptorSet>,
+}
+
+impl Sets {
+    /// Keeps a set; of too many, the one goes that was kept first.
+    fn keep(&mut self, set: vk::DescriptorSet, written: Written) {
+        if self.written.insert(set, written).is_none() {
+            self.order.push_back(set);
+        }
+        if self.order.len() > MOST
+            && let Some(first) = self.order.pop_front()
+        {
+            self.written.remove(&first);
+        }
+    }
+}
 
 /// What a set was last written with.
 struct Written {
@@ -28,7 +52,7 @@ impl WrittenSets {
         }
         let views = kernel.bindings.iter().zip(resources);
         let views = views.filter_map(|(binding, resource)| Some((resource.view()?, binding.name))).collect();
-        self.lock().insert(set, Written { views, destroyed: None });
+        self.lock().keep(set, Written { views, destroyed: None });
     }
 
     /// Notes that a view of ours is destroyed. The driver may give its handle to another then, so that the sets are
@@ -37,7 +61,7 @@ impl WrittenSets {
         if !cfg!(debug_assertions) {
             return;
         }
-        for written in self.lock().values_mut() {
+        for written in self.lock().written.values_mut() {
             let found = written.views.iter().find(|(pointed_at, _)| *pointed_at == view);
             written.destroyed = written.destroyed.or(found.map(|(_, binding)| *binding));
         }
@@ -48,13 +72,13 @@ impl WrittenSets {
         if !cfg!(debug_assertions) {
             return Ok(());
         }
-        match self.lock().get(&set).and_then(|written| written.destroyed) {
+        match self.lock().written.get(&set).and_then(|written| written.destroyed) {
             Some(field) => Err(Error::Destroyed { field }),
             None => Ok(()),
         }
     }
 
-    fn lock(&self) -> MutexGuard<'_, HashMap<vk::DescriptorSet, Written>> {
+    fn lock(&self) -> MutexGuard<'_, Sets> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -71,6 +95,27 @@ mod tests {
             Resource::SampledImage { view: vk::ImageView::from_raw(view), layout },
             Resource::StorageImage { view: vk::ImageView::from_raw(9) },
         ]
+    }
+
+    #[test]
+    fn no_more_sets_are_kept_than_a_host_has_in_flight() {
+        let sets = WrittenSets::default();
+        for number in 1..=MOST as u64 + 10 {
+            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5));
+            // One that is written again stands where it stood
+            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5));
+        }
+        let kept = if cfg!(debug_assertions) { MOST } else { 0 };
+        let counts = {
+            let sets = sets.lock();
+            (sets.written.len(), sets.order.len())
+        };
+        assert_eq!(counts, (kept, kept));
+        sets.destroy(vk::ImageView::from_raw(5));
+        // The first is forgotten, the last is not
+        assert_eq!(sets.check(vk::DescriptorSet::from_raw(1)), Ok(()));
+        let last = sets.check(vk::DescriptorSet::from_raw(MOST as u64 + 10));
+        assert_eq!(last.is_err(), cfg!(debug_assertions));
     }
 
     #[test]

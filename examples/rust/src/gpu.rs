@@ -308,15 +308,23 @@ impl<'a> Frames<'a> {
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
             device.begin_command_buffer(commands, &begin)?;
-            record(place, commands)?;
+            if let Err(error) = record(place, commands) {
+                // What was begun cannot be begun again before it is reset
+                device.reset_command_buffer(commands, vk::CommandBufferResetFlags::empty())?;
+                return Err(error);
+            }
             device.end_command_buffer(commands)?;
             device.reset_fences(&[fence])?;
             let buffers = [commands];
-            device.queue_submit(
-                self.gpu.queue,
-                &[vk::SubmitInfo::default().command_buffers(&buffers)],
-                fence,
-            )?;
+            let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+            if let Err(error) = device.queue_submit(self.gpu.queue, &submit, fence) {
+                // Nobody would signal the fence; what waits for it next must not wait for ever
+                device.destroy_fence(fence, None);
+                self.slots[place].1 = vk::Fence::null();
+                let signaled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+                self.slots[place].1 = device.create_fence(&signaled, None)?;
+                return Err(error.into());
+            }
         }
         self.next = (place + 1) % self.slots.len();
         Ok(())
