@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The shade kernel as others write it: the same bindings, table and lobes, but the form factors of yardsticks.glsl. For
-// convex lights of one colour and up to four vertices.
+// lights of one colour; outlines other than convex quads, and the backs of lights, are the practice's alone.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,6 +26,8 @@ layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
     vec3 camera;
     uint light_count;
+    uint shape_count;
+    uint quad_count;
 } constants;
 
 ArealightQuad yardstick;
@@ -47,6 +49,23 @@ float seen_by(ArealightLobe lobe, ArealightQuad quad) {
     return yardstick_textbook(4u);
 }
 
+// As yardstick_practice_quad, of any outline, seen from the front or from the back.
+float practice_outline(ArealightLobe lobe, ArealightPolygonLight light, vec3 center, bool front) {
+    uint index = light.first_vertex;
+    uint end = index + light.vertex_count;
+    vec3 a = normalize(lobe.space.to_cosine * (center + arealight_bridge_vertex(end - 1u)));
+    vec3 sum = vec3(0.0);
+    do {
+        vec3 b = normalize(lobe.space.to_cosine * (center + arealight_bridge_vertex(index)));
+        sum += yardstick_practice_edge(a, b);
+        a = b;
+    } while (++index < end);
+    float l = length(sum);
+    return max((l * l + (front ? -sum.z : sum.z)) / (l + 1.0), 0.0);
+}
+
+const bool HAS_OTHERS = (EFFECTS & AREALIGHT_EFFECT_POLYGON) != 0u;
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, imageSize(radiance_image)))) {
@@ -60,18 +79,36 @@ void main() {
                                                     AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
                                                     AREALIGHT_FOOTPRINT_ROUND);
         ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+        uint quad_count = HAS_OTHERS ? constants.quad_count : constants.light_count;
         uint index = 0u;
-        do {
-            ArealightPolygonLight light = load_light(index);
-            vec3 center = light.center - point.position;
-            if (dot(light.area, center) < 0.0) {
-                ArealightQuad quad = arealight_light_quad(light);
-                quad = ArealightQuad(center + quad.v0, center + quad.v1, center + quad.v2, center + quad.v3);
-                radiance += light.radiance * (point.glossy.albedo * seen_by(point.glossy, quad)
-                                              + point.diffuse.albedo * seen_by(point.diffuse, quad));
-            }
-            index++;
-        } while (index < constants.light_count);
+        if (quad_count != 0u) {
+            do {
+                ArealightPolygonLight light = load_light(index);
+                vec3 center = light.center - point.position;
+                bool front = dot(light.area, center) < 0.0;
+                if (front || ((EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u && light.two_sided)) {
+                    // Seen from the back, the outline runs the other way
+                    ArealightQuad quad = arealight_light_quad(light);
+                    quad = ArealightQuad(center + quad.v0, center + (front ? quad.v1 : quad.v3), center + quad.v2,
+                                         center + (front ? quad.v3 : quad.v1));
+                    radiance += light.radiance * (point.glossy.albedo * seen_by(point.glossy, quad)
+                                                  + point.diffuse.albedo * seen_by(point.diffuse, quad));
+                }
+                index++;
+            } while (index < quad_count);
+        }
+        if (HAS_OTHERS && index < constants.light_count) {
+            do {
+                ArealightPolygonLight light = load_light(index);
+                vec3 center = light.center - point.position;
+                bool front = dot(light.area, center) < 0.0;
+                if (front || light.two_sided) {
+                    radiance += light.radiance * (point.glossy.albedo * practice_outline(point.glossy, light, center, front)
+                                                  + point.diffuse.albedo * practice_outline(point.diffuse, light, center, front));
+                }
+                index++;
+            } while (index < constants.light_count);
+        }
     }
     imageStore(radiance_image, pixel, vec4(radiance, position.w != 0.0 ? 1.0 : 0.0));
 }

@@ -2,8 +2,8 @@
 //! its time, beside Monte Carlo, the textbook and the practice.
 
 mod errors;
-mod frame;
-mod methods;
+pub(crate) mod frame;
+pub(crate) mod methods;
 mod names;
 mod pictures;
 mod points;

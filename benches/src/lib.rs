@@ -9,6 +9,7 @@
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
+//! | [`tiles`] | the time of frames by tiles, beside the practice and the same shading without |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
@@ -38,3 +39,4 @@ pub mod start;
 pub mod svg;
 mod table;
 pub mod textures;
+pub mod tiles;

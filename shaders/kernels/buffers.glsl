@@ -25,5 +25,7 @@ struct ArealightGpuLight {
 };
 
 const uint LIGHT_TWO_SIDED = 1u;
+const uint LIGHT_FLAT = 2u; // its vertices lie in a plane, to 1e-4 of its size
+const uint NO_LIGHT_TEXTURE = 0xffffffffu;
 
 #endif

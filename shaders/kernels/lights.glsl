@@ -8,6 +8,9 @@
 #include "arealight/polygon_light.glsl"
 #include "buffers.glsl"
 
+// What a convex quad without an image never calls for: Effects::BEYOND_QUADS in Rust.
+const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
+
 layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
     ArealightGpuLight lights[];
 };

@@ -18,8 +18,6 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 11) const bool QUADS = true;
 layout(constant_id = 13) const int LAYOUT = 0;
 
-const int POSITION_FROM_DEPTH = 1;
-
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
 #define G_BUFFER_LAYOUT LAYOUT
@@ -33,8 +31,6 @@ const int POSITION_FROM_DEPTH = 1;
 #include "shape_buffer.glsl"
 #include "output.glsl"
 
-const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
-
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
     vec3 camera;
@@ -43,19 +39,7 @@ layout(push_constant, std430) uniform ShadeConstants {
     uint quad_count; // of the first lights: convex quads without an image
 } constants;
 
-// The pixel's position relative to the origin; false where there is no surface.
-bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
-    vec4 texel = texelFetch(g_position, pixel, 0);
-    if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
-        position = texel.xyz;
-        return texel.w != 0.0;
-    }
-    // Unproject the pixel's centre; Vulkan's clip space has y down, as pixels have
-    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
-    vec4 homogeneous = constants.position_from_clip * vec4(clip, texel.x, 1.0);
-    position = homogeneous.xyz / homogeneous.w;
-    return texel.x > 0.0 && texel.x < 1.0;
-}
+#include "position.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -3,7 +3,9 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TubeEnds};
+use arealight::{
+    Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TileClass, TubeEnds, tiles,
+};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -43,7 +45,8 @@ const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load
 const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
 const G_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/g_buffer.glsl");
 const OUTPUT_GLSL: &str = include_str!("../../shaders/kernels/output.glsl");
-const SHADE_COMP: &str = include_str!("../../shaders/kernels/shade.comp");
+const POSITION_GLSL: &str = include_str!("../../shaders/kernels/position.glsl");
+const TILES_GLSL: &str = include_str!("../../shaders/kernels/tiles.glsl");
 
 #[test]
 fn effects_have_the_same_bits_in_glsl() {
@@ -86,7 +89,9 @@ fn every_effect_is_asked_for_and_no_other() {
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
     use gpu::{GpuLight, GpuMaterial, GpuTexture};
-    assert_constants(BUFFERS_GLSL, "LIGHT_", &[("TWO_SIDED", GpuLight::TWO_SIDED.into())]);
+    let flags = [("TWO_SIDED", GpuLight::TWO_SIDED.into()), ("FLAT", GpuLight::FLAT.into())];
+    assert_constants(BUFFERS_GLSL, "LIGHT_", &flags);
+    assert_constants(BUFFERS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
@@ -121,6 +126,7 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("COSINE", number(Horizon::Cosine as u32)),
         ("BOTH", number(Horizon::Both as u32)),
         ("BARE", number(Horizon::Bare as u32)),
+        ("ABOVE", number(Horizon::Above as u32)),
     ];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
     let fresnel = [("BY_F0", number(Fresnel::ByF0 as u32)), ("SPLIT", number(Fresnel::Split as u32))];
@@ -128,7 +134,27 @@ fn choices_have_the_same_numbers_in_glsl() {
     let lobes = [("TABLE", number(Lobes::Table as u32)), ("FORMULA", number(Lobes::Formula as u32))];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_LOBES_", &lobes);
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
-    assert_constants(SHADE_COMP, "POSITION_FROM_", &depth);
+    assert_constants(POSITION_GLSL, "POSITION_FROM_", &depth);
+    let classes = TileClass::ALL.map(|class| {
+        let name = match class {
+            TileClass::Empty => "EMPTY",
+            TileClass::QuadsAbove => "QUADS_ABOVE",
+            TileClass::Quads => "QUADS",
+            TileClass::Above => "ABOVE",
+            TileClass::Any => "ANY",
+        };
+        (name, number(class as u32))
+    });
+    assert_constants(TILES_GLSL, "CLASS_", &classes);
+    let tiles = [
+        ("SIDE", number(tiles::SIDE)),
+        ("CLASS_WORDS", (size_of::<gpu::GpuTileClass>() / 4) as f64),
+        ("FIRST_LIST", number(tiles::FIRST_LIST)),
+        ("RECORD_HEADER", number(tiles::RECORD_HEADER)),
+        ("ALL_LIGHTS", f64::from(u32::MAX)),
+        ("ROW", number(tiles::ROW)),
+    ];
+    assert_constants(TILES_GLSL, "TILE_", &tiles);
     let layouts = [
         ("AREALIGHT", number(GBufferLayout::Arealight as u32)),
         ("UNREAL", number(GBufferLayout::Unreal as u32)),

@@ -310,6 +310,41 @@ fn every_structure_has_the_same_offsets() {
 }
 
 #[test]
+fn the_structures_of_tiles_have_the_same_offsets() {
+    let classify = module(&kernels::CLASSIFY);
+    let shade = module(&kernels::SHADE_TILES);
+    let constants = layout!(
+        gpu::TileConstants,
+        position_from_clip,
+        camera,
+        light_count,
+        size,
+        capacity,
+        horizon_cells,
+        shape_count,
+        quad_count,
+        negligible
+    );
+    let horizon = layout!(
+        arealight::table::LobeHorizon,
+        lobe,
+        schlick,
+        weight,
+        envelope,
+        schlick_albedo,
+        reserved as "reserved0"
+    );
+    for (kernel, structure, expected) in [
+        (&classify, "TileConstants", &constants),
+        (&shade, "TileConstants", &constants),
+        (&classify, "ArealightGpuLobeHorizon", &horizon),
+        (&classify, "ArealightGpuLight", &light_layout()),
+    ] {
+        assert_offsets(kernel, structure, expected);
+    }
+}
+
+#[test]
 fn the_reference_s_structures_have_the_same_offsets() {
     let reference = module(&kernels::REFERENCE);
     let light = light_layout();

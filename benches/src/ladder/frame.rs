@@ -219,6 +219,6 @@ fn device_seconds(
 }
 
 /// The processors that a software device uses.
-fn processors() -> f64 {
+pub fn processors() -> f64 {
     std::thread::available_parallelism().map_or(1.0, |count| count.get() as f64)
 }

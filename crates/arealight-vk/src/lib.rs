@@ -39,8 +39,10 @@ mod light_textures;
 #[cfg(feature = "gpu-allocator")]
 mod memory;
 mod pass;
+mod pipelines;
 mod shade;
 mod table_image;
+mod tiles;
 mod written_sets;
 
 pub use ash;
@@ -51,3 +53,4 @@ pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use table_image::{TableFormat, TableImage};
+pub use tiles::{TileResources, TiledShade};

@@ -406,26 +406,47 @@ impl ComputePass {
         constants: &[u8],
         groups: [u32; 3],
     ) {
-        let device = &self.layouts.context.device;
+        // SAFETY: the same contract.
+        unsafe {
+            self.bind(command_buffer, set, constants);
+            self.layouts.context.device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
+        }
+    }
+
+    /// As [`ComputePass::record_checked`], with the groups that are found in a buffer when the commands run.
+    ///
+    /// # Safety
+    /// As [`ComputePass::record`]; `buffer` has the usage `INDIRECT_BUFFER`, and holds at `offset`, a multiple of 4, a
+    /// `VkDispatchIndirectCommand` that the device can dispatch.
+    pub(crate) unsafe fn record_indirect(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        (buffer, offset): (vk::Buffer, vk::DeviceSize),
+    ) {
+        // SAFETY: the same contract.
+        unsafe {
+            self.bind(command_buffer, set, constants);
+            self.layouts.context.device.cmd_dispatch_indirect(command_buffer, buffer, offset);
+        }
+    }
+
+    /// Binds the pipeline, its descriptor set and its push constants.
+    unsafe fn bind(&self, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, constants: &[u8]) {
+        let (device, layout) = (&self.layouts.context.device, self.layouts.pipeline_layout);
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {
             device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
             device.cmd_bind_descriptor_sets(
                 command_buffer,
                 vk::PipelineBindPoint::COMPUTE,
-                self.layouts.pipeline_layout,
+                layout,
                 0,
                 &[set],
                 &[],
             );
-            device.cmd_push_constants(
-                command_buffer,
-                self.layouts.pipeline_layout,
-                vk::ShaderStageFlags::COMPUTE,
-                0,
-                constants,
-            );
-            device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
+            device.cmd_push_constants(command_buffer, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
         }
     }
 }

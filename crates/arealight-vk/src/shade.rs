@@ -2,16 +2,14 @@
 
 use crate::context::Context;
 use crate::error::Error;
-use crate::pass::{ComputePass, Layouts, Resource, check_module};
+use crate::pass::{Resource, check_module};
+use crate::pipelines::Pipelines;
 use arealight::gpu::{GpuShape, ShadeConstants};
-use arealight::kernels::{Access, BindingKind, SHADE, store_to};
+use arealight::kernels::{Access, BindingKind, Kernel, SHADE, store_to};
 use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, ShadeVariant};
 use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
 ///
@@ -81,15 +79,31 @@ pub struct ResourceAccess {
     pub layout: vk::ImageLayout,
 }
 
+/// How `kernel` uses each of its bindings.
+pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
+    let accesses = kernel.bindings.iter().map(|binding| ResourceAccess {
+        name: binding.name,
+        stage: vk::PipelineStageFlags::COMPUTE_SHADER,
+        access: match binding.access {
+            Access::Read => vk::AccessFlags::SHADER_READ,
+            Access::Write => vk::AccessFlags::SHADER_WRITE,
+            Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
+        },
+        layout: match binding.kind {
+            BindingKind::StorageImage => vk::ImageLayout::GENERAL,
+            _ => vk::ImageLayout::UNDEFINED,
+        },
+    });
+    accesses.collect()
+}
+
 /// The shade kernel, specialised for a set of effects and a quality.
 ///
 /// Of the set, pipelines have what the lights of a frame call for: a pass for every effect takes as long as one for just those.
 /// A pipeline is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 #[derive(Debug)]
 pub struct ShadePass {
-    layouts: Arc<Layouts>,
-    variants: Mutex<HashMap<ShadeVariant, ComputePass>>,
-    module: Vec<u32>,
+    pipelines: Pipelines,
     options: ShadeOptions,
 }
 
@@ -122,8 +136,8 @@ impl ShadePass {
         check_module(&module)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let layouts = unsafe { Layouts::new(context, &SHADE) }?;
-        Ok(Self { layouts, variants: Mutex::default(), module, options })
+        let pipelines = unsafe { Pipelines::new(context, &SHADE, module) }?;
+        Ok(Self { pipelines, options })
     }
 
     /// What the pass was specialised for.
@@ -133,30 +147,17 @@ impl ShadePass {
 
     /// The layout that the host allocates a descriptor set with.
     pub fn set_layout(&self) -> vk::DescriptorSetLayout {
-        self.layouts.set_layout()
+        self.pipelines.layouts().set_layout()
     }
 
     /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
     pub fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
-        self.layouts.pool_sizes(sets)
+        self.pipelines.layouts().pool_sizes(sets)
     }
 
     /// How the pass uses each resource.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
-        let accesses = SHADE.bindings.iter().map(|binding| ResourceAccess {
-            name: binding.name,
-            stage: vk::PipelineStageFlags::COMPUTE_SHADER,
-            access: match binding.access {
-                Access::Read => vk::AccessFlags::SHADER_READ,
-                Access::Write => vk::AccessFlags::SHADER_WRITE,
-                Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
-            },
-            layout: match binding.kind {
-                BindingKind::StorageImage => vk::ImageLayout::GENERAL,
-                _ => vk::ImageLayout::UNDEFINED,
-            },
-        });
-        accesses.collect()
+        accesses_of(&SHADE)
     }
 
     /// Packs lights for this pass, relative to `origin`; upload both arrays to the buffers of
@@ -210,8 +211,14 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
-        let glossy = self.glossy_image(resources)?;
-        let resources = [
+        let resources = self.in_order(resources)?;
+        // SAFETY: the same contract.
+        unsafe { self.pipelines.layouts().write_set(set, &resources) }
+    }
+
+    /// The resources as the kernel's bindings have them.
+    pub(crate) fn in_order(&self, resources: &ShadeResources) -> Result<[Resource; 11], Error> {
+        Ok([
             resources.table,
             resources.lights,
             resources.light_vertices,
@@ -222,10 +229,8 @@ impl ShadePass {
             resources.radiance,
             resources.light_textures,
             resources.shapes,
-            glossy,
-        ];
-        // SAFETY: the same contract.
-        unsafe { self.layouts.write_set(set, &resources) }
+            self.glossy_image(resources)?,
+        ])
     }
 
     /// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet. That takes a moment,
@@ -234,9 +239,8 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        let constants = self.constants(frame)?;
-        let variant = ShadeVariant::new(self.options.effects, frame.unused, &constants);
-        self.with(variant, |_| ())
+        let (_, variant) = self.checked(frame)?;
+        self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |_| ())
     }
 
     /// What is bound for the glossy lobe's radiance: where there is one image, that again.
@@ -269,32 +273,23 @@ impl ShadePass {
         set: vk::DescriptorSet,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
-        let constants = self.constants(frame)?;
-        let variant = ShadeVariant::new(self.options.effects, frame.unused, &constants);
-        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
-        self.layouts.check(set, bytemuck::bytes_of(&constants), groups)?;
-        self.with(variant, |pass| {
+        let (constants, variant) = self.checked(frame)?;
+        let (groups, layouts) =
+            (SHADE.groups_for([frame.size[0], frame.size[1], 1]), self.pipelines.layouts());
+        layouts.check(set, bytemuck::bytes_of(&constants), groups)?;
+        self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |pass| {
             // SAFETY: the same contract.
             unsafe {
-                let _label = self.layouts.context().names.label(command_buffer, c"arealight shade");
+                let _label = layouts.context().names.label(command_buffer, c"arealight shade");
                 pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
             }
         })
     }
 
-    /// Does something with a variant's pipeline, which is made if it was not.
-    fn with(&self, variant: ShadeVariant, act: impl FnOnce(&ComputePass)) -> Result<(), Error> {
-        let mut variants = self.variants.lock().unwrap_or_else(PoisonError::into_inner);
-        let pass = match variants.entry(variant) {
-            Entry::Occupied(found) => found.into_mut(),
-            Entry::Vacant(place) => {
-                let specialization = plan::shade_variant_specialization(self.options, variant);
-                // SAFETY: by the contract of ShadePass::new.
-                place.insert(unsafe { ComputePass::of(&self.layouts, &self.module, &specialization) }?)
-            }
-        };
-        act(pass);
-        Ok(())
+    /// The push constants of a frame, and what its lights call for.
+    pub(crate) fn checked(&self, frame: &ShadeFrame) -> Result<(ShadeConstants, ShadeVariant), Error> {
+        let constants = self.constants(frame)?;
+        Ok((constants, ShadeVariant::new(self.options.effects, frame.unused, &constants)))
     }
 
     /// The push constants of a frame.

@@ -19,7 +19,7 @@ pub struct GpuLight {
     pub area: [f32; 3],
     /// How many vertices the outline has.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`] or zero.
+    /// [`GpuLight::TWO_SIDED`] and [`GpuLight::FLAT`], where they are so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
@@ -46,6 +46,8 @@ pub struct GpuLight {
 impl GpuLight {
     /// The back emits too.
     pub const TWO_SIDED: u32 = 1;
+    /// [`PolygonLight::is_flat`](crate::PolygonLight::is_flat).
+    pub const FLAT: u32 = 2;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }
@@ -93,6 +95,44 @@ pub struct ShadeConstants {
     pub shape_count: u32,
     /// How many of the first polygon lights are convex quads without an image, see [`crate::PackedLights::quad_count`].
     pub quad_count: u32,
+}
+
+/// Push constants of the kernels that classify tiles and shade them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TileConstants {
+    /// As [`ShadeConstants::position_from_clip`].
+    pub position_from_clip: [[f32; 4]; 4],
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// How many lights are shaded.
+    pub light_count: u32,
+    /// The image's size in pixels.
+    pub size: [u32; 2],
+    /// The most lights that a tile's list holds.
+    pub capacity: u32,
+    /// Cells a side of the table's lobe horizons: its size less one.
+    pub horizon_cells: u32,
+    /// How many shapes are shaded.
+    pub shape_count: u32,
+    /// As [`ShadeConstants::quad_count`].
+    pub quad_count: u32,
+    /// As [`crate::plan::TileOptions::negligible`].
+    pub negligible: f32,
+}
+
+/// How a class of tiles is dispatched.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
+pub struct GpuTileClass {
+    /// Groups in x: `VkDispatchIndirectCommand` begins here.
+    pub x: u32,
+    /// Groups in y.
+    pub y: u32,
+    /// Groups in z: 1.
+    pub z: u32,
+    /// How many tiles there are in the class.
+    pub tile_count: u32,
 }
 
 /// Push constants of the Monte Carlo reference kernel.

@@ -143,8 +143,12 @@ pub mod constant {
     pub const SHAPE: u32 = 10;
     /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
     pub const QUADS: u32 = 11;
+    /// [`crate::TileClass`].
+    pub const CLASS: u32 = 12;
     /// [`crate::plan::GBufferLayout`].
     pub const LAYOUT: u32 = 13;
+    /// 1 where [`crate::plan::TileOptions::negligible`] is not zero.
+    pub const CULL: u32 = 14;
 }
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -201,6 +205,20 @@ const SHAPES: Binding = read(
     "GpuShape[]; the shade kernel reads it only with Effects::SHAPES, else bind any buffer",
 );
 
+const RADIANCE: Binding = write(
+    "radiance_image",
+    BindingKind::StorageImage,
+    Access::ReadWrite,
+    "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Apart; 1 in a where there is a \
+     surface (rgba32f, or by RadianceFormat)",
+);
+const GLOSSY: Binding = write(
+    "glossy_image",
+    BindingKind::StorageImage,
+    Access::ReadWrite,
+    "the glossy lobe's, likewise; used only with RadianceImages::Apart, else bind radiance_image's again",
+);
+
 /// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].
 pub static SHADE: Kernel = Kernel {
     name: "shade",
@@ -215,21 +233,10 @@ pub static SHADE: Kernel = Kernel {
         G_NORMAL,
         G_BASE_COLOR,
         G_SPECULAR,
-        write(
-            "radiance_image",
-            BindingKind::StorageImage,
-            Access::ReadWrite,
-            "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Apart; 1 in a where there is a \
-             surface (rgba32f, or by RadianceFormat)",
-        ),
+        RADIANCE,
         LIGHT_TEXTURES,
         SHAPES,
-        write(
-            "glossy_image",
-            BindingKind::StorageImage,
-            Access::ReadWrite,
-            "the glossy lobe's, likewise; used only with RadianceImages::Apart, else bind radiance_image's again",
-        ),
+        GLOSSY,
     ],
     constants: &[
         constant::EFFECTS,
@@ -241,6 +248,72 @@ pub static SHADE: Kernel = Kernel {
         constant::LOBES,
         constant::FOOTPRINT,
         constant::QUADS,
+        constant::LAYOUT,
+    ],
+};
+
+/// Sorts the tiles of a G-buffer into classes; an item a tile. Push constants: [`crate::gpu::TileConstants`].
+pub static CLASSIFY: Kernel = Kernel {
+    name: "classify",
+    spirv: include_bytes!("../spirv/classify.spv"),
+    local_size: [32, 1, 1],
+    push_constant_size: size_of::<crate::gpu::TileConstants>() as u32,
+    bindings: &[
+        read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]"),
+        LIGHTS,
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        write(
+            "tile_lists",
+            BindingKind::StorageBuffer,
+            Access::ReadWrite,
+            "tiles::memory bytes; begins with a GpuTileClass a class, {0, 0, 1, 0}",
+        ),
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::POSITION_SOURCE,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::LAYOUT,
+        constant::CULL,
+    ],
+};
+
+/// As [`SHADE`], of the tiles of one class; a group a tile, dispatched indirectly. Push constants:
+/// [`crate::gpu::TileConstants`].
+pub static SHADE_TILES: Kernel = Kernel {
+    name: "shade_tiles",
+    spirv: include_bytes!("../spirv/shade_tiles.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::TileConstants>() as u32,
+    bindings: &[
+        TABLE,
+        LIGHTS,
+        LIGHT_VERTICES,
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        RADIANCE,
+        LIGHT_TEXTURES,
+        SHAPES,
+        GLOSSY,
+        read("tile_lists", BindingKind::StorageBuffer, "what the classify kernel wrote"),
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::FORM_FACTOR,
+        constant::POSITION_SOURCE,
+        constant::OUTPUT,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::FOOTPRINT,
+        constant::CLASS,
         constant::LAYOUT,
     ],
 };
@@ -384,8 +457,17 @@ pub static VISIBILITY: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 7] =
-    [&SHADE, &EVAL, &EVAL_SHAPES, &REFERENCE, &TEXTURE_LOAD, &TEXTURE_BLUR, &VISIBILITY];
+pub static ALL: [&Kernel; 9] = [
+    &SHADE,
+    &CLASSIFY,
+    &SHADE_TILES,
+    &EVAL,
+    &EVAL_SHAPES,
+    &REFERENCE,
+    &TEXTURE_LOAD,
+    &TEXTURE_BLUR,
+    &VISIBILITY,
+];
 
 #[cfg(test)]
 mod tests {

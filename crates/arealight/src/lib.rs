@@ -31,6 +31,7 @@
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
+//! | [`tiles`] | tiles of a picture, sorted by the lights that matter to them |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
 pub mod budget;
@@ -48,6 +49,7 @@ pub mod quality;
 pub mod shape;
 pub mod table;
 pub mod texture_part;
+pub mod tiles;
 
 pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileRung};
 pub use effects::{Effects, UnknownEffect};
@@ -61,6 +63,7 @@ pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 pub use shape::{Shape, ShapeError, ShapeKind, ShapeLight, TubeEnds};
 pub use table::{GrazingDip, LightTable, TableDescription, TableError, TableSample};
 pub use texture_part::{TexturePart, TexturePartError, Wrap};
+pub use tiles::TileClass;
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.
 ///

@@ -162,16 +162,21 @@ impl PolygonLight {
             return false;
         }
         let normal = self.area_vector().normalize_or_zero();
-        let center = self.center();
-        let size = self.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
-        let flat = self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= FLAT * size);
         // Every corner turns the outline's way, or not at all
         let count = self.vertices.len();
         let convex = (0..count).all(|i| {
             let [a, b, c] = [i, i + 1, i + 2].map(|j| self.vertices[j % count]);
             (b - a).cross(c - b).dot(normal) >= -FLAT * (b - a).length() * (c - b).length()
         });
-        flat && convex
+        convex && self.is_flat()
+    }
+
+    /// Whether every vertex lies in one plane, to a ten-thousandth of the outline's size.
+    pub fn is_flat(&self) -> bool {
+        let normal = self.area_vector().normalize_or_zero();
+        let center = self.center();
+        let size = self.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
+        self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= FLAT * size)
     }
 
     /// Checks that a light that shows an image has its layer among `layers`.
@@ -230,6 +235,11 @@ impl PolygonLight {
         }
         indices
     }
+}
+
+fn flags(light: &PolygonLight) -> u32 {
+    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+    flag(light.two_sided, GpuLight::TWO_SIDED) | flag(light.is_flat(), GpuLight::FLAT)
 }
 
 /// Lights as the GPU reads them, relative to an origin.
@@ -338,7 +348,7 @@ impl PackedLights {
             radius: (radius as f32).next_up(),
             area: if area.is_finite() { area.as_vec3().to_array() } else { [0.0; 3] },
             vertex_count: light.vertices.len() as u32,
-            flags: if light.two_sided { GpuLight::TWO_SIDED } else { 0 },
+            flags: flags(light),
             texture_layer: light.texture.as_ref().map_or(GpuLight::NO_TEXTURE, |texture| texture.layer),
             reserved: [0; 2],
             texture_corner: corner.as_vec3().to_array(),

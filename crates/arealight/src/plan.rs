@@ -4,7 +4,7 @@
 use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality, ShapeKind};
+use crate::{Effects, Quality, ShapeKind, TileClass};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -183,6 +183,52 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
 pub fn shade_variant_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
     let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
     values.push((kernels::constant::QUADS, u32::from(variant.quads)));
+    values
+}
+
+/// How tiles get their lists of lights.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TileOptions {
+    /// The most lights that a tile's list holds, from 1 on: a tile that more lights reach is shaded by all of the frame's.
+    pub capacity: u32,
+    /// The part of what a tile's lights send to the viewer from any of its pixels, in the sum of the channels, that those which
+    /// are left out may make up together, in [0, 1). With 0, lights that send anything stay.
+    pub negligible: f32,
+}
+
+impl Default for TileOptions {
+    /// 128 lights, of which none is negligible.
+    fn default() -> Self {
+        Self { capacity: 128, negligible: 0.0 }
+    }
+}
+
+/// The values of the classify kernel's specialisation constants, for the lights of a frame.
+pub fn classify_specialization(
+    options: ShadeOptions,
+    variant: ShadeVariant,
+    tiles: TileOptions,
+) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::EFFECTS, variant.effects.bits()),
+        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::HORIZON, options.quality.horizon as u32),
+        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
+        (kernels::constant::LOBES, options.quality.lobes as u32),
+        (kernels::constant::LAYOUT, options.g_buffer as u32),
+        (kernels::constant::CULL, u32::from(tiles.negligible > 0.0)),
+    ]
+}
+
+/// The values of the tile kernel's specialisation constants, for the lights of a frame in tiles of `class`.
+pub fn shade_tiles_specialization(
+    options: ShadeOptions,
+    variant: ShadeVariant,
+    class: TileClass,
+) -> Vec<(u32, u32)> {
+    let mut values =
+        shade_specialization(ShadeOptions { effects: class.effects(variant.effects), ..options });
+    values.push((kernels::constant::CLASS, class as u32));
     values
 }
 

@@ -34,6 +34,9 @@ pub enum Horizon {
     /// wholly above that horizon, and that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL
     /// library); else the result is wrong, though in [0, 1].
     Bare = 2,
+    /// Nowhere: the result of [`Horizon::Cosine`], arc by arc, for lights and points of which the host knows that the
+    /// light is wholly above that horizon, whatever its edges subtend; else the result is wrong, though in [0, 1].
+    Above = 3,
 }
 
 /// How Schlick's Fresnel term enters the integral of a lobe.

@@ -35,6 +35,9 @@ use glam::{DMat3, DVec3};
 
 mod formula;
 mod grazing;
+mod horizons;
+
+pub use horizons::LobeHorizon;
 
 pub use formula::{Formula, MIN_COS_VIEW, ggx_formula};
 pub use grazing::{GrazingDip, ggx_grazing_dip};

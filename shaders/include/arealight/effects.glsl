@@ -36,6 +36,7 @@ const int AREALIGHT_FORM_FACTOR_ONE_POINT = 4;  // far lights from their centre 
 const int AREALIGHT_HORIZON_COSINE = 0; // at the horizon of cosine space
 const int AREALIGHT_HORIZON_BOTH = 1;   // at the surface's horizon too, before the lobe's transform
 const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds, and the result is as COSINE's
+const int AREALIGHT_HORIZON_ABOVE = 3;  // nowhere: the host knows that lights are wholly above, and the result is as COSINE's
 
 // How Schlick's Fresnel term enters. The same as arealight::Fresnel.
 const int AREALIGHT_FRESNEL_BY_F0 = 0; // one integral, of the lobe between the table's two that the reflectance calls for

@@ -79,6 +79,9 @@ ArealightArcs arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, Ar
     if (quality.horizon == AREALIGHT_HORIZON_BARE) {
         return arealight_quad_bare(view.anchor, cosine, quality.form_factor);
     }
+    if (quality.horizon == AREALIGHT_HORIZON_ABOVE) {
+        return arealight_quad_above(view.anchor, cosine, quality.form_factor);
+    }
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         vec4 height = vec4(arealight_vertex_height(view, quad.v0), arealight_vertex_height(view, quad.v1),
                            arealight_vertex_height(view, quad.v2), arealight_vertex_height(view, quad.v3));
@@ -95,27 +98,30 @@ ArealightArcs arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight 
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         float height = arealight_vertex_height(view, last);
         ArealightSurfaceWalk walk = arealight_surface_walk_begin(view.transform * last, height);
-        for (uint index = light.first_vertex; index < end; index++) {
+        uint index = light.first_vertex;
+        do {
             vec3 vertex = arealight_bridge_vertex(index);
             height = arealight_vertex_height(view, vertex);
             arealight_surface_walk_to(walk, view.anchor, view.transform * vertex, height, rung);
-        }
+        } while (++index < end);
         return arealight_surface_walk_end(walk, view.anchor, rung);
     }
     ArealightWalk walk = arealight_walk_begin();
     ArealightVertex from = arealight_vertex(view.anchor, view.transform * last, rung);
     bool bare = quality.horizon == AREALIGHT_HORIZON_BARE;
-    for (uint index = light.first_vertex; index < end; index++) {
+    bool unclipped = bare || quality.horizon == AREALIGHT_HORIZON_ABOVE;
+    uint index = light.first_vertex;
+    do {
         ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
-        if (bare) {
-            walk.sum += arealight_acute_arc(from, to, rung);
+        if (unclipped) {
+            walk.sum += bare ? arealight_acute_arc(from, to, rung) : arealight_arc(from, to, rung);
             walk.squares += to.square;
         } else {
             arealight_walk_edge(walk, view.anchor, from, to, rung);
         }
         from = to;
-    }
-    return bare ? ArealightArcs(walk.sum, walk.squares) : arealight_walk_end(walk, view.anchor, rung);
+    } while (++index < end);
+    return unclipped ? ArealightArcs(walk.sum, walk.squares) : arealight_walk_end(walk, view.anchor, rung);
 }
 
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.

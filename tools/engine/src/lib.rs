@@ -24,17 +24,19 @@ pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::SceneRenderer;
+pub use render::tiled::{TileCounts, TiledView};
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 
 use arealight::LightTable;
 use arealight::kernels::Kernel;
 use arealight::plan::ShadeOptions;
+use arealight::table::LobeHorizon;
 use arealight_host::Buffer;
 use arealight_vk::{Context, Resource, ShadePass, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::rc::Rc;
@@ -104,6 +106,8 @@ impl From<arealight::LightError> for EngineError {
 pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
+    light_table: LightTable,
+    lobe_horizons: OnceCell<Vec<LobeHorizon>>,
     textures: Option<TextureArray>,
     shade_passes: RefCell<HashMap<ShadeOptions, Rc<Kept<ShadePass>>>>,
     passes: Passes,
@@ -116,8 +120,10 @@ impl Engine {
     /// [`EngineError`] where the device is too old, or memory or a submission fails.
     pub fn new(host: Host, table: &LightTable, format: TableFormat) -> Result<Self, EngineError> {
         let passes = Passes::new(host)?;
+        let light_table = table.clone();
         let table = UploadedTable::new(passes.host(), passes.context(), table, format)?;
-        Ok(Self { table, textures: None, shade_passes: RefCell::default(), passes })
+        let (lobe_horizons, shade_passes) = (OnceCell::new(), RefCell::default());
+        Ok(Self { table, light_table, lobe_horizons, textures: None, shade_passes, passes })
     }
 
     /// The device.
@@ -149,6 +155,16 @@ impl Engine {
                 Ok(Rc::clone(place.insert(Rc::new(Kept::new(self.host(), pass)))))
             }
         }
+    }
+
+    /// The table's [`LightTable::lobe_horizons`].
+    pub fn lobe_horizons(&self) -> &[LobeHorizon] {
+        self.lobe_horizons.get_or_init(|| self.light_table.lobe_horizons())
+    }
+
+    /// Nodes a side of the table.
+    pub fn table_size(&self) -> u32 {
+        self.light_table.size()
     }
 
     /// The light table, as a pass takes it.

@@ -1,5 +1,7 @@
 //! What a camera sees of a scene, lit by its polygon lights and its disks, spheres and tubes.
 
+pub(crate) mod tiled;
+
 use crate::{BoundPass, Engine, EngineError, GBuffer};
 use arealight::gpu::{GpuShape, ReferenceConstants, ShadeConstants, VisibilityConstants};
 use arealight::kernels::{Kernel, REFERENCE, VISIBILITY};
@@ -124,31 +126,9 @@ impl<'a> SceneRenderer<'a> {
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
-        let [position, normal, base_color, specular] = self.g_buffer.sampled();
-        let resources = ShadeResources {
-            table: self.engine.table(),
-            lights: Resource::buffer(self.light_buffer.handle()),
-            light_vertices: Resource::buffer(self.vertex_buffer.handle()),
-            position,
-            normal,
-            base_color,
-            specular,
-            radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
-            glossy: None,
-            light_textures: self.engine.light_textures(),
-            shapes: Resource::buffer(self.shape_buffer.handle()),
-        };
         // SAFETY: The set is new, and the resources live until the submission was waited for.
-        unsafe { pass.write_set(set, &resources) }?;
-        let frame = ShadeFrame {
-            size: self.size,
-            camera: Vec3::from(self.camera.camera),
-            position_from_clip: None,
-            light_count: self.lights.len() as u32,
-            quad_count: self.quad_count,
-            unused: self.unused,
-            shape_count: self.shapes.len() as u32,
-        };
+        unsafe { pass.write_set(set, &self.shade_resources()) }?;
+        let frame = self.shade_frame();
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // SAFETY: The commands are being recorded outside a render pass; the set was written with images
@@ -287,6 +267,35 @@ impl<'a> SceneRenderer<'a> {
             self.visibility()?;
         }
         Ok(())
+    }
+
+    fn shade_resources(&self) -> ShadeResources {
+        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        ShadeResources {
+            table: self.engine.table(),
+            lights: Resource::buffer(self.light_buffer.handle()),
+            light_vertices: Resource::buffer(self.vertex_buffer.handle()),
+            position,
+            normal,
+            base_color,
+            specular,
+            radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            glossy: None,
+            light_textures: self.engine.light_textures(),
+            shapes: Resource::buffer(self.shape_buffer.handle()),
+        }
+    }
+
+    fn shade_frame(&self) -> ShadeFrame {
+        ShadeFrame {
+            size: self.size,
+            camera: Vec3::from(self.camera.camera),
+            position_from_clip: None,
+            light_count: self.lights.len() as u32,
+            quad_count: self.quad_count,
+            unused: self.unused,
+            shape_count: self.shapes.len() as u32,
+        }
     }
 
     fn items(&self) -> [u32; 3] {

@@ -7,12 +7,14 @@ use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
+use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight::{Effects, FrameLoad, ProfileRung, Quality, UnknownEffect};
 use arealight_benches::ladder::RungNames;
-use arealight_engine::{Engine, EngineError, SceneRenderer};
+use arealight_engine::{Engine, EngineError, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -50,6 +52,10 @@ pub struct Arguments {
     /// diffuse,glossy
     #[arg(long, value_name = "SET", default_value = "required")]
     effects: EffectChoice,
+    /// Shade by tiles of 8 x 8 pixels, each by the lights that reach it and no more code than those call for; with PART, less
+    /// than 1, without the lights that together send less than this part of what a pixel gets
+    #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
+    tiles: Option<f32>,
     #[command(flatten)]
     quality: QualityArguments,
     #[command(flatten)]
@@ -72,6 +78,7 @@ impl Arguments {
             exposure: 0.0,
             supersample: 2,
             effects: EffectChoice::Required,
+            tiles: None,
             quality: QualityArguments::default(),
             budget: BudgetArguments::default(),
             json: false,
@@ -162,6 +169,7 @@ struct Outcome {
     visibility: Option<Duration>,
     shading: Option<Duration>,
     picked: Option<ProfileRung>,
+    tiles: Option<TileCounts>,
     picture: Picture,
 }
 
@@ -226,9 +234,17 @@ fn render(
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     renderer = renderer.with_shapes(&scene.shapes)?;
     let visibility = renderer.visibility()?;
-    let shading = match arguments.reference {
-        None => renderer.shade(effects, quality)?,
-        Some(samples) => {
+    let mut tiles = None;
+    let shading = match (arguments.reference, arguments.tiles) {
+        (None, None) => renderer.shade(effects, quality)?,
+        (None, Some(negligible)) => {
+            let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
+            let view = renderer.tiled(options, TileOptions { negligible, ..TileOptions::default() })?;
+            let took = renderer.shade_tiled(&view)?;
+            tiles = Some(view.counts(scene.lights.len())?);
+            took
+        }
+        (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
             let took = renderer.reference(samples, 0, |done| bar.set_position(u64::from(done)))?;
@@ -238,13 +254,19 @@ fn render(
     };
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
-    Ok(Outcome { visibility, shading, picked: None, picture })
+    Ok(Outcome { visibility, shading, picked: None, tiles, picture })
 }
 
 /// Stops within what float32 radiance bears.
 fn parse_exposure(text: &str) -> Result<f32, String> {
     let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 64.0);
     stops.ok_or_else(|| "must be a number of stops from -64 to 64".to_owned())
+}
+
+/// A part of a pixel.
+fn parse_part(text: &str) -> Result<f32, String> {
+    let part = text.parse().ok().filter(|part| (0.0..1.0).contains(part));
+    part.ok_or_else(|| "must be a number from 0 up to, but not, 1".to_owned())
 }
 
 /// A width and a height such as `1280x720`.
@@ -325,6 +347,11 @@ impl Summary<'_> {
             milliseconds(outcome.visibility),
             milliseconds(outcome.shading)
         ));
+        if let Some(tiles) = &outcome.tiles {
+            let classes: Vec<_> =
+                tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
+            lines.push(format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_a_tile()));
+        }
         if let Some(rung) = outcome.picked {
             let expected = rung.milliseconds(arguments.load(scene));
             lines.push(format!(
@@ -366,6 +393,10 @@ impl Summary<'_> {
                 "error": rung.error,
             })),
             "reference_samples": arguments.reference_samples(),
+            "tiles": outcome.tiles.as_ref().map(|tiles| json!({
+                "classes": tiles.classes.iter().map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
+                "lights_a_tile": tiles.lights_a_tile(),
+            })),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "picture": output,
             "size": arguments.size,
@@ -399,6 +430,8 @@ mod tests {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
         assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
         assert!(["nan", "inf", "200", ""].iter().all(|bad| parse_exposure(bad).is_err()));
+        assert_eq!(parse_part("0.01"), Ok(0.01));
+        assert!(["nan", "1", "-0.1", ""].iter().all(|bad| parse_part(bad).is_err()));
         for bad in ["", "640", "640x", "0x480", "640x9000", "-1x2", "1x2x3", "axb"] {
             assert!(parse_size(bad).is_err(), "{bad}");
         }

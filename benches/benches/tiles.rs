@@ -1,0 +1,104 @@
+//! What tiles gain: whole frames of our scenes, and a floor under 10 to 1,000 lamps of which those that send little are left out:
+//! `cargo bench -p arealight-benches --bench tiles`. Prints Markdown tables.
+
+use arealight::plan::TileOptions;
+use arealight_benches::start::start;
+use arealight_benches::tiles::{TiledFrame, lamps, markdown, measure};
+use arealight_engine::{Engine, SceneRenderer};
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use glam::{DVec3, Vec3};
+use std::error::Error;
+use std::fmt::Write as _;
+use std::path::Path;
+
+const ROUNDS: usize = 20;
+const SIZE: [u32; 2] = [640, 360];
+
+/// The side of the floor in metres.
+const FLOOR: f64 = 40.0;
+
+/// What part of a pixel may be left out over the floor.
+const NEGLIGIBLE: [f32; 3] = [0.01, 0.1, 0.5];
+
+/// How many lamps there are over it.
+const LAMPS: [usize; 3] = [10, 100, 1000];
+
+fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    Ok(Scene::load(folder.join(name).with_extension("glb"))?)
+}
+
+/// The floor of the sweep by itself, square and rough, under so many lamps.
+fn floor(count: usize) -> Result<Scene, Box<dyn Error>> {
+    let mut scene = scene("sweep")?;
+    let floor = scene.materials.iter().position(|material| material.name == "floor").ok_or("a floor")?;
+    scene.triangles.retain(|triangle| triangle.material as usize == floor);
+    let material = &mut scene.materials[floor].material;
+    (material.base_color, material.roughness) = (Vec3::splat(0.5), 0.5);
+    let middle = scene.bounds.center();
+    let corners = scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions);
+    for corner in corners {
+        *corner =
+            DVec3::new(corner.x - middle.x, 0.0, corner.z - middle.z).signum().with_y(0.0) * (0.5 * FLOOR);
+    }
+    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
+    let down = DVec3::new(0.0, -1.0, -1.0);
+    scene.cameras = vec![Camera::framing(
+        "from above",
+        scene.bounds,
+        down,
+        DVec3::Y,
+        f64::from(SIZE[0]) / f64::from(SIZE[1]),
+    )];
+    scene.lights = lamps(count, FLOOR, DVec3::ZERO);
+    Ok(scene)
+}
+
+fn frame(
+    engine: &Engine,
+    (name, scene): (&str, &Scene),
+    tiles: TileOptions,
+    rounds: usize,
+) -> Result<TiledFrame, Box<dyn Error>> {
+    let camera =
+        scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).ok_or("the scene has no camera")?;
+    let buffers = SceneBuffers::new(scene, camera.position)?;
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE)?;
+    let what = (scene.effects(), scene.lights.len());
+    Ok(measure(engine.host(), name, &mut renderer, what, tiles, rounds)?)
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
+    let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
+    let device = engine.host().device_name();
+    println!("{device}, {} x {}, {rounds} rounds\n\n## Scenes\n", SIZE[0], SIZE[1]);
+    let mut frames = vec![];
+    for name in ["demo", "room", "sweep"] {
+        frames.push(frame(&engine, (name, &scene(name)?), TileOptions::default(), rounds)?);
+    }
+    println!("{}\n## A floor under lamps\n", markdown(&frames));
+
+    let (mut frames, mut growth) = (vec![], String::new());
+    for negligible in NEGLIGIBLE {
+        let first = frames.len();
+        for count in LAMPS {
+            let tiles = TileOptions { negligible, capacity: 512 };
+            let rounds = if count > 100 { rounds.div_ceil(5) } else { rounds };
+            let name = format!("{count} lamps, {negligible} negligible");
+            frames.push(frame(&engine, (&name, &floor(count)?), tiles, rounds)?);
+        }
+        let ten = frames[first].milliseconds[2].median;
+        for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
+            let times = frame.milliseconds[2].median / ten;
+            let _ = writeln!(
+                growth,
+                "- {negligible} negligible: {count} lamps take {times:.1} times as long as {}",
+                LAMPS[0]
+            );
+        }
+    }
+    println!("{}\n{growth}", markdown(&frames));
+    Ok(())
+}

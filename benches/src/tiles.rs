@@ -1,0 +1,154 @@
+//! Whole frames by tiles, beside the clipless practice and the same shading without tiles: over scenes, and over a floor under
+//! ever more lights.
+//!
+//! Every method runs in turn, round after round, and is read as a ratio to the first in the same round.
+
+use crate::ladder::Spread;
+use crate::ladder::methods::{LOBES, SHADE_YARDSTICK, Yardstick};
+use crate::table::Table;
+use crate::textures::{clocked, is_software};
+use arealight::kernels::SHADE;
+use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
+use arealight::{Effects, PolygonLight, TileClass};
+use arealight_engine::{EngineError, SceneRenderer, TileCounts};
+use arealight_host::Host;
+use glam::{DVec3, Vec3, Vec4};
+use std::fmt::Write as _;
+
+/// A way to shade a frame.
+const METHODS: [&str; 3] = ["practice", "exact", "exact, by tiles"];
+
+/// A frame's times and tiles.
+#[derive(Debug, Clone)]
+pub struct TiledFrame {
+    /// What is shaded.
+    pub name: String,
+    /// How many lights there are.
+    pub lights: usize,
+    /// Milliseconds of the practice, of exact shading, and of that by tiles with all that it takes.
+    pub milliseconds: [Spread; 3],
+    /// Their ratios to the practice in the same round.
+    pub ratios: [Spread; 3],
+    /// What was found of the tiles.
+    pub counts: TileCounts,
+    /// How much the picture by tiles differs from that without: root mean square over mean, and the largest difference of a
+    /// pixel over the pixel.
+    pub error: [f64; 2],
+}
+
+/// Shades a frame by each method in `rounds` rounds, after one that warms up.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn measure(
+    host: &Host,
+    name: &str,
+    renderer: &mut SceneRenderer<'_>,
+    (effects, lights): (Effects, usize),
+    tiles: TileOptions,
+    rounds: usize,
+) -> Result<TiledFrame, EngineError> {
+    let options = ShadeOptions { effects, ..ShadeOptions::all() };
+    let view = renderer.tiled(options, tiles)?;
+    let practice = [(0, (effects | LOBES).bits()), (1, Yardstick::Practice as u32)];
+    let exact = shade_specialization(options);
+    let mut seconds: [Vec<f64>; METHODS.len()] = Default::default();
+    for round in 0..=rounds {
+        let took = [
+            clocked(host, || renderer.shade_by(&SHADE_YARDSTICK, &practice))?,
+            clocked(host, || renderer.shade_by(&SHADE, &exact))?,
+            clocked(host, || renderer.shade_tiled(&view))?,
+        ];
+        if round > 0 {
+            seconds.iter_mut().zip(took).for_each(|(all, one)| all.push(one));
+        }
+    }
+    let by_tiles = renderer.radiance()?;
+    renderer.shade_by(&SHADE, &exact)?;
+    let without = renderer.radiance()?;
+    // On a software device seconds are of all its processors
+    let processors = if is_software(host) { crate::ladder::frame::processors() } else { 1.0 };
+    let ratio = |method: usize| {
+        let ratios: Vec<f64> = seconds[method].iter().zip(&seconds[0]).map(|(a, b)| a / b).collect();
+        Spread::of(&ratios)
+    };
+    Ok(TiledFrame {
+        name: name.to_owned(),
+        lights,
+        milliseconds: [0, 1, 2].map(|method: usize| Spread::of(&seconds[method]).times(1e3 / processors)),
+        ratios: [0, 1, 2].map(ratio),
+        counts: view.counts(lights)?,
+        error: difference(&without, &by_tiles),
+    })
+}
+
+/// Root mean square over mean, and the largest of a pixel over the pixel.
+fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
+    let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
+    let (mut squares, mut mean, mut largest) = (0.0, 0.0, 0.0_f64);
+    for (truth, found) in truth.iter().map(sum).zip(found.iter().map(sum)) {
+        squares += (found - truth).powi(2);
+        mean += truth;
+        largest = largest.max((found - truth).abs() / truth.max(1e-30));
+    }
+    let count = truth.len().max(1) as f64;
+    [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
+}
+
+/// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so high as half of what
+/// is between them.
+pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let step = side / columns as f64;
+    let lamp = |index: usize| {
+        let place = |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
+        let at = center + DVec3::new(place(index % columns), 0.5 * step, place(index / columns));
+        let half = 0.1 * step;
+        // Its front is down
+        let corner = |x: f64, z: f64| at + DVec3::new(x * half, 0.0, z * half);
+        PolygonLight {
+            name: format!("lamp {index}"),
+            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            radiance: Vec3::splat(10.0),
+            ..PolygonLight::default()
+        }
+    };
+    (0..count).map(lamp).collect()
+}
+
+/// Frames as a Markdown table.
+pub fn markdown(frames: &[TiledFrame]) -> String {
+    let mut heads = vec!["frame", "lights", "practice, ms"];
+    heads.extend(&METHODS[1..]);
+    heads.extend(["quartiles", "lights a tile", "RMSE", "largest"]);
+    let row = |frame: &TiledFrame| {
+        let [_, exact, tiles] = &frame.ratios;
+        vec![
+            frame.name.clone(),
+            frame.lights.to_string(),
+            format!("{:.2}", frame.milliseconds[0].median),
+            format!("{:.2}", exact.median),
+            format!("{:.2}", tiles.median),
+            format!("{:.2} to {:.2}", tiles.quartiles[0], tiles.quartiles[1]),
+            format!("{:.1}", frame.counts.lights_a_tile()),
+            format!("{:.1e}", frame.error[0]),
+            format!("{:.1e}", frame.error[1]),
+        ]
+    };
+    let table = Table {
+        heads: heads.into_iter().map(String::from).collect(),
+        rows: frames.iter().map(row).collect(),
+    };
+    let mut text = table.to_markdown();
+    text.push('\n');
+    for frame in frames {
+        let classes: Vec<String> = frame
+            .counts
+            .classes
+            .iter()
+            .map(|(class, count): &(TileClass, u32)| format!("{count} {class}"))
+            .collect();
+        let _ = writeln!(text, "- {}: tiles {}", frame.name, classes.join(", "));
+    }
+    text
+}

@@ -1,0 +1,23 @@
+#ifndef POSITION_GLSL
+#define POSITION_GLSL
+
+// Where a pixel's surface is, from a position image or from depth. The including kernel has g_buffer.glsl, the
+// specialisation constant POSITION_SOURCE, and push constants with position_from_clip.
+
+const int POSITION_FROM_DEPTH = 1;
+
+// The pixel's position relative to the origin; false where there is no surface.
+bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
+    vec4 texel = texelFetch(g_position, pixel, 0);
+    if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
+        position = texel.xyz;
+        return texel.w != 0.0;
+    }
+    // Unproject the pixel's centre; Vulkan's clip space has y down, as pixels have
+    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec4 homogeneous = constants.position_from_clip * vec4(clip, texel.x, 1.0);
+    position = homogeneous.xyz / homogeneous.w;
+    return texel.x > 0.0 && texel.x < 1.0;
+}
+
+#endif

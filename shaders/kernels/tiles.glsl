@@ -1,0 +1,66 @@
+#ifndef TILES_GLSL
+#define TILES_GLSL
+
+// What the kernel classify finds of each tile of 8 x 8 pixels, and shade_tiles reads. crates/arealight/src/tiles.rs has
+// the same numbers, and a test compares them. The including kernel defines TILE_LISTS_BINDING and TILE_LISTS_ACCESS.
+
+const int TILE_SIDE = 8;
+
+// The classes of tiles; crates/arealight/src/tiles.rs tells what they are.
+const uint CLASS_EMPTY = 0u;
+const uint CLASS_QUADS_ABOVE = 1u;
+const uint CLASS_QUADS = 2u;
+const uint CLASS_ABOVE = 3u;
+const uint CLASS_ANY = 4u;
+
+// The words of the lists:
+// - for each class VkDispatchIndirectCommand, and how many tiles it has;
+// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles;
+// - for each tile a record: how many of its lights are quads, how many there are in all (or TILE_ALL_LIGHTS twice, for those
+//   of the buffer), and their indices in the order of the buffer, in as many words as the capacity says.
+const uint TILE_CLASS_WORDS = 4u;
+const uint TILE_FIRST_LIST = 20u;
+const uint TILE_RECORD_HEADER = 2u;
+const uint TILE_ALL_LIGHTS = 0xffffffffu;
+
+// Groups of a class's dispatch in x. Vulkan promises 65535.
+const uint TILE_ROW = 32768u;
+
+layout(push_constant, std430) uniform TileConstants {
+    mat4 position_from_clip;
+    vec3 camera;
+    uint light_count;
+    uvec2 size;
+    uint capacity;
+    uint horizon_cells;
+    uint shape_count;
+    uint quad_count;
+    float negligible;
+} constants;
+
+layout(set = 0, binding = TILE_LISTS_BINDING, std430) TILE_LISTS_ACCESS buffer TileLists {
+    uint tile_lists[];
+};
+
+uvec2 tile_counts() {
+    return (constants.size + uint(TILE_SIDE - 1)) / uint(TILE_SIDE);
+}
+
+// Where the tiles of a class are.
+uint class_list(uint tile_class) {
+    uvec2 counts = tile_counts();
+    return TILE_FIRST_LIST + tile_class * (counts.x * counts.y);
+}
+
+// Where a tile's record is.
+uint tile_record(uint tile) {
+    return class_list(CLASS_ANY + 1u) + tile * (TILE_RECORD_HEADER + constants.capacity);
+}
+
+// The corner of a tile in pixels.
+ivec2 tile_corner(uint tile) {
+    uint columns = tile_counts().x;
+    return ivec2(tile % columns, tile / columns) * TILE_SIDE;
+}
+
+#endif

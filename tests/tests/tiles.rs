@@ -1,0 +1,302 @@
+//! Shading by tiles: the picture without, whatever the lights; lists, classes and their bounds.
+
+use arealight::plan::{ShadeOptions, TileOptions};
+use arealight::table::{LobeHorizon, mirror_frame};
+use arealight::{Effects, LightTable, PolygonLight, Quality, TileClass};
+use arealight_engine::{SceneRenderer, TileCounts};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use arealight_vk::{Error, TiledShade};
+use glam::{DMat3, DVec3, Vec3, Vec4};
+use std::path::Path;
+
+/// No multiple of a tile's side.
+const SIZE: [u32; 2] = [61, 37];
+
+/// A picture without tiles, and with: reflected light alone.
+struct Pictures {
+    plain: Vec<Vec4>,
+    tiled: Vec<Vec4>,
+    counts: TileCounts,
+}
+
+fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+    Scene::load(path).expect("our own scenes load")
+}
+
+fn black(scene: &Scene) -> Scene {
+    // What is seen to emit would be rounded with what is reflected
+    let mut black = scene.clone();
+    black.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    black
+}
+
+/// Hands a view of the scene under `lights` on.
+fn with_view<T>(
+    engine: &TestEngine,
+    scene: &Scene,
+    lights: &[PolygonLight],
+    act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
+) -> T {
+    let scene = black(scene);
+    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
+    let buffers = SceneBuffers::new(&scene, camera.position).unwrap();
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    act(&mut SceneRenderer::new(engine, &buffers, lights, constants, SIZE).unwrap())
+}
+
+/// The picture without tiles.
+fn plain(engine: &TestEngine, scene: &Scene, lights: &[PolygonLight], effects: Effects) -> Vec<Vec4> {
+    with_view(engine, scene, lights, |renderer| {
+        renderer.shade(effects, Quality::default()).unwrap();
+        renderer.radiance().unwrap()
+    })
+}
+
+fn pictures(
+    engine: &TestEngine,
+    scene: &Scene,
+    lights: &[PolygonLight],
+    effects: Effects,
+    tiles: TileOptions,
+) -> Pictures {
+    let plain = plain(engine, scene, lights, effects);
+    with_view(engine, scene, lights, |renderer| {
+        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        let view = renderer.tiled(options, tiles).unwrap();
+        renderer.shade_tiled(&view).unwrap();
+        let tiled = renderer.radiance().unwrap();
+        Pictures { plain, tiled, counts: view.counts(lights.len()).unwrap() }
+    })
+}
+
+impl Pictures {
+    fn count(&self, class: TileClass) -> u32 {
+        self.counts.classes.iter().find(|(found, _)| *found == class).expect("every class is counted").1
+    }
+
+    /// How many pixels differ by more than what a rung promises of each light: some that are left out would be
+    /// rounded to more than nothing.
+    fn different(&self, lights: &[PolygonLight]) -> usize {
+        let radiance: f32 = lights.iter().map(|light| light.radiance.max_element()).sum();
+        let pixels = self.plain.iter().zip(&self.tiled);
+        let differs = |(plain, tiled): &(&Vec4, &Vec4)| {
+            let bound = f32::EPSILON * plain.max_element() + 1e-6 * radiance;
+            let difference = (**plain - **tiled).abs().max_element();
+            difference.is_nan() || difference > bound
+        };
+        pixels.filter(differs).count()
+    }
+
+    fn all_tiles(&self) -> u32 {
+        self.counts.classes.iter().map(|(_, count)| count).sum()
+    }
+}
+
+#[test]
+fn quads_give_the_same_picture_to_the_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let found = pictures(&engine, &scene, &scene.lights, scene.effects(), TileOptions::default());
+    assert_eq!(found.plain, found.tiled);
+    assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
+    assert_eq!(found.all_tiles(), 8 * 5, "{:?}", found.counts);
+    assert!(found.count(TileClass::Quads) > 0, "{:?}", found.counts);
+    // The twin: what is not the same is seen
+    let mut lights = scene.lights.clone();
+    lights.iter_mut().flat_map(|light| &mut light.vertices).for_each(|vertex| vertex.x += 1e-3);
+    let moved = Pictures { plain: plain(&engine, &scene, &lights, scene.effects()), ..found };
+    assert!(moved.different(&scene.lights) > 10);
+}
+
+#[test]
+fn a_room_of_any_lights_differs_by_rounding_whether_its_lists_hold_them_or_not() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("room.glb");
+    // Some tiles have more lights
+    let tiles = TileOptions { capacity: 5, ..TileOptions::default() };
+    let found = pictures(&engine, &scene, &scene.lights, scene.effects(), tiles);
+    assert_eq!(found.different(&scene.lights), 0, "{:?}", found.counts);
+    assert!(found.count(TileClass::Any) > 0, "{:?}", found.counts);
+    let all = u64::from(found.all_tiles()) * scene.lights.len() as u64;
+    assert!(found.counts.lights < all, "{:?}", found.counts);
+}
+
+/// Lights that are hard to classify about the floor of the sweep, y = 0: near it, on it, across it, below it, lights away, of
+/// no area, of both sides.
+fn hard_lights(center: DVec3) -> Vec<PolygonLight> {
+    let square = |along: DVec3, across: DVec3, at: DVec3, two_sided| PolygonLight {
+        name: format!("{at}"),
+        vertices: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+            .map(|(x, y)| center + at + along * x + across * y)
+            .into(),
+        radiance: Vec3::new(1.0, 0.5, 0.25),
+        two_sided,
+        ..PolygonLight::default()
+    };
+    let (x, y, z) = (DVec3::X * 0.4, DVec3::Y * 0.4, DVec3::Z * 0.4);
+    let mut lights = Vec::new();
+    for two_sided in [false, true] {
+        for height in [-0.5, -1e-4, 0.0, 1e-6, 0.01, 0.4, 2.0] {
+            lights.push(square(x, z, DVec3::Y * height, two_sided));
+            lights.push(square(z, x, DVec3::Y * height, two_sided));
+            lights.push(square(x, y, DVec3::new(0.3, height, -0.2), two_sided));
+        }
+        lights.push(square(x, x * 0.5, DVec3::Y, two_sided));
+        lights.push(square(x * 1e4, z * 1e4, DVec3::Y * 3.0, two_sided));
+        lights.push(square(x * 1e-4, z * 1e-4, DVec3::Y * 0.3, two_sided));
+    }
+    lights
+}
+
+#[test]
+fn hard_lights_and_none_differ_by_rounding() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let lights = hard_lights(scene.bounds.center());
+    let effects = scene.effects() | Effects::TWO_SIDED;
+    let found = pictures(&engine, &scene, &lights, effects, TileOptions::default());
+    assert_eq!(found.different(&lights), 0, "{:?}", found.counts);
+    assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
+    // Without lights nothing is left but the surfaces' marks
+    let none = pictures(&engine, &scene, &[], Effects::DIFFUSE, TileOptions::default());
+    assert_eq!(none.plain, none.tiled);
+    assert_eq!(none.count(TileClass::Empty), none.all_tiles());
+}
+
+/// Lamps over the floor of the sweep, some bright and most dim.
+fn lamps(center: DVec3) -> Vec<PolygonLight> {
+    let lamp = |index: usize| {
+        let (column, row) = (index % 10, index / 10);
+        let at = center + DVec3::new(column as f64 - 4.5, 1.2, row as f64 * 0.6 - 2.7);
+        let corner = |x: f64, z: f64| at + DVec3::new(0.05 * x, 0.0, 0.05 * z);
+        PolygonLight {
+            name: format!("lamp {index}"),
+            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            radiance: Vec3::new(1.0, 0.8, 0.6) * if index.is_multiple_of(7) { 20.0 } else { 0.02 },
+            ..PolygonLight::default()
+        }
+    };
+    (0..100).map(lamp).collect()
+}
+
+#[test]
+fn what_is_left_out_is_less_than_was_said() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let lights = lamps(scene.bounds.center().with_y(scene.bounds.min.y));
+    // The most that a pixel lost, in the sum of its channels, over what it kept
+    let lost = |all: &[Vec4], kept: &[Vec4]| {
+        let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
+        let pixels = all.iter().map(sum).zip(kept.iter().map(sum));
+        // What float32 rounds of a hundred lights, and pixels that see nearly nothing, are no matter of what is left out
+        pixels
+            .map(|(all, kept)| (all - kept - 1e-5 * all - 1e-6).max(0.0) / kept.max(1e-9))
+            .fold(0.0, f64::max)
+    };
+    let tiles = TileOptions { negligible: 0.05, ..TileOptions::default() };
+    let found = pictures(&engine, &scene, &lights, scene.effects(), tiles);
+    assert!(lost(&found.plain, &found.tiled) <= 0.05, "{}", lost(&found.plain, &found.tiled));
+    let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * lights.len() as u64;
+    assert!(found.counts.lights < all, "nothing was left out: {} of {all}", found.counts.lights);
+    // The twin: a row of lamps too few is seen
+    let few = plain(&engine, &scene, &lights[10..], scene.effects());
+    assert!(lost(&found.plain, &few) > 0.05, "{}", lost(&found.plain, &few));
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let Some(engine) = TestEngine::new() else { return };
+    let refused = |tiles| {
+        // SAFETY: Nothing is made.
+        let error = unsafe { TiledShade::new(engine.context(), ShadeOptions::all(), 64, tiles) }.unwrap_err();
+        let Error::InvalidArgument { field, .. } = error else { panic!("{error}") };
+        field
+    };
+    assert_eq!(refused(TileOptions { capacity: 0, negligible: 0.0 }), "capacity");
+    for negligible in [1.0, -0.1, f32::NAN] {
+        assert_eq!(refused(TileOptions { negligible, ..TileOptions::default() }), "negligible");
+    }
+}
+
+/// The normal of a lobe's horizon: its part across the mirror direction over that along it, over the view's sine.
+fn ratio(inverse: DMat3, cos_view: f64) -> f64 {
+    // The last row, in the mirror frame
+    let normal = DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z);
+    let frame = mirror_frame(cos_view);
+    normal.dot(frame.x_axis) / normal.dot(frame.z_axis) / (1.0 - cos_view * cos_view).sqrt()
+}
+
+/// Every roughness and view of a grid that no cell of the table has.
+fn views() -> impl Iterator<Item = (f64, f64)> {
+    let places = || (0..40).map(|step| f64::from(step) / 39.0);
+    places().flat_map(move |roughness| places().skip(1).map(move |v| (roughness, 1.0 - v * v)))
+}
+
+fn cell(horizons: &[LobeHorizon], table: &LightTable, roughness: f64, cos_view: f64) -> LobeHorizon {
+    let cells = table.size() as usize - 1;
+    let axes = [roughness.max(0.01), (1.0 - cos_view).sqrt()];
+    let [x, y] = axes.map(|axis| ((axis * cells as f64) as usize).min(cells - 1));
+    horizons[y * cells + x]
+}
+
+#[test]
+fn every_lookup_lies_within_the_horizons_of_its_cell() {
+    let table = arealight_table::ggx();
+    let horizons = table.lobe_horizons();
+    let (mut inside, mut near_an_end) = (0, 0);
+    for (roughness, cos_view) in views() {
+        let sample = table.lookup(roughness, cos_view);
+        let horizon = cell(&horizons, &table, roughness, cos_view);
+        for reflectance in [0.0, 0.04, 0.5, 1.0] {
+            let weight = horizon.weight.map(|weight| f64::from(weight) * (1.0 - reflectance));
+            let part = weight.map(|weight| weight / (reflectance + weight + 1e-30));
+            let mixed = |end: usize, part: f64| {
+                f64::from(horizon.lobe[end]) * (1.0 - part) + f64::from(horizon.schlick[end]) * part
+            };
+            let low = mixed(0, part[0]).min(mixed(0, part[1]));
+            let high = mixed(1, part[0]).max(mixed(1, part[1]));
+            let found = ratio(sample.inverse_by_f0(reflectance, 1.0), cos_view);
+            // A cell without a horizon is never above or below anything
+            assert!(!(found < low || found > high), "{roughness}, {cos_view}: {found} in {low}..{high}");
+            inside += 1;
+            // The twin: half the width would not do
+            let quarter = (high - low) * 0.25;
+            near_an_end += usize::from(found < low + quarter || found > high - quarter);
+        }
+    }
+    assert!(near_an_end > inside / 20, "{near_an_end} of {inside}");
+}
+
+#[test]
+fn no_lobe_is_denser_than_the_envelope_of_its_cell() {
+    let table = arealight_table::ggx();
+    let horizons = table.lobe_horizons();
+    let (mut all, mut near) = (0, 0);
+    for (roughness, cos_view) in views() {
+        let sample = table.lookup(roughness, cos_view);
+        let horizon = cell(&horizons, &table, roughness, cos_view);
+        assert!(sample.schlick <= f64::from(horizon.schlick_albedo));
+        let [a, b] = horizon.envelope.map(f64::from);
+        for reflectance in [0.0, 0.04, 1.0] {
+            let inverse = sample.inverse_by_f0(reflectance, 1.0);
+            let mut closest = 0.0_f64;
+            for step in 0..150 {
+                let (fall, turn) = (2.0 * (f64::from(step) / 149.0).powi(5), 2.39996 * f64::from(step));
+                let sine = (fall * (2.0 - fall)).max(0.0).sqrt();
+                let direction =
+                    mirror_frame(cos_view) * DVec3::new(sine * turn.cos(), sine * turn.sin(), 1.0 - fall);
+                let seen = inverse * direction;
+                let density = inverse.determinant() * seen.z.max(0.0)
+                    / (std::f64::consts::PI * seen.length_squared().powi(2));
+                closest = closest.max(density * (b + fall).powi(2) / a);
+            }
+            assert!(closest <= 1.0, "{roughness}, {cos_view}, {reflectance}: {closest}");
+            all += usize::from(roughness >= 0.25);
+            near += usize::from(closest > 0.5);
+        }
+    }
+    // The twin: half of the envelope would not do
+    assert!(near > 20, "{near} of {all}");
+}
