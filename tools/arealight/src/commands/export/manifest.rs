@@ -134,7 +134,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 12] = [
+    const NAMES: [(u32, &str); 15] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -146,7 +146,10 @@ fn constant_name(id: u32) -> &'static str {
         (constant::RADIUS, "RADIUS"),
         (constant::CALLED_FOR, "CALLED_FOR"),
         (constant::SHAPE, "SHAPE"),
+        (constant::QUADS, "QUADS"),
+        (constant::CLASS, "CLASS"),
         (constant::LAYOUT, "LAYOUT"),
+        (constant::CULL, "CULL"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }
