@@ -98,20 +98,20 @@ ArealightArcs arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight 
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         float height = arealight_vertex_height(view, last);
         ArealightSurfaceWalk walk = arealight_surface_walk_begin(view.transform * last, height);
-        uint index = light.first_vertex;
-        do {
+        for (uint index = light.first_vertex; index < end; index++) {
             vec3 vertex = arealight_bridge_vertex(index);
             height = arealight_vertex_height(view, vertex);
             arealight_surface_walk_to(walk, view.anchor, view.transform * vertex, height, rung);
-        } while (++index < end);
+        }
         return arealight_surface_walk_end(walk, view.anchor, rung);
     }
     ArealightWalk walk = arealight_walk_begin();
     ArealightVertex from = arealight_vertex(view.anchor, view.transform * last, rung);
     bool bare = quality.horizon == AREALIGHT_HORIZON_BARE;
     bool unclipped = bare || quality.horizon == AREALIGHT_HORIZON_ABOVE;
-    uint index = light.first_vertex;
-    do {
+    // Tested before it runs: where pixels of a group end at different vertices, lavapipe (Mesa 22.3) takes what a loop that
+    // tests after it ran computed last, for all of them
+    for (uint index = light.first_vertex; index < end; index++) {
         ArealightVertex to = arealight_vertex(view.anchor, view.transform * arealight_bridge_vertex(index), rung);
         if (unclipped) {
             walk.sum += bare ? arealight_acute_arc(from, to, rung) : arealight_arc(from, to, rung);
@@ -120,7 +120,7 @@ ArealightArcs arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight 
             arealight_walk_edge(walk, view.anchor, from, to, rung);
         }
         from = to;
-    } while (++index < end);
+    }
     return unclipped ? ArealightArcs(walk.sum, walk.squares) : arealight_walk_end(walk, view.anchor, rung);
 }
 
