@@ -111,7 +111,7 @@ impl ShadePass {
     /// Makes what all pipelines of the pass have in common.
     ///
     /// # Safety
-    /// As [`ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
+    /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
     ///
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
@@ -206,7 +206,7 @@ impl ShadePass {
     /// Points a descriptor set at the resources of a run.
     ///
     /// # Safety
-    /// As [`ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
+    /// As [`crate::ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
