@@ -35,6 +35,7 @@ mod context;
 mod debug_names;
 mod error;
 mod formats;
+mod layouts;
 mod light_textures;
 #[cfg(feature = "gpu-allocator")]
 mod memory;

@@ -1,7 +1,8 @@
-//! One kernel as a compute pipeline: its descriptor set layout, its pipeline, and how it is recorded.
+//! One kernel as a compute pipeline, and how it is recorded.
 
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
+use crate::layouts::Layouts;
 use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
 use std::sync::Arc;
@@ -55,7 +56,7 @@ impl Resource {
         }
     }
 
-    fn kind(self) -> BindingKind {
+    pub(crate) fn kind(self) -> BindingKind {
         match self {
             Self::SampledImage { .. } => BindingKind::SampledImage,
             Self::FilteredImage { .. } => BindingKind::FilteredImage,
@@ -64,7 +65,7 @@ impl Resource {
         }
     }
 
-    fn is_null(self) -> bool {
+    pub(crate) fn is_null(self) -> bool {
         match self {
             Self::StorageBuffer { buffer, .. } => buffer == vk::Buffer::null(),
             image => image.view().is_some_and(|view| view == vk::ImageView::null()),
@@ -72,212 +73,11 @@ impl Resource {
     }
 }
 
-/// What every pipeline of a kernel has in common: a descriptor set is for all that share it.
-#[derive(Debug)]
-pub(crate) struct Layouts {
-    context: Context,
-    kernel: &'static Kernel,
-    sampler: vk::Sampler,
-    set_layout: vk::DescriptorSetLayout,
-    pipeline_layout: vk::PipelineLayout,
-}
-
 /// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline, and its layouts with the last that has them.
 #[derive(Debug)]
 pub struct ComputePass {
     layouts: Arc<Layouts>,
     pipeline: vk::Pipeline,
-}
-
-impl Layouts {
-    /// # Safety
-    /// They are dropped before the device is destroyed, when no recorded use of them is pending.
-    pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
-        check_limits(context, kernel)?;
-        // Handles that were made before a later call fails are destroyed with these half-made layouts
-        let mut layouts = Self {
-            context: context.clone(),
-            kernel,
-            sampler: vk::Sampler::null(),
-            set_layout: vk::DescriptorSetLayout::null(),
-            pipeline_layout: vk::PipelineLayout::null(),
-        };
-        if kernel.bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
-            layouts.make_sampler()?;
-        }
-        layouts.make_layouts()?;
-        context.names.name(layouts.set_layout, kernel.name);
-        context.names.name(layouts.pipeline_layout, kernel.name);
-        Ok(Arc::new(layouts))
-    }
-
-    fn make_sampler(&mut self) -> Result<(), Error> {
-        let info = vk::SamplerCreateInfo::default()
-            .mag_filter(vk::Filter::LINEAR)
-            .min_filter(vk::Filter::LINEAR)
-            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
-            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .max_lod(vk::LOD_CLAMP_NONE);
-        // SAFETY: the device is valid by the contract of Context::new.
-        self.sampler = unsafe { self.context.device.create_sampler(&info, None) }.call("vkCreateSampler")?;
-        Ok(())
-    }
-
-    fn make_layouts(&mut self) -> Result<(), Error> {
-        let device = &self.context.device;
-        let samplers = [self.sampler];
-        let bindings: Vec<_> = (0u32..)
-            .zip(self.kernel.bindings)
-            .map(|(number, binding)| {
-                let layout = vk::DescriptorSetLayoutBinding::default()
-                    .binding(number)
-                    .descriptor_type(descriptor_type(binding.kind))
-                    .descriptor_count(1)
-                    .stage_flags(vk::ShaderStageFlags::COMPUTE);
-                match binding.kind {
-                    BindingKind::FilteredImage => layout.immutable_samplers(&samplers),
-                    _ => layout,
-                }
-            })
-            .collect();
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-        // SAFETY: the device is valid by the contract of Context::new; the info outlives the call.
-        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
-            .call("vkCreateDescriptorSetLayout")?;
-
-        let set_layouts = [self.set_layout];
-        let ranges = [vk::PushConstantRange::default()
-            .stage_flags(vk::ShaderStageFlags::COMPUTE)
-            .size(self.kernel.push_constant_size)];
-        let info =
-            vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&ranges);
-        // SAFETY: as above.
-        self.pipeline_layout =
-            unsafe { device.create_pipeline_layout(&info, None) }.call("vkCreatePipelineLayout")?;
-        Ok(())
-    }
-
-    pub(crate) fn context(&self) -> &Context {
-        &self.context
-    }
-
-    pub(crate) fn set_layout(&self) -> vk::DescriptorSetLayout {
-        self.set_layout
-    }
-
-    pub(crate) fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
-        BindingKind::ALL
-            .into_iter()
-            .filter_map(|kind| {
-                let count = self.kernel.bindings.iter().filter(|b| b.kind == kind).count() as u32;
-                (count > 0).then(|| vk::DescriptorPoolSize {
-                    ty: descriptor_type(kind),
-                    descriptor_count: count * sets,
-                })
-            })
-            .collect()
-    }
-
-    /// # Safety
-    /// As [`ComputePass::write_set`].
-    pub(crate) unsafe fn write_set(
-        &self,
-        set: vk::DescriptorSet,
-        resources: &[Resource],
-    ) -> Result<(), Error> {
-        let bindings = self.kernel.bindings;
-        if resources.len() != bindings.len() {
-            return Err(Error::InvalidArgument {
-                field: "resources",
-                message: format!(
-                    "{} given, but kernel '{}' has {} bindings",
-                    resources.len(),
-                    self.kernel.name,
-                    bindings.len()
-                ),
-            });
-        }
-        for (binding, resource) in bindings.iter().zip(resources) {
-            if resource.kind() != binding.kind {
-                let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
-                return Err(Error::InvalidArgument { field: binding.name, message });
-            }
-            if resource.is_null() {
-                return Err(Error::InvalidArgument {
-                    field: binding.name,
-                    message: format!("is a null handle; it must hold {}", binding.content),
-                });
-            }
-        }
-
-        // The infos are collected first, since the writes point into them
-        let images: Vec<[vk::DescriptorImageInfo; 1]> = resources.iter().map(|r| [image_info(*r)]).collect();
-        let buffers: Vec<[vk::DescriptorBufferInfo; 1]> =
-            resources.iter().map(|r| [buffer_info(*r)]).collect();
-        let writes: Vec<_> = (0u32..)
-            .zip(bindings)
-            .zip(images.iter().zip(&buffers))
-            .map(|((number, binding), (image, buffer))| {
-                let write = vk::WriteDescriptorSet::default()
-                    .dst_set(set)
-                    .dst_binding(number)
-                    .descriptor_type(descriptor_type(binding.kind));
-                match binding.kind {
-                    BindingKind::StorageBuffer => write.buffer_info(buffer),
-                    _ => write.image_info(image),
-                }
-            })
-            .collect();
-        // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
-        unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
-        self.context.written_sets.write(set, self.kernel, resources);
-        Ok(())
-    }
-
-    /// What [`ComputePass::record`] refuses.
-    pub(crate) fn check(
-        &self,
-        set: vk::DescriptorSet,
-        constants: &[u8],
-        groups: [u32; 3],
-    ) -> Result<(), Error> {
-        if constants.len() != self.kernel.push_constant_size as usize {
-            return Err(Error::InvalidArgument {
-                field: "constants",
-                message: format!(
-                    "{} bytes, but kernel '{}' takes {}",
-                    constants.len(),
-                    self.kernel.name,
-                    self.kernel.push_constant_size
-                ),
-            });
-        }
-        if (0..3).any(|axis| groups[axis] > self.context.max_group_count[axis]) {
-            return Err(Error::InvalidArgument {
-                field: "groups",
-                message: format!(
-                    "{groups:?}, but the device dispatches at most {:?}",
-                    self.context.max_group_count
-                ),
-            });
-        }
-        self.context.written_sets.check(set)
-    }
-}
-
-impl Drop for Layouts {
-    fn drop(&mut self) {
-        // SAFETY: by the contract of Layouts::new no recorded use is pending and the device is alive;
-        // null handles are ignored.
-        unsafe {
-            let device = &self.context.device;
-            device.destroy_pipeline_layout(self.pipeline_layout, None);
-            device.destroy_descriptor_set_layout(self.set_layout, None);
-            device.destroy_sampler(self.sampler, None);
-        }
-    }
 }
 
 impl ComputePass {
@@ -327,7 +127,7 @@ impl ComputePass {
         module: &[u32],
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        let kernel = layouts.kernel;
+        let kernel = layouts.kernel();
         if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
             return Err(Error::InvalidArgument {
                 field: "specialization",
@@ -338,18 +138,18 @@ impl ComputePass {
             });
         }
         let pipeline = make_pipeline(layouts, module, specialization)?;
-        layouts.context.names.name(pipeline, kernel.name);
+        layouts.context().names.name(pipeline, kernel.name);
         Ok(Self { layouts: Arc::clone(layouts), pipeline })
     }
 
     /// The kernel.
     pub fn kernel(&self) -> &'static Kernel {
-        self.layouts.kernel
+        self.layouts.kernel()
     }
 
     /// The layout that the host allocates a descriptor set with.
     pub fn set_layout(&self) -> vk::DescriptorSetLayout {
-        self.layouts.set_layout
+        self.layouts.set_layout()
     }
 
     /// What `sets` descriptor sets of this pass take from the host's descriptor pool.
@@ -409,7 +209,7 @@ impl ComputePass {
         // SAFETY: the same contract.
         unsafe {
             self.bind(command_buffer, set, constants);
-            self.layouts.context.device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
+            self.layouts.context().device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
         }
     }
 
@@ -428,13 +228,13 @@ impl ComputePass {
         // SAFETY: the same contract.
         unsafe {
             self.bind(command_buffer, set, constants);
-            self.layouts.context.device.cmd_dispatch_indirect(command_buffer, buffer, offset);
+            self.layouts.context().device.cmd_dispatch_indirect(command_buffer, buffer, offset);
         }
     }
 
     /// Binds the pipeline, its descriptor set and its push constants.
     unsafe fn bind(&self, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, constants: &[u8]) {
-        let (device, layout) = (&self.layouts.context.device, self.layouts.pipeline_layout);
+        let (device, layout) = (&self.layouts.context().device, self.layouts.pipeline_layout());
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {
             device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
@@ -454,7 +254,7 @@ impl ComputePass {
 impl Drop for ComputePass {
     fn drop(&mut self) {
         // SAFETY: by the contract of ComputePass::new no recorded use is pending and the device is alive.
-        unsafe { self.layouts.context.device.destroy_pipeline(self.pipeline, None) };
+        unsafe { self.layouts.context().device.destroy_pipeline(self.pipeline, None) };
     }
 }
 
@@ -463,7 +263,7 @@ fn make_pipeline(
     words: &[u32],
     specialization: &[(u32, u32)],
 ) -> Result<vk::Pipeline, Error> {
-    let device = &layouts.context.device;
+    let device = &layouts.context().device;
     let info = vk::ShaderModuleCreateInfo::default().code(words);
     // SAFETY: the device is valid; the code is SPIR-V that a test validates.
     let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
@@ -482,9 +282,9 @@ fn make_pipeline(
         .module(module)
         .name(c"main")
         .specialization_info(&specialization);
-    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline_layout);
+    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline_layout());
     // SAFETY: module and layout are live; the cache is the host's, unused elsewhere by contract.
-    let made = unsafe { device.create_compute_pipelines(layouts.context.pipeline_cache, &[info], None) };
+    let made = unsafe { device.create_compute_pipelines(layouts.context().pipeline_cache, &[info], None) };
     // SAFETY: a module may go as soon as pipelines were made from it.
     unsafe { device.destroy_shader_module(module, None) };
     let pipelines = made.map_err(|(_, result)| result).call("vkCreateComputePipelines")?;
@@ -500,51 +300,4 @@ pub(crate) fn check_module(module: &[u32]) -> Result<(), Error> {
     }
     let message = "does not begin as SPIR-V does, in this machine's byte order".into();
     Err(Error::InvalidArgument { field: "module", message })
-}
-
-/// Only the kernels of our own tools bind more than every Vulkan device can.
-fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
-    use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
-    let limits = context.limits;
-    for (kinds, limit, feature) in [
-        (&[SampledImage, FilteredImage][..], limits.sampled_images, "maxPerStageDescriptorSampledImages"),
-        (&[StorageImage], limits.storage_images, "maxPerStageDescriptorStorageImages"),
-        (&[StorageBuffer], limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
-    ] {
-        let count = kernel.bindings.iter().filter(|binding| kinds.contains(&binding.kind)).count();
-        if count > limit as usize {
-            return Err(Error::MissingFeature { feature, needed_by: kernel.name });
-        }
-    }
-    Ok(())
-}
-
-fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
-    match kind {
-        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
-        BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
-        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
-    }
-}
-
-fn image_info(resource: Resource) -> vk::DescriptorImageInfo {
-    match resource {
-        Resource::SampledImage { view, layout } | Resource::FilteredImage { view, layout } => {
-            vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
-        }
-        Resource::StorageImage { view } => {
-            vk::DescriptorImageInfo::default().image_view(view).image_layout(vk::ImageLayout::GENERAL)
-        }
-        Resource::StorageBuffer { .. } => vk::DescriptorImageInfo::default(),
-    }
-}
-
-fn buffer_info(resource: Resource) -> vk::DescriptorBufferInfo {
-    match resource {
-        Resource::StorageBuffer { buffer, offset, range } => {
-            vk::DescriptorBufferInfo::default().buffer(buffer).offset(offset).range(range)
-        }
-        _ => vk::DescriptorBufferInfo::default(),
-    }
 }

@@ -2,7 +2,8 @@
 
 use crate::context::Context;
 use crate::error::Error;
-use crate::pass::{ComputePass, Layouts};
+use crate::layouts::Layouts;
+use crate::pass::ComputePass;
 use arealight::kernels::Kernel;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;

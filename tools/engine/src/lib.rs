@@ -174,15 +174,20 @@ impl Engine {
 
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
     fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
-        let (bytes, limit) =
-            (size_of_val(items) as u64, self.host().properties().limits.max_storage_buffer_range);
-        if bytes > u64::from(limit) {
-            return Err(EngineError::BufferTooLarge { name, bytes, limit: limit.into() });
-        }
+        self.check_storage(name, size_of_val(items) as u64)?;
         if items.is_empty() {
             return Ok(self.host().storage_buffer(name, &[T::zeroed()])?);
         }
         Ok(self.host().storage_buffer(name, items)?)
+    }
+
+    /// Refuses a storage buffer of so many bytes where the device has none as large.
+    fn check_storage(&self, name: &'static str, bytes: u64) -> Result<(), EngineError> {
+        let limit = self.host().properties().limits.max_storage_buffer_range.into();
+        if bytes > limit {
+            return Err(EngineError::BufferTooLarge { name, bytes, limit });
+        }
+        Ok(())
     }
 
     /// A pass of `kernel` with a descriptor set that points at `resources`.

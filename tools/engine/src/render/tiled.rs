@@ -115,10 +115,8 @@ impl SceneRenderer<'_> {
 impl Engine {
     /// A buffer with the device for the lists of tiles.
     fn tile_lists(&self, bytes: u64) -> Result<Buffer, EngineError> {
-        let (name, limit) = ("tile lists", self.host().properties().limits.max_storage_buffer_range);
-        if bytes > u64::from(limit) {
-            return Err(EngineError::BufferTooLarge { name, bytes, limit: limit.into() });
-        }
+        let name = "tile lists";
+        self.check_storage(name, bytes)?;
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER;
         Ok(self.host().buffer(name, bytes, usage, Location::Device)?)
     }

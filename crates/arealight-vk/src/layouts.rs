@@ -1,0 +1,264 @@
+//! What the pipelines of a kernel have in common: the layout of its descriptor sets, and how those are written.
+
+use crate::context::Context;
+use crate::error::{Error, VulkanCall};
+use crate::pass::Resource;
+use arealight::kernels::{BindingKind, Kernel};
+use ash::vk;
+use std::sync::Arc;
+
+/// What every pipeline of a kernel has in common: a descriptor set is for all that share it.
+#[derive(Debug)]
+pub(crate) struct Layouts {
+    context: Context,
+    kernel: &'static Kernel,
+    sampler: vk::Sampler,
+    set_layout: vk::DescriptorSetLayout,
+    pipeline_layout: vk::PipelineLayout,
+}
+
+impl Layouts {
+    /// # Safety
+    /// They are dropped before the device is destroyed, when no recorded use of them is pending.
+    pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
+        check_limits(context, kernel)?;
+        // Handles that were made before a later call fails are destroyed with these half-made layouts
+        let mut layouts = Self {
+            context: context.clone(),
+            kernel,
+            sampler: vk::Sampler::null(),
+            set_layout: vk::DescriptorSetLayout::null(),
+            pipeline_layout: vk::PipelineLayout::null(),
+        };
+        if kernel.bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
+            layouts.make_sampler()?;
+        }
+        layouts.make_layouts()?;
+        context.names.name(layouts.set_layout, kernel.name);
+        context.names.name(layouts.pipeline_layout, kernel.name);
+        Ok(Arc::new(layouts))
+    }
+
+    fn make_sampler(&mut self) -> Result<(), Error> {
+        let info = vk::SamplerCreateInfo::default()
+            .mag_filter(vk::Filter::LINEAR)
+            .min_filter(vk::Filter::LINEAR)
+            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
+            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+            .max_lod(vk::LOD_CLAMP_NONE);
+        // SAFETY: the device is valid by the contract of Context::new.
+        self.sampler = unsafe { self.context.device.create_sampler(&info, None) }.call("vkCreateSampler")?;
+        Ok(())
+    }
+
+    fn make_layouts(&mut self) -> Result<(), Error> {
+        let device = &self.context.device;
+        let samplers = [self.sampler];
+        let bindings: Vec<_> = (0u32..)
+            .zip(self.kernel.bindings)
+            .map(|(number, binding)| {
+                let layout = vk::DescriptorSetLayoutBinding::default()
+                    .binding(number)
+                    .descriptor_type(descriptor_type(binding.kind))
+                    .descriptor_count(1)
+                    .stage_flags(vk::ShaderStageFlags::COMPUTE);
+                match binding.kind {
+                    BindingKind::FilteredImage => layout.immutable_samplers(&samplers),
+                    _ => layout,
+                }
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        // SAFETY: the device is valid by the contract of Context::new; the info outlives the call.
+        self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
+            .call("vkCreateDescriptorSetLayout")?;
+
+        let set_layouts = [self.set_layout];
+        let ranges = [vk::PushConstantRange::default()
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)
+            .size(self.kernel.push_constant_size)];
+        let info =
+            vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&ranges);
+        // SAFETY: as above.
+        self.pipeline_layout =
+            unsafe { device.create_pipeline_layout(&info, None) }.call("vkCreatePipelineLayout")?;
+        Ok(())
+    }
+
+    pub(crate) fn context(&self) -> &Context {
+        &self.context
+    }
+
+    pub(crate) fn kernel(&self) -> &'static Kernel {
+        self.kernel
+    }
+
+    pub(crate) fn pipeline_layout(&self) -> vk::PipelineLayout {
+        self.pipeline_layout
+    }
+
+    pub(crate) fn set_layout(&self) -> vk::DescriptorSetLayout {
+        self.set_layout
+    }
+
+    pub(crate) fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
+        BindingKind::ALL
+            .into_iter()
+            .filter_map(|kind| {
+                let count = self.kernel.bindings.iter().filter(|b| b.kind == kind).count() as u32;
+                (count > 0).then(|| vk::DescriptorPoolSize {
+                    ty: descriptor_type(kind),
+                    descriptor_count: count * sets,
+                })
+            })
+            .collect()
+    }
+
+    /// # Safety
+    /// As [`ComputePass::write_set`].
+    pub(crate) unsafe fn write_set(
+        &self,
+        set: vk::DescriptorSet,
+        resources: &[Resource],
+    ) -> Result<(), Error> {
+        let bindings = self.kernel.bindings;
+        if resources.len() != bindings.len() {
+            return Err(Error::InvalidArgument {
+                field: "resources",
+                message: format!(
+                    "{} given, but kernel '{}' has {} bindings",
+                    resources.len(),
+                    self.kernel.name,
+                    bindings.len()
+                ),
+            });
+        }
+        for (binding, resource) in bindings.iter().zip(resources) {
+            if resource.kind() != binding.kind {
+                let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
+                return Err(Error::InvalidArgument { field: binding.name, message });
+            }
+            if resource.is_null() {
+                return Err(Error::InvalidArgument {
+                    field: binding.name,
+                    message: format!("is a null handle; it must hold {}", binding.content),
+                });
+            }
+        }
+
+        // The infos are collected first, since the writes point into them
+        let images: Vec<[vk::DescriptorImageInfo; 1]> = resources.iter().map(|r| [image_info(*r)]).collect();
+        let buffers: Vec<[vk::DescriptorBufferInfo; 1]> =
+            resources.iter().map(|r| [buffer_info(*r)]).collect();
+        let writes: Vec<_> = (0u32..)
+            .zip(bindings)
+            .zip(images.iter().zip(&buffers))
+            .map(|((number, binding), (image, buffer))| {
+                let write = vk::WriteDescriptorSet::default()
+                    .dst_set(set)
+                    .dst_binding(number)
+                    .descriptor_type(descriptor_type(binding.kind));
+                match binding.kind {
+                    BindingKind::StorageBuffer => write.buffer_info(buffer),
+                    _ => write.image_info(image),
+                }
+            })
+            .collect();
+        // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
+        unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
+        self.context.written_sets.write(set, self.kernel, resources);
+        Ok(())
+    }
+
+    /// What [`ComputePass::record`] refuses.
+    pub(crate) fn check(
+        &self,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
+        if constants.len() != self.kernel.push_constant_size as usize {
+            return Err(Error::InvalidArgument {
+                field: "constants",
+                message: format!(
+                    "{} bytes, but kernel '{}' takes {}",
+                    constants.len(),
+                    self.kernel.name,
+                    self.kernel.push_constant_size
+                ),
+            });
+        }
+        if (0..3).any(|axis| groups[axis] > self.context.max_group_count[axis]) {
+            return Err(Error::InvalidArgument {
+                field: "groups",
+                message: format!(
+                    "{groups:?}, but the device dispatches at most {:?}",
+                    self.context.max_group_count
+                ),
+            });
+        }
+        self.context.written_sets.check(set)
+    }
+}
+
+impl Drop for Layouts {
+    fn drop(&mut self) {
+        // SAFETY: by the contract of Layouts::new no recorded use is pending and the device is alive;
+        // null handles are ignored.
+        unsafe {
+            let device = &self.context.device;
+            device.destroy_pipeline_layout(self.pipeline_layout, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
+            device.destroy_sampler(self.sampler, None);
+        }
+    }
+}
+
+/// Only the kernels of our own tools bind more than every Vulkan device can.
+fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
+    use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
+    let limits = context.limits;
+    for (kinds, limit, feature) in [
+        (&[SampledImage, FilteredImage][..], limits.sampled_images, "maxPerStageDescriptorSampledImages"),
+        (&[StorageImage], limits.storage_images, "maxPerStageDescriptorStorageImages"),
+        (&[StorageBuffer], limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
+    ] {
+        let count = kernel.bindings.iter().filter(|binding| kinds.contains(&binding.kind)).count();
+        if count > limit as usize {
+            return Err(Error::MissingFeature { feature, needed_by: kernel.name });
+        }
+    }
+    Ok(())
+}
+
+fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+    }
+}
+
+fn image_info(resource: Resource) -> vk::DescriptorImageInfo {
+    match resource {
+        Resource::SampledImage { view, layout } | Resource::FilteredImage { view, layout } => {
+            vk::DescriptorImageInfo::default().image_view(view).image_layout(layout)
+        }
+        Resource::StorageImage { view } => {
+            vk::DescriptorImageInfo::default().image_view(view).image_layout(vk::ImageLayout::GENERAL)
+        }
+        Resource::StorageBuffer { .. } => vk::DescriptorImageInfo::default(),
+    }
+}
+
+fn buffer_info(resource: Resource) -> vk::DescriptorBufferInfo {
+    match resource {
+        Resource::StorageBuffer { buffer, offset, range } => {
+            vk::DescriptorBufferInfo::default().buffer(buffer).offset(offset).range(range)
+        }
+        _ => vk::DescriptorBufferInfo::default(),
+    }
+}
