@@ -51,14 +51,16 @@ run_tests() {
 }
 
 # Runs the GPU tests again with the shaders instrumented: an access out of bounds is found. (The tests above run
-# under core and synchronisation validation, which cannot be had together with this.)
+# under core and synchronisation validation, which cannot be had together with this.) What runs for a minute without a
+# device is left out.
 run_assisted() {
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
         AREALIGHT_VALIDATION=gpu-assisted cargo nextest run --workspace --locked \
-            -E 'package(arealight-tests) or package(arealight-examples)'
+            -E '(package(arealight-tests) or package(arealight-examples)) - test(the_guard_outlives_the_optimiser)'
     else
-        AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked
+        AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked -- \
+            --skip the_guard_outlives_the_optimiser
     fi
 }
 
