@@ -23,16 +23,19 @@ if [[ "${2:-}" == --debug ]]; then
 fi
 cargo build --manifest-path "$root/Cargo.toml" --locked --quiet "${options[@]}" -p arealight-capi
 built="${CARGO_TARGET_DIR:-$root/target}/$profile"
+abi="$(sed -n 's/^#define AREALIGHT_ABI_VERSION \([0-9]*\)$/\1/p' "$crate/include/arealight.h")"
 version="$(sed -n '/^\[workspace.package\]/,/^\[/s/^version = "\(.*\)"/\1/p' "$root/Cargo.toml")"
-fill() { sed -e "s|@PREFIX@|$prefix|" -e "s|@VERSION@|$version|"; }
+fill() { sed -e "s|@PREFIX@|$prefix|" -e "s|@VERSION@|$version|" -e "s|@ABI@|$abi|"; }
 
 install -Dm644 -t "$prefix/include" "$crate/include/arealight.h"
 install -Dm644 -t "$prefix/lib" "$built/libarealight_capi.a"
-install -Dm755 -t "$prefix/lib" "$built/libarealight_capi.so"
+# Programs ask the loader for the name with the ABI's version, the linker for the one without
+install -Dm755 "$built/libarealight_capi.so" "$prefix/lib/libarealight_capi.so.$abi"
+ln -sf "libarealight_capi.so.$abi" "$prefix/lib/libarealight_capi.so"
 mkdir -p "$prefix/lib/pkgconfig" "$prefix/lib/cmake/arealight"
 fill <"$crate/arealight.pc.in" >"$prefix/lib/pkgconfig/arealight.pc"
 fill <"$crate/cmake/arealight-config-version.cmake.in" >"$prefix/lib/cmake/arealight/arealight-config-version.cmake"
-install -m644 -t "$prefix/lib/cmake/arealight" "$crate/cmake/arealight-config.cmake"
+fill <"$crate/cmake/arealight-config.cmake.in" >"$prefix/lib/cmake/arealight/arealight-config.cmake"
 echo "installed arealight $version to $prefix"
 # The loader looks into a list of its own, which root can renew
 if ! { [[ "$(id -u)" == 0 ]] && ldconfig 2>/dev/null && ldconfig -p | grep -qF "$prefix/lib/"; }; then

@@ -4,6 +4,8 @@ use crate::TestEngine;
 use arealight::kernels::{Access, Binding, Kernel};
 use arealight_vk::Resource;
 use bytemuck::Pod;
+use std::path::Path;
+use std::process::Command;
 
 /// Single functions of the library over a list of arguments.
 pub static PROBE: Kernel = Kernel {
@@ -91,4 +93,26 @@ impl TestEngine {
         let inputs = [self.table(), Resource::buffer(given.handle())];
         self.dispatch(&PROBE, &[(0, function as u32)], &inputs, arguments.len())
     }
+}
+/// The shade kernel with the example's G-buffer, by the compiler that a host may have.
+///
+/// # Panics
+/// Where that is missing.
+pub fn shade_with_bridge() -> Vec<u32> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let folder = tempfile::tempdir().expect("a folder");
+    let module = folder.path().join("shade.spv");
+    let output = Command::new("glslc")
+        .args(["--target-env=vulkan1.1", "-DAREALIGHT_HOST_G_BUFFER=1", "-I"])
+        .arg(root.join("shaders/include"))
+        .arg("-I")
+        .arg(root.join("shaders/examples"))
+        .arg(root.join("shaders/kernels/shade.comp"))
+        .arg("-o")
+        .arg(&module)
+        .output()
+        .expect("glslc: tools/setup.sh test installs it");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let bytes = std::fs::read(module).expect("the module");
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("four bytes"))).collect()
 }

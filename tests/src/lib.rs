@@ -1,6 +1,7 @@
 //! What the GPU tests share: an engine that is validated, random shading points, and a comparison that
 //! counts what it compared.
 
+pub mod c_library;
 mod cases;
 mod compare;
 pub mod kernel;

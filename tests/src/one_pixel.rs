@@ -16,7 +16,8 @@ pub const BEFORE: Vec4 = Vec4::new(0.25, 0.5, 1.0, 1.0);
 /// One pixel that sees a point, through a G-buffer that the test makes itself.
 pub struct OnePixel<'a> {
     engine: &'a TestEngine,
-    position: Image,
+    /// Positions, of a pass that takes them from an image.
+    pub position: Image,
     depth: Image,
     /// At the binding `g_normal`, of the G-buffer's layout; so the next two.
     pub normal: Image,
@@ -140,7 +141,10 @@ pub fn sampled<T: Pod>(engine: &TestEngine, format: vk::Format, texel: T) -> Ima
 }
 
 /// An image for radiance, which holds [`BEFORE`].
-fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
+///
+/// # Panics
+/// Where the device fails.
+pub fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
     let before = BEFORE.to_array();
     match format {
         RadianceFormat::Rgba32Float => {
@@ -158,7 +162,11 @@ fn stored(engine: &TestEngine, format: RadianceFormat) -> Image {
     }
 }
 
-fn read(image: &Image, format: RadianceFormat) -> Vec4 {
+/// What a pass left in such an image.
+///
+/// # Panics
+/// Where the device fails.
+pub fn read(image: &Image, format: RadianceFormat) -> Vec4 {
     match format {
         RadianceFormat::Rgba32Float => {
             let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();

@@ -3,52 +3,18 @@
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_SPHERE,
     AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_SHAPE_SPHERE,
-    AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightFunction, ArealightHost, ArealightLight,
-    ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
-    ArealightResult, ArealightSetLayout, ArealightShape, ArealightTable, ArealightUpload,
-    arealight_abi_version, arealight_create, arealight_destroy, arealight_last_error, arealight_pass_create,
+    AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightHost, ArealightLight, ArealightPackedLights,
+    ArealightPass, ArealightResources, ArealightResult, ArealightShape, ArealightTable, ArealightUpload,
+    arealight_abi_version, arealight_create, arealight_destroy, arealight_pass_create,
     arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes, arealight_pass_prepare,
     arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory,
     arealight_table_upload,
 };
-use arealight_host::testing::{TestHost, device_or_skip};
-use ash::vk::{self, Handle as _};
-use std::ffi::{CStr, c_char, c_void};
+use arealight_tests::TestEngine;
+use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};
+use ash::vk;
+use std::ffi::c_void;
 use std::ptr::{null, null_mut};
-
-/// Asserts that a call failed with `expected`, and a message that has `words`.
-#[track_caller]
-fn refused(result: ArealightResult, expected: ArealightResult, words: &str) {
-    // SAFETY: the message is this thread's, and lives until its next failure.
-    let message = unsafe { CStr::from_ptr(arealight_last_error()) }.to_str().unwrap();
-    assert_eq!(result, expected, "{message}");
-    assert!(message.contains(words), "`{words}` is not in: {message}");
-}
-
-#[track_caller]
-fn good(result: ArealightResult) {
-    // SAFETY: as above.
-    assert_eq!(result, ArealightResult::Ok, "{:?}", unsafe { CStr::from_ptr(arealight_last_error()) });
-}
-
-unsafe extern "system" fn finds_nothing(_: *mut c_void, _: *const c_char) -> ArealightFunction {
-    None
-}
-
-/// A host without a device: what it says is checked before anything of Vulkan is called.
-fn no_host() -> ArealightHost {
-    ArealightHost {
-        abi_version: AREALIGHT_ABI_VERSION,
-        api_version: vk::API_VERSION_1_1,
-        get_instance_proc_addr: Some(finds_nothing),
-        get_device_proc_addr: Some(finds_nothing),
-        // Not null; nothing looks behind them
-        instance: null_mut::<c_void>().wrapping_add(8),
-        physical_device: null_mut::<c_void>().wrapping_add(8),
-        device: null_mut::<c_void>().wrapping_add(8),
-        pipeline_cache: 0,
-    }
-}
 
 #[test]
 fn hosts_that_are_none_are_refused_by_field() {
@@ -66,7 +32,7 @@ fn hosts_that_are_none_are_refused_by_field() {
 
     let other = AREALIGHT_ABI_VERSION + 1;
     for (wrong, result, words) in [
-        (ArealightHost { abi_version: other, ..no_host() }, ErrorAbiVersion, "host.abi_version: 2"),
+        (ArealightHost { abi_version: other, ..no_host() }, ErrorAbiVersion, "host.abi_version: 3"),
         (ArealightHost { api_version: vk::API_VERSION_1_0, ..no_host() }, ErrorMissingFeature, "Vulkan 1.1"),
         (
             ArealightHost { get_instance_proc_addr: None, ..no_host() },
@@ -123,84 +89,13 @@ fn null_objects_are_refused_and_destroying_nothing_is_fine() {
     }
 }
 
-/// The library on a device of the tests.
-struct Fixture {
-    host: TestHost,
-    /// Keeps the loader, whose functions the library has.
-    _entry: ash::Entry,
-    arealight: *mut Arealight,
-}
-
-impl Fixture {
-    fn new() -> Option<Self> {
-        let host = device_or_skip()?;
-        // SAFETY: the system's loader is what the host of the tests was opened with.
-        let entry = unsafe { ash::Entry::load() }.unwrap();
-        let (find_instance, find_device) =
-            (entry.static_fn().get_instance_proc_addr, host.instance().fp_v1_0().get_device_proc_addr);
-        // SAFETY: both sides are functions of C that take a handle, which is a pointer, and a string.
-        let info = unsafe {
-            ArealightHost {
-                get_instance_proc_addr: Some(std::mem::transmute::<
-                    vk::PFN_vkGetInstanceProcAddr,
-                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
-                >(find_instance)),
-                get_device_proc_addr: Some(std::mem::transmute::<
-                    vk::PFN_vkGetDeviceProcAddr,
-                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
-                >(find_device)),
-                instance: host.instance().handle().as_raw() as *mut c_void,
-                physical_device: host.physical_device().as_raw() as *mut c_void,
-                device: host.device().handle().as_raw() as *mut c_void,
-                ..no_host()
-            }
-        };
-        let mut arealight = null_mut();
-        // SAFETY: the handles are the host's, which outlives the library's object.
-        good(unsafe { arealight_create(&raw const info, null(), &raw mut arealight) });
-        Some(Self { host, _entry: entry, arealight })
-    }
-
-    fn pass(&self, effects: u32) -> *mut ArealightPass {
-        let options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
-        let mut pass = null_mut();
-        // SAFETY: the pointers are valid.
-        good(unsafe { arealight_pass_create(self.arealight, &raw const options, &raw mut pass) });
-        pass
-    }
-}
-
-impl Drop for Fixture {
-    fn drop(&mut self) {
-        // SAFETY: nothing is pending on the device.
-        good(unsafe { arealight_destroy(self.arealight) });
-    }
-}
-
 const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 
 const CORNERS: [f64; 6] = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
 
 fn light() -> ArealightLight {
-    ArealightLight {
-        name: c"lamp".as_ptr(),
-        vertices: TRIANGLE.as_ptr(),
-        texture_coordinates: null(),
-        vertex_count: 3,
-        texture_layer: 0,
-        radiance: [1.0; 3],
-        two_sided: 0,
-    }
+    ArealightLight { name: c"lamp".as_ptr(), vertices: TRIANGLE.as_ptr(), vertex_count: 3, ..NO_LIGHT }
 }
-
-const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
-    lights: null_mut(),
-    vertices: null_mut(),
-    lights_size: 0,
-    vertices_size: 0,
-    quad_count: 0,
-    unused: 0,
-};
 
 /// Packs one light about the origin.
 fn pack(
@@ -215,9 +110,12 @@ fn pack(
 #[test]
 fn lights_that_cannot_be_shaded_are_named() {
     use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight, ErrorTooSmall};
-    let Some(fixture) = Fixture::new() else { return };
-    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
     let mut arrays = NO_ARRAYS;
+    let (three, both) = (3_u32, [TRIANGLE, TRIANGLE.map(|number| number + 2.0)].concat());
+    let outside = ArealightLight { vertices: both.as_ptr(), ..light() };
     let nan = [f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     for (wrong, result, words) in [
         (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "light 'lamp': vertices: 2 given"),
@@ -236,6 +134,22 @@ fn lights_that_cannot_be_shaded_are_named() {
             "light 'lamp' calls for the effects: two_sided",
         ),
         (ArealightLight { texture_coordinates: CORNERS.as_ptr(), ..light() }, ErrorEffects, "textured"),
+        (ArealightLight { hole_count: 1, ..light() }, ErrorArgument, "lights[0].hole_vertex_counts: is null"),
+        (
+            ArealightLight { hole_vertex_counts: &raw const three, hole_count: 1, ..outside },
+            ErrorLight,
+            "light 'lamp': holes[0]: vertices[0]",
+        ),
+        (
+            ArealightLight {
+                hole_vertex_counts: &raw const three,
+                hole_count: 1,
+                texture_coordinates: CORNERS.as_ptr(),
+                ..outside
+            },
+            ErrorArgument,
+            "lights[0].hole_count: a light with texture coordinates has no holes",
+        ),
     ] {
         refused(pack(pass, &wrong, &mut arrays), result, words);
     }
@@ -282,7 +196,7 @@ fn lights_that_cannot_be_shaded_are_named() {
         radiance: [1.0; 3],
         two_sided: 0,
     };
-    let round = fixture.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
+    let round = library.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
     let mut pack_shape = |pass, shape: &ArealightShape, size: &mut u64| {
         let to = if *size > 0 { lights.as_mut_ptr().cast() } else { null_mut() };
         // SAFETY: `lights` has 128 bytes; no more are said.
@@ -322,9 +236,10 @@ fn lights_that_cannot_be_shaded_are_named() {
 #[test]
 fn calls_out_of_order_are_refused() {
     use ArealightResult::{ErrorArgument, ErrorTooSmall};
-    let Some(fixture) = Fixture::new() else { return };
-    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
-    let (arealight, resources) = (fixture.arealight, ArealightResources::default());
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let (arealight, resources) = (library.arealight, ArealightResources::default());
     let frame = |width| ArealightFrame {
         width,
         height: 8,
@@ -349,14 +264,7 @@ fn calls_out_of_order_are_refused() {
         let write = |set| arealight_pass_write_set(pass, arealight, set, &raw const resources);
         refused(write(0), ErrorArgument, "set: is null");
         refused(write(8), ErrorArgument, "call arealight_table_upload first");
-        let mut layout = ArealightSetLayout {
-            layout: 0,
-            sampled_images: 0,
-            combined_image_samplers: 0,
-            storage_images: 0,
-            storage_buffers: 0,
-        };
-        good(arealight_pass_set_layout(pass, &raw mut layout));
+        let layout = set_layout(pass);
         assert!(layout.layout != 0 && layout.sampled_images > 0 && layout.storage_images == 2);
         // A frame that cannot be recorded
         let commands = null_mut::<c_void>().wrapping_add(8);
@@ -376,10 +284,7 @@ fn calls_out_of_order_are_refused() {
     }
 
     // An upload that lacks something
-    let mut memory =
-        ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
-    // SAFETY: the pointer is valid.
-    good(unsafe { arealight_table_memory(arealight, &raw mut memory) });
+    let memory = library.table_memory();
     assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 3 * 16);
     let whole = ArealightUpload {
         memory: 8,
@@ -407,15 +312,16 @@ fn calls_out_of_order_are_refused() {
         good(arealight_pass_destroy(pass));
         refused(arealight_pass_destroy(pass), ErrorArgument, "was it destroyed?");
     }
-    assert!(fixture.host.validation_messages().is_empty());
+    assert!(engine.host().validation_messages().is_empty());
 }
 
 #[test]
 fn a_pass_outlives_what_made_it() {
-    let Some(mut fixture) = Fixture::new() else { return };
-    let pass = fixture.pass(AREALIGHT_EFFECT_DIFFUSE);
-    // The fixture destroys nothing then
-    let arealight = std::mem::replace(&mut fixture.arealight, null_mut());
+    let Some(engine) = TestEngine::new() else { return };
+    let mut library = CLibrary::new(&engine);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    // It destroys nothing then
+    let arealight = std::mem::replace(&mut library.arealight, null_mut());
     // SAFETY: nothing is pending; the device outlives both.
     unsafe {
         good(arealight_destroy(arealight));

@@ -3,6 +3,7 @@
 
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, PolygonLight, Shape, ShapeLight};
+use arealight_capi::AREALIGHT_ABI_VERSION;
 use arealight_host::{Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -17,14 +18,16 @@ const SIZE: [u32; 2] = [256, 160];
 /// The lights' origin, where the camera is.
 const CAMERA: DVec3 = DVec3::new(1000.0, 1.5, -2000.0);
 
-/// Where the shared library is that this test was built with.
-fn libraries() -> PathBuf {
-    std::env::current_exe().unwrap().parent().unwrap().to_owned()
+/// The shared library that this test was built with.
+fn library() -> PathBuf {
+    std::env::current_exe().unwrap().parent().unwrap().join("libarealight_capi.so")
 }
 
-/// Compiles the host against it.
+/// Compiles the host against it, and puts the library into the folder as a loader looks for it.
 fn compile(folder: &Path) -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let name = format!("libarealight_capi.so.{AREALIGHT_ABI_VERSION}");
+    std::os::unix::fs::symlink(library(), folder.join(name)).unwrap();
     let program = folder.join("host");
     let output = Command::new("c++")
         // Numbers as they are written, as in Rust: no product and sum is fused
@@ -40,9 +43,8 @@ fn compile(folder: &Path) -> PathBuf {
         .arg("-I")
         .arg(root.join("crates/arealight-capi/include"))
         .arg(root.join("examples/cpp/host.cpp"))
-        .arg("-L")
-        .arg(libraries())
-        .args(["-larealight_capi", "-lvulkan"])
+        .arg(library())
+        .arg("-lvulkan")
         .arg("-o")
         .arg(&program)
         .output()
@@ -55,7 +57,7 @@ fn compile(folder: &Path) -> PathBuf {
 fn run(program: &Path, picture: &Path, validation: &str, more: &[&str]) -> Output {
     let mut command = Command::new(program);
     // Cargo has its own, where an earlier build may be
-    command.env("LD_LIBRARY_PATH", libraries());
+    command.env("LD_LIBRARY_PATH", program.parent().unwrap());
     command.arg(picture).args(["--validate", validation]).args(more).output().expect("the program starts")
 }
 

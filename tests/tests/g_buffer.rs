@@ -2,13 +2,18 @@
 
 use arealight::Effects;
 use arealight::plan::{GBufferLayout, ShadeOptions};
+use arealight_capi::{
+    ArealightImage, ArealightPassOptions, ArealightResult, arealight_pass_create_with_module,
+    arealight_pass_destroy,
+};
 use arealight_tests::TestEngine;
+use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
+use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::one_pixel::{self, OnePixel, lamp, sampled};
 use arealight_vk::{Error, ShadePass};
 use ash::vk::Format;
 use glam::{Vec3, Vec4};
-use std::path::Path;
-use std::process::Command;
+use std::ptr::null_mut;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
 const FLOAT: Format = Format::R32G32B32A32_SFLOAT;
@@ -77,8 +82,14 @@ fn assert_same(layout: Vec3, ours: Vec3) {
 }
 
 #[test]
-fn surfaces_of_other_layouts_are_shaded_as_ours() {
+fn any_layout_is_shaded_as_ours() {
     let Some(engine) = TestEngine::new() else { return };
+    // On one device, because they have a pipeline in common, and each takes seconds to compile on the CPU
+    surfaces_of_other_layouts_are_shaded_as_ours(&engine);
+    a_bridge_of_the_host_reads_its_own_g_buffer(&engine);
+}
+
+fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
     let normal = Vec3::new(0.2, -0.3, 0.8).normalize_or(Vec3::Z);
     let exact =
         Surface { normal, roughness: 0.4, base_color: Vec3::new(0.8, 0.6, 0.3), metalness: 0.25, f0: 0.04 };
@@ -86,8 +97,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours() {
     let [red, green, blue, _] = of_bytes(color);
     // What the images hold, read back here by what each engine's documents say
     let stored = Surface { base_color: Vec3::new(red, green, blue), ..exact };
-    let mut pixel = pixel(&engine);
-    pixel.base_color = sampled(&engine, Format::R8G8B8A8_UNORM, color);
+    let mut pixel = pixel(engine);
+    pixel.base_color = sampled(engine, Format::R8G8B8A8_UNORM, color);
     let mut layouts = vec![];
 
     // Unreal Engine: ten bits of (n + 1) / 2; metallic, specular, roughness
@@ -95,20 +106,20 @@ fn surfaces_of_other_layouts_are_shaded_as_ours() {
     let word = ten[0] | ten[1] << 10 | ten[2] << 20;
     let material = bytes([exact.metalness, 0.75, exact.roughness, 1.0 / 255.0]);
     let [metalness, specular, roughness, _] = of_bytes(material);
-    pixel.normal = sampled(&engine, Format::A2B10G10R10_UNORM_PACK32, word);
-    pixel.specular = sampled(&engine, Format::R8G8B8A8_UNORM, material);
+    pixel.normal = sampled(engine, Format::A2B10G10R10_UNORM_PACK32, word);
+    pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, material);
     let shaded = pixel.shade(options(GBufferLayout::Unreal), &[lamp()], CAMERA, None).truncate();
     let normal = Vec3::from_array(ten.map(|n| of_unorm(n, 10) * 2.0 - 1.0));
     let surface = Surface { normal, roughness, metalness, f0: 0.08 * specular, ..stored };
-    assert_same(shaded, surface.shade(&engine));
+    assert_same(shaded, surface.shade(engine));
     layouts.push(shaded);
 
     // Unity: eight signed bits, smoothness; reflectivity
     let [x, y, z] = exact.normal.to_array().map(|n| snorm(n, 8));
     let smoothness = snorm(1.0 - exact.roughness, 8);
     let reflectivity = bytes([0.04 + 0.96 * exact.metalness, 0.0, 0.0, 1.0]);
-    pixel.normal = sampled(&engine, Format::R8G8B8A8_SNORM, [x as i8, y as i8, z as i8, smoothness as i8]);
-    pixel.specular = sampled(&engine, Format::R8G8B8A8_UNORM, reflectivity);
+    pixel.normal = sampled(engine, Format::R8G8B8A8_SNORM, [x as i8, y as i8, z as i8, smoothness as i8]);
+    pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, reflectivity);
     let shaded = pixel.shade(options(GBufferLayout::Unity), &[lamp()], CAMERA, None).truncate();
     let surface = Surface {
         normal: Vec3::from_array([x, y, z].map(|n| of_snorm(n, 8))),
@@ -116,7 +127,7 @@ fn surfaces_of_other_layouts_are_shaded_as_ours() {
         metalness: (of_bytes(reflectivity)[0] - 0.04) / 0.96,
         ..stored
     };
-    assert_same(shaded, surface.shade(&engine));
+    assert_same(shaded, surface.shade(engine));
     layouts.push(shaded);
 
     // An octahedron's place in 16 bits, on either half; occlusion, roughness, metalness
@@ -128,17 +139,17 @@ fn surfaces_of_other_layouts_are_shaded_as_ours() {
         let place = place.map(|n| snorm(n, 16));
         let material = bytes([0.5, exact.roughness, exact.metalness, 0.0]);
         let [_, roughness, metalness, _] = of_bytes(material);
-        pixel.normal = sampled(&engine, Format::R16G16_SNORM, place.map(|n| n as i16));
-        pixel.specular = sampled(&engine, Format::R8G8B8A8_UNORM, material);
+        pixel.normal = sampled(engine, Format::R16G16_SNORM, place.map(|n| n as i16));
+        pixel.specular = sampled(engine, Format::R8G8B8A8_UNORM, material);
         let shaded = pixel.shade(options(GBufferLayout::Octahedral), &[lamp()], CAMERA, None).truncate();
         // The normal as it was: 16 bits move it by 1e-4 at most, and what is reflected by 1e-3
-        let ours = Surface { normal, roughness, metalness, ..stored }.shade(&engine);
+        let ours = Surface { normal, roughness, metalness, ..stored }.shade(engine);
         assert!(((shaded - ours) / ours).abs().max_element() < 1e-3, "{shaded} {ours}");
         layouts.push(shaded);
     }
 
     // What eight and ten bits cost: of the surface that was meant, a few hundredths. The first has another reflectance
-    let meant = exact.shade(&engine);
+    let meant = exact.shade(engine);
     for shaded in &layouts[1..3] {
         let apart = ((shaded - meant) / meant).abs().max_element();
         assert!(apart < 0.05, "{apart}");
@@ -148,30 +159,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours() {
     assert!(((wrong - layouts[3]) / layouts[3]).abs().max_element() > 0.1, "{wrong}");
 }
 
-/// The kernel with the example's G-buffer, by the compiler that a host may have.
-fn compile_with_bridge() -> Vec<u32> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let folder = tempfile::tempdir().unwrap();
-    let module = folder.path().join("shade.spv");
-    let output = Command::new("glslc")
-        .args(["--target-env=vulkan1.1", "-DAREALIGHT_HOST_G_BUFFER=1", "-I"])
-        .arg(root.join("shaders/include"))
-        .arg("-I")
-        .arg(root.join("shaders/examples"))
-        .arg(root.join("shaders/kernels/shade.comp"))
-        .arg("-o")
-        .arg(&module)
-        .output()
-        .expect("glslc: tools/setup.sh test installs it");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let bytes = std::fs::read(module).unwrap();
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect()
-}
-
-#[test]
-fn a_bridge_of_the_host_reads_its_own_g_buffer() {
-    let Some(engine) = TestEngine::new() else { return };
-    let mut pixel = pixel(&engine);
+fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
+    let mut pixel = pixel(engine);
     let normal = Vec3::new(0.2, -0.3, 0.8).normalize_or(Vec3::Z);
     let halves = [normal.x, normal.y, normal.z, 0.4].map(|n| snorm(n, 16));
     let half = |n: i32| u32::from(n as i16 as u16);
@@ -182,15 +171,41 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer() {
         u32::from_le_bytes(color),
         0,
     ];
-    pixel.normal = sampled(&engine, Format::R32G32B32A32_UINT, words);
-    pixel.module = Some(compile_with_bridge());
+    pixel.normal = sampled(engine, Format::R32G32B32A32_UINT, words);
+    pixel.module = Some(shade_with_bridge());
     let shaded = pixel.shade(options(GBufferLayout::Arealight), &[lamp()], CAMERA, None).truncate();
     let [red, green, blue, metalness] = of_bytes(color);
     let [x, y, z, roughness] = halves.map(|n| of_snorm(n, 16));
     let (normal, base_color) = (Vec3::new(x, y, z), Vec3::new(red, green, blue));
-    assert_same(shaded, Surface { normal, roughness, base_color, metalness, f0: 0.04 }.shade(&engine));
+    assert_same(shaded, Surface { normal, roughness, base_color, metalness, f0: 0.04 }.shade(engine));
+
+    // So it does through the C library, to the last bit
+    let (library, light) = (CLibrary::new(engine), lamp());
+    let memory = DeviceMemory::new(engine, &library.table_memory());
+    library.upload(&memory);
+    let effects = options(GBufferLayout::Arealight).effects.bits();
+    let c_options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
+    let module = shade_with_bridge();
+    let make = |words: &[u32], size| {
+        let mut pass = null_mut();
+        let (options, words) = (&raw const c_options, words.as_ptr());
+        // SAFETY: the pointers are valid, with so many bytes or more.
+        let made = unsafe {
+            arealight_pass_create_with_module(library.arealight, options, words, size, &raw mut pass)
+        };
+        (made, pass)
+    };
+    let (made, pass) = make(&module, size_of_val(module.as_slice()));
+    good(made);
+    let by_c = library.shade(pass, &pixel, &[c_lamp(&light)], ArealightImage::default(), CAMERA);
+    assert_eq!(by_c.truncate(), shaded);
+    // SAFETY: nothing is pending.
+    good(unsafe { arealight_pass_destroy(pass) });
 
     // What is no SPIR-V is refused
+    let argument = ArealightResult::ErrorArgument;
+    refused(make(&[7], 4).0, argument, "module: does not begin as SPIR-V does");
+    refused(make(&module, 7).0, argument, "size: 7 bytes are no whole words of SPIR-V");
     // SAFETY: nothing is made where an error is returned.
     let error =
         unsafe { ShadePass::with_module(engine.context(), options(GBufferLayout::Arealight), vec![7]) };

@@ -20,8 +20,8 @@
 #include <stdint.h>
 
 // The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
-// with. They must be equal; arealight_create refuses another.
-#define AREALIGHT_ABI_VERSION 1
+// with. They must be equal; arealight_create refuses another. On ELF systems the shared library's SONAME ends in it.
+#define AREALIGHT_ABI_VERSION 2
 
 // The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
 #define AREALIGHT_EFFECT_DIFFUSE 1
@@ -162,6 +162,15 @@
 // Half spheres about both ends do: a capsule.
 #define AREALIGHT_TUBE_ROUND 2
 
+// Beyond the image is its edge.
+#define AREALIGHT_WRAP_CLAMP 0
+
+// The image again.
+#define AREALIGHT_WRAP_REPEAT 1
+
+// The image again, every other one mirrored.
+#define AREALIGHT_WRAP_MIRROR 2
+
 // The range of an ArealightBuffer from its offset to its end.
 #define AREALIGHT_WHOLE_SIZE UINT64_MAX
 
@@ -194,6 +203,9 @@ typedef struct Arealight Arealight;
 
 // A shade pass, specialised for effects and a quality.
 typedef struct ArealightPass ArealightPass;
+
+// The images of lights on a device, filtered for shading.
+typedef struct ArealightTextures ArealightTextures;
 
 // A function of Vulkan, as vkGetInstanceProcAddr returns it.
 typedef void (*ArealightFunction)(void);
@@ -234,13 +246,13 @@ typedef struct ArealightTable {
     uint32_t reserved;
 } ArealightTable;
 
-// What memory the table needs.
+// What memory an image of the library's needs.
 typedef struct ArealightMemory {
     // VkMemoryRequirements of the image.
     uint64_t size;
     // VkMemoryRequirements of the image.
     uint64_t alignment;
-    // Bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    // Of the table: bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT. Of light textures 0.
     uint64_t staging_size;
     // VkMemoryRequirements of the image.
     uint32_t memory_type_bits;
@@ -283,6 +295,13 @@ typedef struct ArealightLight {
     float radiance[3];
     // 1: the back emits too.
     uint32_t two_sided;
+    // Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
+    // in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON, and has no texture coordinates.
+    const uint32_t *hole_vertex_counts;
+    // How many holes.
+    uint32_t hole_count;
+    // 0
+    uint32_t reserved;
 } ArealightLight;
 
 // Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
@@ -351,9 +370,9 @@ typedef struct ArealightPassOptions {
     uint32_t g_buffer;
 } ArealightPassOptions;
 
-// What a descriptor set of a pass is made with.
+// What a descriptor set is made with.
 typedef struct ArealightSetLayout {
-    // VkDescriptorSetLayout, the pass's own.
+    // VkDescriptorSetLayout, the library's own.
     uint64_t layout;
     // Descriptors that a set takes from its pool: VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE.
     uint32_t sampled_images;
@@ -403,8 +422,8 @@ typedef struct ArealightResources {
     // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
     // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
-    // The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
-    // AREALIGHT_EFFECT_TEXTURED.
+    // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
+    // describes. May be 0 without AREALIGHT_EFFECT_TEXTURED.
     struct ArealightImage light_textures;
     // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     struct ArealightImage radiance;
@@ -435,6 +454,70 @@ typedef struct ArealightFrame {
     // be null with AREALIGHT_POSITION_IMAGE.
     const float *position_from_clip;
 } ArealightFrame;
+
+// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
+typedef struct ArealightTextureOptions {
+    // In texels: a power of two from 64 to 4096. Images of other sizes are resampled.
+    uint32_t width;
+    // Likewise.
+    uint32_t height;
+    // How many images, from 1 on.
+    uint32_t layers;
+    // 0
+    uint32_t reserved;
+} ArealightTextureOptions;
+
+// What light textures need of the host.
+typedef struct ArealightTextureNeeds {
+    // Of the image.
+    struct ArealightMemory memory;
+    // Of a set for a level.
+    struct ArealightSetLayout level_set;
+    // Of a set for an image that is loaded.
+    struct ArealightSetLayout source_set;
+    // How many sets there are for levels.
+    uint32_t level_set_count;
+    // 0
+    uint32_t reserved;
+} ArealightTextureNeeds;
+
+// What light textures are given once.
+typedef struct ArealightTextureSetup {
+    // VkDeviceMemory for ArealightTextureNeeds.memory; it is freed after arealight_textures_destroy.
+    uint64_t memory;
+    // Where in it.
+    uint64_t memory_offset;
+    // VkDescriptorSet each, made with ArealightTextureNeeds.level_set. They live as long as the textures.
+    const uint64_t *level_sets;
+    // ArealightTextureNeeds.level_set_count.
+    uint32_t level_set_count;
+    // 0
+    uint32_t reserved;
+    // VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
+    void *command_buffer;
+} ArealightTextureSetup;
+
+// An image that replaces a layer. Zero in `part_size` is the whole image.
+typedef struct ArealightTextureUpdate {
+    // VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
+    uint64_t source_set;
+    // The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    double part_low[2];
+    // What is added to them at (1, 1); positive.
+    double part_size[2];
+    // Which layer.
+    uint32_t layer;
+    // The image's width in texels, from 1 to 4096.
+    uint32_t source_width;
+    // Its height.
+    uint32_t source_height;
+    // 1: it holds sRGB in a format that does not decode by itself, such as rgba8.
+    uint32_t decode_srgb;
+    // What is beyond 0 to 1 along u: one of AREALIGHT_WRAP_*.
+    uint32_t wrap_u;
+    // Along v.
+    uint32_t wrap_v;
+} ArealightTextureUpdate;
 
 #ifdef __cplusplus
 extern "C" {
@@ -509,6 +592,18 @@ enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
                                            const struct ArealightPassOptions *options,
                                            struct ArealightPass **out);
 
+// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
+// own: `options.g_buffer` does not count then. `words` is SPIR-V, `size` its bytes. Images that the module does not declare
+// may be any in ArealightResources.
+//
+// The host sees to it:
+// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
+enum ArealightResult arealight_pass_create_with_module(const struct Arealight *arealight,
+                                                       const struct ArealightPassOptions *options,
+                                                       const uint32_t *words,
+                                                       size_t size,
+                                                       struct ArealightPass **out);
+
 // What descriptor sets of the pass are made with.
 //
 // The host sees to it:
@@ -550,6 +645,71 @@ enum ArealightResult arealight_pass_prepare(const struct ArealightPass *pass,
 // The host sees to it:
 // No commands of the pass are pending, the device is alive, and no other thread uses the pass.
 enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
+
+// Makes an image for what lights show, without memory. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_textures_create(const struct Arealight *arealight,
+                                               const struct ArealightTextureOptions *options,
+                                               struct ArealightTextures **out);
+
+// What the textures need of the host: memory, and descriptor sets from pools of the host.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_textures_needs(const struct ArealightTextures *textures,
+                                              struct ArealightTextureNeeds *out);
+
+// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the commands run before
+// any others that use the textures. Commands that were never run are made good by another call with the same memory.
+//
+// The host sees to it:
+// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the textures or sets.
+enum ArealightResult arealight_textures_setup(struct ArealightTextures *textures,
+                                              const struct ArealightTextureSetup *setup);
+
+// Points a VkDescriptorSet, made with ArealightTextureNeeds.source_set, at an image to load: a 2D view with
+// VK_IMAGE_USAGE_SAMPLED_BIT, of a format that is sampled as numbers, whose first level is read.
+//
+// The host sees to it:
+// The pointer is null or valid. No pending commands use the set, and the image outlives those that will.
+enum ArealightResult arealight_textures_write_source_set(const struct ArealightTextures *textures,
+                                                         uint64_t set,
+                                                         struct ArealightImage source);
+
+// Records that images replace layers and are filtered, with the barriers between and around: afterwards they are visible to
+// shaders. The cost is that of the layers given. The host's barriers make the images visible to compute shaders before.
+// Frames that are recorded later on the same queue see the new layers, those before the old ones; nothing waits.
+//
+// The host sees to it:
+// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes, after
+// the commands of arealight_textures_setup.
+enum ArealightResult arealight_textures_update(const struct ArealightTextures *textures,
+                                               void *command_buffer,
+                                               const struct ArealightTextureUpdate *updates,
+                                               uint32_t update_count);
+
+// The textures as ArealightResources.light_textures takes them.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_textures_image(const struct ArealightTextures *textures,
+                                              struct ArealightImage *out);
+
+// Checks that the layer of every light that shows an image is there: passes do not know what will be bound.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as their counts say.
+enum ArealightResult arealight_textures_check_lights(const struct ArealightTextures *textures,
+                                                     const struct ArealightLight *lights,
+                                                     uint32_t light_count);
+
+// Destroys textures, before or after the object that they were made from. Null is nothing.
+//
+// The host sees to it:
+// No commands that use them are pending, the device is alive, and no other thread uses the object.
+enum ArealightResult arealight_textures_destroy(struct ArealightTextures *textures);
 
 #ifdef __cplusplus
 }  // extern "C"
@@ -609,7 +769,7 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, combined_image_samplers) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 48);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, vertices) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightLight, texture_coordinates) == 16);
@@ -617,6 +777,9 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, vertex_count) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightLight, texture_layer) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightLight, radiance) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightLight, hole_vertex_counts) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 60);
 AREALIGHT_ASSERT(sizeof(ArealightShape) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightShape, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShape, kind) == 8);
@@ -659,6 +822,34 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, quad_count) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, unused) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
+AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, width) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, height) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, reserved) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 88);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, memory) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, source_set) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set_count) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, reserved) == 84);
+AREALIGHT_ASSERT(sizeof(ArealightTextureSetup) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory_offset) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_sets) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, level_set_count) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, reserved) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, command_buffer) == 32);
+AREALIGHT_ASSERT(sizeof(ArealightTextureUpdate) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_set) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_low) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, part_size) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, layer) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_width) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, source_height) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, decode_srgb) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_u) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightTextureUpdate, wrap_v) == 60);
 #undef AREALIGHT_ASSERT
 #endif
 

@@ -9,6 +9,7 @@
 //! | [`device`] | from the host's handles to a table on its device |
 //! | [`pass`] | the shade pass |
 //! | [`lights`] | lights, packed for it |
+//! | [`textures`] | images that lights show |
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
 //! | `handles` | which objects are alive |
@@ -26,17 +27,19 @@ mod handles;
 pub mod lights;
 mod loader;
 pub mod pass;
+pub mod textures;
 pub mod types;
 
 pub use device::*;
 pub use failure::{ArealightResult, arealight_last_error};
 pub use lights::*;
 pub use pass::*;
+pub use textures::*;
 pub use types::*;
 
 /// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
-/// with. They must be equal; arealight_create refuses another.
-pub const AREALIGHT_ABI_VERSION: u32 = 1;
+/// with. They must be equal; arealight_create refuses another. On ELF systems the shared library's SONAME ends in it.
+pub const AREALIGHT_ABI_VERSION: u32 = 2;
 
 /// AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
 #[unsafe(no_mangle)]

@@ -35,8 +35,7 @@ pub unsafe extern "C" fn arealight_pass_pack_lights(
             )
         };
         // SAFETY: as above.
-        let lights = lights.iter().enumerate().map(|(index, light)| unsafe { read_light(index, light) });
-        let made = pass.shade().pack_lights(&lights.collect::<Result<Vec<_>, _>>()?, origin)?;
+        let made = pass.shade().pack_lights(&unsafe { read_lights(lights) }?, origin)?;
 
         // Copy, or say what is needed
         let bytes: [&[u8]; 2] = [bytemuck::cast_slice(&made.lights), bytemuck::cast_slice(&made.vertices)];
@@ -123,7 +122,7 @@ unsafe fn read_name(name: *const c_char, otherwise: String) -> String {
 }
 
 /// 0 or 1 as they are meant.
-fn read_flag(flag: u32, field: &str) -> Result<bool, Failure> {
+pub(crate) fn read_flag(flag: u32, field: &str) -> Result<bool, Failure> {
     match flag {
         0 | 1 => Ok(flag == 1),
         other => Err(Failure::argument(format!("{field}: {other} must be 0 or 1"))),
@@ -146,28 +145,49 @@ unsafe fn copy(bytes: &[u8], to: *mut c_void) {
 }
 
 /// # Safety
+/// The lights' pointers are null or valid.
+pub(crate) unsafe fn read_lights(lights: &[ArealightLight]) -> Result<Vec<PolygonLight>, Failure> {
+    // SAFETY: the same contract.
+    lights.iter().enumerate().map(|(index, light)| unsafe { read_light(index, light) }).collect()
+}
+
+/// # Safety
 /// The light's pointers are null or valid.
 unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<PolygonLight, Failure> {
     let count = light.vertex_count as usize;
     let field = |name| format!("lights[{index}].{name}");
-    // SAFETY: the same contract, for all three.
-    let (name, vertices, coordinates) = unsafe {
+    // SAFETY: the same contract, for all four.
+    let (name, hole_counts, vertices, coordinates) = unsafe {
         let name = read_name(light.name, format!("lights[{index}]"));
-        let vertices = arguments::array(light.vertices, 3 * count, &field("vertices"))?;
+        let counts = light.hole_vertex_counts;
+        let counts = arguments::array(counts, light.hole_count as usize, &field("hole_vertex_counts"))?;
+        let all = counts.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
+        let vertices = arguments::array(light.vertices, all.saturating_mul(3), &field("vertices"))?;
         let uvs = light.texture_coordinates;
         let uvs = (!uvs.is_null()).then(|| arguments::array(uvs, 2 * count, &field("texture_coordinates")));
-        (name, vertices, uvs.transpose()?)
+        (name, counts, vertices, uvs.transpose()?)
     };
-    Ok(PolygonLight {
+    if coordinates.is_some() && !hole_counts.is_empty() {
+        let message = format!("{}: a light with texture coordinates has no holes", field("hole_count"));
+        return Err(Failure::argument(message));
+    }
+    let mut vertices = vertices.chunks_exact(3).map(DVec3::from_slice);
+    let mut made = PolygonLight {
         name,
-        vertices: vertices.chunks_exact(3).map(DVec3::from_slice).collect(),
+        vertices: vertices.by_ref().take(count).collect(),
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: coordinates.map(|uvs| LightTexture {
             layer: light.texture_layer,
             uvs: uvs.chunks_exact(2).map(DVec2::from_slice).collect(),
         }),
-    })
+    };
+    if !hole_counts.is_empty() {
+        let hole = |count: &u32| vertices.by_ref().take(*count as usize).collect();
+        let holes: Vec<Vec<DVec3>> = hole_counts.iter().map(hole).collect();
+        made.cut_holes(&holes).map_err(arealight_vk::Error::from)?;
+    }
+    Ok(made)
 }
 
 /// # Safety

@@ -12,10 +12,11 @@ const INSTANCE: [&CStr; 3] = [
     c"vkGetPhysicalDeviceFormatProperties",
     c"vkGetPhysicalDeviceImageFormatProperties",
 ];
-const DEVICE: [&CStr; 23] = [
+const DEVICE: [&CStr; 24] = [
     c"vkBindImageMemory",
     c"vkCmdBindDescriptorSets",
     c"vkCmdBindPipeline",
+    c"vkCmdClearColorImage",
     c"vkCmdCopyBufferToImage",
     c"vkCmdDispatch",
     c"vkCmdPipelineBarrier",

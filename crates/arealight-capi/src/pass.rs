@@ -10,7 +10,7 @@ use crate::{arguments, handles};
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -36,18 +36,55 @@ pub unsafe extern "C" fn arealight_pass_create(
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (arealight, options) = unsafe {
-            arguments::write(out, std::ptr::null_mut(), "out")?;
-            (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
-        };
-        let options = shade_options(options)?;
-        // SAFETY: the pass is destroyed by the host, which follows the contract of arealight_pass_destroy.
-        let pass = unsafe { ShadePass::new(arealight.context(), options) }?;
-        // SAFETY: as above.
-        unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
+    // SAFETY: the same contract; the pass is the host's to destroy.
+    call(|| unsafe {
+        create(arealight, options, out, |context, options| Ok(ShadePass::new(context, options)?))
     })
+}
+
+/// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
+/// own: `options.g_buffer` does not count then. `words` is SPIR-V, `size` its bytes. Images that the module does not declare
+/// may be any in ArealightResources.
+///
+/// # Safety
+/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_create_with_module(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    words: *const u32,
+    size: usize,
+    out: *mut *mut ArealightPass,
+) -> ArealightResult {
+    let make = |context: &Context, options| {
+        if size % 4 != 0 {
+            return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
+        }
+        // SAFETY: the same contract, here and below.
+        let words = unsafe { arguments::array(words, size / 4, "words") }?;
+        // SAFETY: as above.
+        Ok(unsafe { ShadePass::with_module(context, options, words.to_vec()) }?)
+    };
+    // SAFETY: the same contract; the pass is the host's to destroy.
+    call(|| unsafe { create(arealight, options, out, make) })
+}
+
+/// # Safety
+/// Pointers are null or valid.
+unsafe fn create(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    out: *mut *mut ArealightPass,
+    make: impl FnOnce(&Context, ShadeOptions) -> Result<ShadePass, Failure>,
+) -> Result<(), Failure> {
+    // SAFETY: the same contract, here and below.
+    let (arealight, options) = unsafe {
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
+    };
+    let pass = make(arealight.context(), shade_options(options)?)?;
+    // SAFETY: as above.
+    unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
 }
 
 fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
@@ -118,18 +155,25 @@ pub unsafe extern "C" fn arealight_pass_set_layout(
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
         let pass = &unsafe { handles::borrow(pass, "pass") }?.pass;
-        let sizes = pass.pool_sizes(1);
-        let count = |kind| sizes.iter().find(|size| size.ty == kind).map_or(0, |size| size.descriptor_count);
-        let layout = ArealightSetLayout {
-            layout: pass.set_layout().as_raw(),
-            sampled_images: count(vk::DescriptorType::SAMPLED_IMAGE),
-            combined_image_samplers: count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER),
-            storage_images: count(vk::DescriptorType::STORAGE_IMAGE),
-            storage_buffers: count(vk::DescriptorType::STORAGE_BUFFER),
-        };
+        let layout = set_layout(pass.set_layout(), &pass.pool_sizes(1));
         // SAFETY: as above.
         unsafe { arguments::write(out, layout, "out") }
     })
+}
+
+/// A layout with what a set of it takes from its pool.
+pub(crate) fn set_layout(
+    layout: vk::DescriptorSetLayout,
+    sizes: &[vk::DescriptorPoolSize],
+) -> ArealightSetLayout {
+    let count = |kind| sizes.iter().find(|size| size.ty == kind).map_or(0, |size| size.descriptor_count);
+    ArealightSetLayout {
+        layout: layout.as_raw(),
+        sampled_images: count(vk::DescriptorType::SAMPLED_IMAGE),
+        combined_image_samplers: count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER),
+        storage_images: count(vk::DescriptorType::STORAGE_IMAGE),
+        storage_buffers: count(vk::DescriptorType::STORAGE_BUFFER),
+    }
 }
 
 /// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
@@ -190,7 +234,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
     })
 }
 
-fn sampled(image: ArealightImage) -> Resource {
+pub(crate) fn sampled(image: ArealightImage) -> Resource {
     let layout = vk::ImageLayout::from_raw(image.layout.cast_signed());
     Resource::SampledImage { view: vk::ImageView::from_raw(image.view), layout }
 }

@@ -112,6 +112,13 @@ pub const AREALIGHT_TUBE_FLAT: u32 = 1;
 /// Half spheres about both ends do: a capsule.
 pub const AREALIGHT_TUBE_ROUND: u32 = 2;
 
+/// Beyond the image is its edge.
+pub const AREALIGHT_WRAP_CLAMP: u32 = 0;
+/// The image again.
+pub const AREALIGHT_WRAP_REPEAT: u32 = 1;
+/// The image again, every other one mirrored.
+pub const AREALIGHT_WRAP_MIRROR: u32 = 2;
+
 /// The range of an ArealightBuffer from its offset to its end.
 pub const AREALIGHT_WHOLE_SIZE: u64 = u64::MAX;
 
@@ -159,15 +166,15 @@ pub struct ArealightTable {
     pub reserved: u32,
 }
 
-/// What memory the table needs.
+/// What memory an image of the library's needs.
 #[repr(C)]
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArealightMemory {
     /// VkMemoryRequirements of the image.
     pub size: u64,
     /// VkMemoryRequirements of the image.
     pub alignment: u64,
-    /// Bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    /// Of the table: bytes of the staging buffer, VK_BUFFER_USAGE_TRANSFER_SRC_BIT. Of light textures 0.
     pub staging_size: u64,
     /// VkMemoryRequirements of the image.
     pub memory_type_bits: u32,
@@ -225,11 +232,11 @@ pub struct ArealightPassOptions {
     pub g_buffer: u32,
 }
 
-/// What a descriptor set of a pass is made with.
+/// What a descriptor set is made with.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArealightSetLayout {
-    /// VkDescriptorSetLayout, the pass's own.
+    /// VkDescriptorSetLayout, the library's own.
     pub layout: u64,
     /// Descriptors that a set takes from its pool: VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE.
     pub sampled_images: u32,
@@ -260,6 +267,13 @@ pub struct ArealightLight {
     pub radiance: [f32; 3],
     /// 1: the back emits too.
     pub two_sided: u32,
+    /// Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
+    /// in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON, and has no texture coordinates.
+    pub hole_vertex_counts: *const u32,
+    /// How many holes.
+    pub hole_count: u32,
+    /// 0
+    pub reserved: u32,
 }
 
 /// A disk, sphere or tube of constant radiance, in world positions.
@@ -348,8 +362,8 @@ pub struct ArealightResources {
     /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
     /// AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     pub specular: ArealightImage,
-    /// The lights' images: a 2D array (rgba16f) with the levels that `arealight export` describes. May be 0 without
-    /// AREALIGHT_EFFECT_TEXTURED.
+    /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
+    /// describes. May be 0 without AREALIGHT_EFFECT_TEXTURED.
     pub light_textures: ArealightImage,
     /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     pub radiance: ArealightImage,
@@ -381,4 +395,76 @@ pub struct ArealightFrame {
     /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
     /// be null with AREALIGHT_POSITION_IMAGE.
     pub position_from_clip: *const f32,
+}
+
+/// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureOptions {
+    /// In texels: a power of two from 64 to 4096. Images of other sizes are resampled.
+    pub width: u32,
+    /// Likewise.
+    pub height: u32,
+    /// How many images, from 1 on.
+    pub layers: u32,
+    /// 0
+    pub reserved: u32,
+}
+
+/// What light textures need of the host.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArealightTextureNeeds {
+    /// Of the image.
+    pub memory: ArealightMemory,
+    /// Of a set for a level.
+    pub level_set: ArealightSetLayout,
+    /// Of a set for an image that is loaded.
+    pub source_set: ArealightSetLayout,
+    /// How many sets there are for levels.
+    pub level_set_count: u32,
+    /// 0
+    pub reserved: u32,
+}
+
+/// What light textures are given once.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureSetup {
+    /// VkDeviceMemory for ArealightTextureNeeds.memory; it is freed after arealight_textures_destroy.
+    pub memory: u64,
+    /// Where in it.
+    pub memory_offset: u64,
+    /// VkDescriptorSet each, made with ArealightTextureNeeds.level_set. They live as long as the textures.
+    pub level_sets: *const u64,
+    /// ArealightTextureNeeds.level_set_count.
+    pub level_set_count: u32,
+    /// 0
+    pub reserved: u32,
+    /// VkCommandBuffer that is being recorded, outside a render pass, on a queue with graphics or compute.
+    pub command_buffer: *mut c_void,
+}
+
+/// An image that replaces a layer. Zero in `part_size` is the whole image.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightTextureUpdate {
+    /// VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
+    pub source_set: u64,
+    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    pub part_low: [f64; 2],
+    /// What is added to them at (1, 1); positive.
+    pub part_size: [f64; 2],
+    /// Which layer.
+    pub layer: u32,
+    /// The image's width in texels, from 1 to 4096.
+    pub source_width: u32,
+    /// Its height.
+    pub source_height: u32,
+    /// 1: it holds sRGB in a format that does not decode by itself, such as rgba8.
+    pub decode_srgb: u32,
+    /// What is beyond 0 to 1 along u: one of AREALIGHT_WRAP_*.
+    pub wrap_u: u32,
+    /// Along v.
+    pub wrap_v: u32,
 }

@@ -71,7 +71,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 12] {
+fn layouts() -> [Layout; 16] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
@@ -88,7 +88,8 @@ fn layouts() -> [Layout; 12] {
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
-            name, vertices, texture_coordinates, vertex_count, texture_layer, radiance, two_sided,
+            name, vertices, texture_coordinates, vertex_count, texture_layer, radiance, two_sided, hole_vertex_counts,
+            hole_count, reserved,
         }
         ArealightShape { name, kind, ends, center, axis_u, axis_v, radius, radiance, two_sided }
         ArealightPackedLights { lights, vertices, lights_size, vertices_size, quad_count, unused }
@@ -99,6 +100,12 @@ fn layouts() -> [Layout; 12] {
         }
         ArealightFrame {
             width, height, camera, light_count, shape_count, quad_count, unused, reserved, position_from_clip,
+        }
+        ArealightTextureOptions { width, height, layers, reserved }
+        ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
+        ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }
+        ArealightTextureUpdate {
+            source_set, part_low, part_size, layer, source_width, source_height, decode_srgb, wrap_u, wrap_v,
         }
     }
 }
@@ -135,6 +142,25 @@ mod tests {
     #[test]
     fn the_header_is_fresh() {
         assert!(run(&root(), &Arguments { check: true }).unwrap(), "run: cargo run -p xtask -- header");
+    }
+
+    /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
+    const ABI: (u32, &str) = (2, "a938f0a5a152feae");
+
+    #[test]
+    fn another_abi_has_another_version() {
+        let text = header(&root()).unwrap();
+        let code: Vec<&str> = text
+            .lines()
+            .filter_map(|line| line.split("//").next().map(str::trim_end))
+            .filter(|line| !line.is_empty() && !line.starts_with("#define AREALIGHT_ABI_VERSION"))
+            .collect();
+        let digest = crate::manifest::hash(code.join("\n").as_bytes());
+        assert_eq!(
+            (capi::AREALIGHT_ABI_VERSION, &digest[..16]),
+            ABI,
+            "the header has changed: raise AREALIGHT_ABI_VERSION, if a release has it, and write both here"
+        );
     }
 
     /// Whether a header compiles, and what the compiler says.

@@ -13,7 +13,7 @@ const NEEDED: [(&str, &[&str]); 3] = [
         &["spirv/shade.spv", "spirv/texture_load.spv", "spirv/texture_blur.spv", "spirv/manifest.json"],
     ),
     ("arealight-table", &["tables/ggx.exr"]),
-    ("arealight-capi", &["include/arealight.h", "arealight.pc.in", "cmake/arealight-config.cmake"]),
+    ("arealight-capi", &["include/arealight.h", "arealight.pc.in", "cmake/arealight-config.cmake.in"]),
 ];
 
 /// What every package must hold.

@@ -1,0 +1,307 @@
+//! Images that lights show: memory and sets are the host's, filtering is recorded here.
+
+use crate::device::Arealight;
+use crate::failure::{ArealightResult, Failure, call};
+use crate::lights::{read_flag, read_lights};
+use crate::pass::{sampled, set_layout};
+use crate::types::{
+    AREALIGHT_WRAP_CLAMP, AREALIGHT_WRAP_MIRROR, AREALIGHT_WRAP_REPEAT, ArealightImage, ArealightLight,
+    ArealightMemory, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
+    ArealightTextureUpdate,
+};
+use crate::{arguments, handles};
+use arealight::{PyramidSize, TexturePart, Wrap};
+use arealight_vk::ash::vk::{self, Handle as _};
+use arealight_vk::{LightTextures, Resource, TextureUpdate};
+use glam::DVec2;
+use std::ffi::c_void;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The images of lights on a device, filtered for shading.
+pub struct ArealightTextures {
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    textures: LightTextures,
+    setup: Option<Setup>,
+}
+
+/// What the host gave.
+struct Setup {
+    /// The memory that is bound, and where in it.
+    place: (u64, u64),
+    level_sets: Vec<vk::DescriptorSet>,
+}
+
+impl ArealightTextures {
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        // What a panic leaves behind is still the image
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    /// What the host gave; an error before it did.
+    fn setup(&self) -> Result<&Setup, Failure> {
+        self.setup.as_ref().ok_or_else(|| {
+            Failure::argument("textures: have no memory yet; call arealight_textures_setup first")
+        })
+    }
+}
+
+/// Makes an image for what lights show, without memory. `*out` is the host's to destroy.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_create(
+    arealight: *const Arealight,
+    options: *const ArealightTextureOptions,
+    out: *mut *mut ArealightTextures,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (arealight, options) = unsafe {
+            arguments::write(out, std::ptr::null_mut(), "out")?;
+            (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
+        };
+        let size = PyramidSize::new(options.width, options.height)
+            .map_err(|error| Failure::argument(format!("options.width, options.height: {error}")))?;
+        // SAFETY: the textures are destroyed by the host, by the contract of arealight_textures_destroy.
+        let textures = unsafe { LightTextures::new(arealight.context(), size, options.layers) }?;
+        let made = ArealightTextures { inner: Mutex::new(Inner { textures, setup: None }) };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, handles::give(made), "out") }
+    })
+}
+
+/// What the textures need of the host: memory, and descriptor sets from pools of the host.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_needs(
+    textures: *const ArealightTextures,
+    out: *mut ArealightTextureNeeds,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let textures = &unsafe { handles::borrow(textures, "textures") }?.inner().textures;
+        let memory = textures.memory_requirements();
+        // A set's share of what those of all levels take
+        let mut level = textures.level_pool_sizes();
+        for size in &mut level {
+            size.descriptor_count /= textures.level_sets();
+        }
+        let needs = ArealightTextureNeeds {
+            memory: ArealightMemory {
+                size: memory.size,
+                alignment: memory.alignment,
+                staging_size: 0,
+                memory_type_bits: memory.memory_type_bits,
+                reserved: 0,
+            },
+            level_set: set_layout(textures.level_set_layout(), &level),
+            source_set: set_layout(textures.source_set_layout(), &textures.source_pool_sizes(1)),
+            level_set_count: textures.level_sets(),
+            reserved: 0,
+        };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, needs, "out") }
+    })
+}
+
+/// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the commands run before
+/// any others that use the textures. Commands that were never run are made good by another call with the same memory.
+///
+/// # Safety
+/// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the textures or sets.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_setup(
+    textures: *mut ArealightTextures,
+    setup: *const ArealightTextureSetup,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (textures, setup) =
+            unsafe { (handles::borrow(textures, "textures")?, arguments::read(setup, "setup")?) };
+        // SAFETY: as above.
+        let sets = unsafe {
+            arguments::array(setup.level_sets, setup.level_set_count as usize, "setup.level_sets")?
+        };
+        for (is_null, field) in [
+            (setup.memory == 0, "memory"),
+            (sets.contains(&0), "level_sets"),
+            (setup.command_buffer.is_null(), "command_buffer"),
+        ] {
+            if is_null {
+                return Err(Failure::argument(format!("setup.{field}: is null")));
+            }
+        }
+        let mut inner = textures.inner();
+        let Inner { textures, setup: given } = &mut *inner;
+        if sets.len() != textures.level_sets() as usize {
+            let message =
+                format!("setup.level_set_count: {}, but {} are needed", sets.len(), textures.level_sets());
+            return Err(Failure::argument(message));
+        }
+        let place = (setup.memory, setup.memory_offset);
+        if given.as_ref().is_some_and(|given| given.place != place) {
+            return Err(Failure::argument(
+                "setup.memory: the textures have other memory already; call again with that, or make others",
+            ));
+        }
+
+        let level_sets: Vec<_> = sets.iter().map(|set| vk::DescriptorSet::from_raw(*set)).collect();
+        // SAFETY: the caller vouches for memory, sets and command buffer.
+        unsafe {
+            if given.is_none() {
+                textures.bind_memory(vk::DeviceMemory::from_raw(setup.memory), setup.memory_offset)?;
+            }
+            textures.write_level_sets(&level_sets)?;
+            textures.record_clear(vk::CommandBuffer::from_raw(setup.command_buffer as u64));
+        }
+        *given = Some(Setup { place, level_sets });
+        Ok(())
+    })
+}
+
+/// Points a VkDescriptorSet, made with ArealightTextureNeeds.source_set, at an image to load: a 2D view with
+/// VK_IMAGE_USAGE_SAMPLED_BIT, of a format that is sampled as numbers, whose first level is read.
+///
+/// # Safety
+/// The pointer is null or valid. No pending commands use the set, and the image outlives those that will.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_write_source_set(
+    textures: *const ArealightTextures,
+    set: u64,
+    source: ArealightImage,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointer.
+        let inner = unsafe { handles::borrow(textures, "textures") }?.inner();
+        if set == 0 {
+            return Err(Failure::argument("set: is null"));
+        }
+        inner.setup()?;
+        // SAFETY: the caller vouches for the set and the image.
+        Ok(unsafe { inner.textures.write_source_set(vk::DescriptorSet::from_raw(set), sampled(source)) }?)
+    })
+}
+
+/// Records that images replace layers and are filtered, with the barriers between and around: afterwards they are visible to
+/// shaders. The cost is that of the layers given. The host's barriers make the images visible to compute shaders before.
+/// Frames that are recorded later on the same queue see the new layers, those before the old ones; nothing waits.
+///
+/// # Safety
+/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes, after
+/// the commands of arealight_textures_setup.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_update(
+    textures: *const ArealightTextures,
+    command_buffer: *mut c_void,
+    updates: *const ArealightTextureUpdate,
+    update_count: u32,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (inner, updates) = unsafe {
+            let textures = handles::borrow(textures, "textures")?;
+            (textures.inner(), arguments::array(updates, update_count as usize, "updates")?)
+        };
+        let setup = inner.setup()?;
+        if command_buffer.is_null() {
+            return Err(Failure::argument("command_buffer: is null"));
+        }
+        let updates: Vec<_> = updates
+            .iter()
+            .enumerate()
+            .map(|(index, update)| read_update(index, update))
+            .collect::<Result<_, _>>()?;
+        let commands = vk::CommandBuffer::from_raw(command_buffer as u64);
+        // SAFETY: the caller vouches for the command buffer and the sets.
+        Ok(unsafe { inner.textures.record_update(commands, &setup.level_sets, &updates) }?)
+    })
+}
+
+fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureUpdate, Failure> {
+    let field = |name| format!("updates[{index}].{name}");
+    if update.source_set == 0 {
+        return Err(Failure::argument(format!("{}: is null", field("source_set"))));
+    }
+    let wrap = |wrap, name| match wrap {
+        AREALIGHT_WRAP_CLAMP => Ok(Wrap::Clamp),
+        AREALIGHT_WRAP_REPEAT => Ok(Wrap::Repeat),
+        AREALIGHT_WRAP_MIRROR => Ok(Wrap::Mirror),
+        other => Err(Failure::argument(format!("{}: {other} is no AREALIGHT_WRAP_*", field(name)))),
+    };
+    let size = match update.part_size {
+        [0.0, 0.0] => DVec2::ONE,
+        size => DVec2::from_array(size),
+    };
+    Ok(TextureUpdate {
+        layer: update.layer,
+        source_set: vk::DescriptorSet::from_raw(update.source_set),
+        source_size: [update.source_width, update.source_height],
+        part: TexturePart {
+            low: DVec2::from_array(update.part_low),
+            size,
+            wrap: [wrap(update.wrap_u, "wrap_u")?, wrap(update.wrap_v, "wrap_v")?],
+        },
+        decode_srgb: read_flag(update.decode_srgb, &field("decode_srgb"))?,
+    })
+}
+
+/// The textures as ArealightResources.light_textures takes them.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_image(
+    textures: *const ArealightTextures,
+    out: *mut ArealightImage,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let inner = unsafe { handles::borrow(textures, "textures") }?.inner();
+        inner.setup()?;
+        let Resource::FilteredImage { view, layout } = inner.textures.resource() else {
+            unreachable!("light textures are filtered")
+        };
+        let image =
+            ArealightImage { view: view.as_raw(), layout: layout.as_raw().cast_unsigned(), reserved: 0 };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, image, "out") }
+    })
+}
+
+/// Checks that the layer of every light that shows an image is there: passes do not know what will be bound.
+///
+/// # Safety
+/// Pointers are null or valid, with as many items as their counts say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_check_lights(
+    textures: *const ArealightTextures,
+    lights: *const ArealightLight,
+    light_count: u32,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (inner, lights) = unsafe {
+            let textures = handles::borrow(textures, "textures")?;
+            (textures.inner(), read_lights(arguments::array(lights, light_count as usize, "lights")?)?)
+        };
+        Ok(inner.textures.check_lights(&lights)?)
+    })
+}
+
+/// Destroys textures, before or after the object that they were made from. Null is nothing.
+///
+/// # Safety
+/// No commands that use them are pending, the device is alive, and no other thread uses the object.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_textures_destroy(textures: *mut ArealightTextures) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { handles::take(textures, "textures") }.map(drop))
+}

@@ -1,0 +1,361 @@
+//! The C library on a device of the tests, called as a host in C does.
+
+use crate::TestEngine;
+use crate::one_pixel::{self, OnePixel};
+use arealight::PolygonLight;
+use arealight::plan::RadianceFormat;
+use arealight_capi::{
+    AREALIGHT_ABI_VERSION, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer, ArealightFrame,
+    ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightMemory, ArealightPackedLights,
+    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
+    ArealightUpload, arealight_create, arealight_destroy, arealight_last_error, arealight_pass_create,
+    arealight_pass_pack_lights, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
+    arealight_table_memory, arealight_table_upload,
+};
+use arealight_host::{Buffer, DescriptorPool, Image, Location, Usage};
+use ash::vk::{self, Handle as _};
+use glam::{Vec3, Vec4};
+use std::ffi::{CStr, c_char, c_void};
+use std::ptr::{null, null_mut};
+
+/// Asserts that a call failed with `expected`, and a message that has `words`.
+///
+/// # Panics
+/// Where it did not.
+#[track_caller]
+pub fn refused(result: ArealightResult, expected: ArealightResult, words: &str) {
+    // SAFETY: the message is this thread's, and lives until its next failure.
+    let message = unsafe { CStr::from_ptr(arealight_last_error()) }.to_string_lossy();
+    assert_eq!(result, expected, "{message}");
+    assert!(message.contains(words), "`{words}` is not in: {message}");
+}
+
+/// Asserts that a call did not fail.
+///
+/// # Panics
+/// Where it did, with its message.
+#[track_caller]
+pub fn good(result: ArealightResult) {
+    // SAFETY: as above.
+    assert_eq!(result, ArealightResult::Ok, "{:?}", unsafe { CStr::from_ptr(arealight_last_error()) });
+}
+
+unsafe extern "system" fn finds_nothing(_: *mut c_void, _: *const c_char) -> ArealightFunction {
+    None
+}
+
+/// A host without a device: what it says is checked before anything of Vulkan is called.
+pub fn no_host() -> ArealightHost {
+    ArealightHost {
+        abi_version: AREALIGHT_ABI_VERSION,
+        api_version: vk::API_VERSION_1_1,
+        get_instance_proc_addr: Some(finds_nothing),
+        get_device_proc_addr: Some(finds_nothing),
+        // Not null; nothing looks behind them
+        instance: null_mut::<c_void>().wrapping_add(8),
+        physical_device: null_mut::<c_void>().wrapping_add(8),
+        device: null_mut::<c_void>().wrapping_add(8),
+        pipeline_cache: 0,
+    }
+}
+
+/// A light without vertices.
+pub const NO_LIGHT: ArealightLight = ArealightLight {
+    name: null(),
+    vertices: null(),
+    texture_coordinates: null(),
+    vertex_count: 0,
+    texture_layer: 0,
+    radiance: [1.0; 3],
+    two_sided: 0,
+    hole_vertex_counts: null(),
+    hole_count: 0,
+    reserved: 0,
+};
+
+/// A light of constant radiance, whose vertices it points to.
+pub fn c_lamp(light: &PolygonLight) -> ArealightLight {
+    ArealightLight {
+        vertices: light.vertices.as_ptr().cast(),
+        vertex_count: light.vertices.len() as u32,
+        radiance: light.radiance.to_array(),
+        ..NO_LIGHT
+    }
+}
+
+/// To ask for the sizes alone.
+pub const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
+    lights: null_mut(),
+    vertices: null_mut(),
+    lights_size: 0,
+    vertices_size: 0,
+    quad_count: 0,
+    unused: 0,
+};
+
+/// The library on a device of the tests.
+pub struct CLibrary<'a> {
+    engine: &'a TestEngine,
+    /// Keeps the loader, whose functions the library has.
+    _entry: ash::Entry,
+    /// Null is not destroyed.
+    pub arealight: *mut Arealight,
+}
+
+impl<'a> CLibrary<'a> {
+    /// As a host in C makes it.
+    ///
+    /// # Panics
+    /// Where the library refuses.
+    pub fn new(engine: &'a TestEngine) -> Self {
+        let host = engine.host();
+        // SAFETY: the system's loader is what the host of the tests was opened with.
+        let entry = unsafe { ash::Entry::load() }.expect("the loader");
+        let (find_instance, find_device) =
+            (entry.static_fn().get_instance_proc_addr, host.instance().fp_v1_0().get_device_proc_addr);
+        // SAFETY: both sides are functions of C that take a handle, which is a pointer, and a string.
+        let info = unsafe {
+            ArealightHost {
+                get_instance_proc_addr: Some(std::mem::transmute::<
+                    vk::PFN_vkGetInstanceProcAddr,
+                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
+                >(find_instance)),
+                get_device_proc_addr: Some(std::mem::transmute::<
+                    vk::PFN_vkGetDeviceProcAddr,
+                    unsafe extern "system" fn(*mut c_void, *const c_char) -> ArealightFunction,
+                >(find_device)),
+                instance: host.instance().handle().as_raw() as *mut c_void,
+                physical_device: host.physical_device().as_raw() as *mut c_void,
+                device: host.device().handle().as_raw() as *mut c_void,
+                ..no_host()
+            }
+        };
+        let mut arealight = null_mut();
+        // SAFETY: the handles are the engine's, which outlives the library's object.
+        good(unsafe { arealight_create(&raw const info, null(), &raw mut arealight) });
+        Self { engine, _entry: entry, arealight }
+    }
+
+    /// A pass for effects.
+    ///
+    /// # Panics
+    /// Where the library refuses.
+    pub fn pass(&self, effects: u32) -> *mut ArealightPass {
+        let options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
+        let mut pass = null_mut();
+        // SAFETY: the pointers are valid.
+        good(unsafe { arealight_pass_create(self.arealight, &raw const options, &raw mut pass) });
+        pass
+    }
+
+    /// What memory the table needs.
+    ///
+    /// # Panics
+    /// Where the library refuses.
+    pub fn table_memory(&self) -> ArealightMemory {
+        let mut memory =
+            ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
+        // SAFETY: the pointer is valid.
+        good(unsafe { arealight_table_memory(self.arealight, &raw mut memory) });
+        memory
+    }
+
+    /// Records the upload of the table to memory, with texels that `staging` gets.
+    ///
+    /// # Panics
+    /// Where the device refuses.
+    pub fn record_upload(
+        &self,
+        memory: vk::DeviceMemory,
+        staging: &Buffer,
+        commands: vk::CommandBuffer,
+    ) -> ArealightResult {
+        let mut texels = vec![0_u8; staging.size() as usize];
+        let upload = ArealightUpload {
+            memory: memory.as_raw(),
+            memory_offset: 0,
+            staging_data: texels.as_mut_ptr().cast(),
+            staging_size: texels.len() as u64,
+            staging_buffer: staging.handle().as_raw(),
+            staging_offset: 0,
+            command_buffer: commands.as_raw() as *mut c_void,
+        };
+        // SAFETY: memory and buffer are large enough, by the callers; the commands are being recorded.
+        let result = unsafe { arealight_table_upload(self.arealight, &raw const upload) };
+        staging.upload(&texels).expect("the buffer is mapped");
+        result
+    }
+
+    /// Uploads the table.
+    ///
+    /// # Panics
+    /// Where the library or the device refuses.
+    pub fn upload(&self, memory: &DeviceMemory) {
+        let host = self.engine.host();
+        let staging = self.staging();
+        host.submit(|commands| good(self.record_upload(memory.raw, &staging, commands)))
+            .expect("a submission");
+    }
+
+    /// A buffer for the table's texels.
+    ///
+    /// # Panics
+    /// Where memory is out.
+    pub fn staging(&self) -> Buffer {
+        let (size, usage) = (self.table_memory().staging_size, vk::BufferUsageFlags::TRANSFER_SRC);
+        self.engine.host().buffer("table", size, usage, Location::Upload).expect("memory")
+    }
+
+    /// A set of a layout, with its pool.
+    ///
+    /// # Panics
+    /// Where memory is out.
+    pub fn set(&self, layout: &ArealightSetLayout) -> (vk::DescriptorSet, DescriptorPool) {
+        let sizes = [
+            (vk::DescriptorType::SAMPLED_IMAGE, layout.sampled_images),
+            (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, layout.combined_image_samplers),
+            (vk::DescriptorType::STORAGE_IMAGE, layout.storage_images),
+            (vk::DescriptorType::STORAGE_BUFFER, layout.storage_buffers),
+        ];
+        let sizes: Vec<_> = sizes
+            .into_iter()
+            .filter(|(_, count)| *count > 0)
+            .map(|(ty, descriptor_count)| vk::DescriptorPoolSize { ty, descriptor_count })
+            .collect();
+        let pool = self.engine.host().descriptor_pool(1, &sizes).expect("memory");
+        // SAFETY: the layout is one of the library's, which is alive.
+        let set = unsafe { pool.allocate(vk::DescriptorSetLayout::from_raw(layout.layout)) };
+        (set.expect("the pool has one set"), pool)
+    }
+
+    /// What the pixel shows by a pass, as [`OnePixel::shade`] says it of the recorder's.
+    ///
+    /// # Panics
+    /// Where the library or the device refuses.
+    pub fn shade(
+        &self,
+        pass: *mut ArealightPass,
+        pixel: &OnePixel<'_>,
+        lights: &[ArealightLight],
+        light_textures: ArealightImage,
+        camera: Vec3,
+    ) -> Vec4 {
+        // Pack: the sizes first
+        let mut packed = NO_ARRAYS;
+        let pack = |packed: &mut ArealightPackedLights| {
+            let (count, origin) = (lights.len() as u32, [0.0_f64; 3]);
+            // SAFETY: the lights and the arrays are as they say.
+            good(unsafe {
+                arealight_pass_pack_lights(pass, lights.as_ptr(), count, origin.as_ptr(), packed)
+            });
+        };
+        pack(&mut packed);
+        let mut arrays =
+            [packed.lights_size, packed.vertices_size].map(|size| vec![0_u32; size as usize / 4]);
+        [packed.lights, packed.vertices] = arrays.each_mut().map(|array| array.as_mut_ptr().cast());
+        pack(&mut packed);
+        let host = self.engine.host();
+        let [lights_buffer, vertices] =
+            arrays.map(|array| host.storage_buffer("lights", &array).expect("memory"));
+
+        // Point a set at them, and shade
+        let format = RadianceFormat::Rgba32Float;
+        let radiance = one_pixel::stored(self.engine, format);
+        let image = |image: &Image, usage: Usage| ArealightImage {
+            view: image.view().as_raw(),
+            layout: usage.layout.as_raw().cast_unsigned(),
+            reserved: 0,
+        };
+        let whole = |buffer: &Buffer| ArealightBuffer {
+            buffer: buffer.handle().as_raw(),
+            offset: 0,
+            range: AREALIGHT_WHOLE_SIZE,
+        };
+        let resources = ArealightResources {
+            lights: whole(&lights_buffer),
+            light_vertices: whole(&vertices),
+            position: image(&pixel.position, Usage::COMPUTE_READ),
+            normal: image(&pixel.normal, Usage::COMPUTE_READ),
+            base_color: image(&pixel.base_color, Usage::COMPUTE_READ),
+            specular: image(&pixel.specular, Usage::COMPUTE_READ),
+            light_textures,
+            radiance: image(&radiance, Usage::COMPUTE_WRITE),
+            ..ArealightResources::default()
+        };
+        let frame = ArealightFrame {
+            width: 1,
+            height: 1,
+            camera: camera.to_array(),
+            light_count: lights.len() as u32,
+            shape_count: 0,
+            quad_count: packed.quad_count,
+            unused: packed.unused,
+            reserved: 0,
+            position_from_clip: null(),
+        };
+        let (set, _pool) = self.set(&set_layout(pass));
+        // SAFETY: the set is new, and what it points to lives until the submission was waited for.
+        good(unsafe { arealight_pass_write_set(pass, self.arealight, set.as_raw(), &raw const resources) });
+        let recorded = host.submit(|commands| {
+            let commands = commands.as_raw() as *mut c_void;
+            // SAFETY: the commands are being recorded, with a set of the frame's size.
+            good(unsafe { arealight_pass_record(pass, commands, set.as_raw(), &raw const frame) });
+        });
+        recorded.expect("a submission");
+        one_pixel::read(&radiance, format)
+    }
+}
+
+impl Drop for CLibrary<'_> {
+    fn drop(&mut self) {
+        // SAFETY: nothing is pending on the device.
+        good(unsafe { arealight_destroy(self.arealight) });
+    }
+}
+
+/// What descriptor sets of a pass are made with.
+///
+/// # Panics
+/// Where the library refuses.
+pub fn set_layout(pass: *const ArealightPass) -> ArealightSetLayout {
+    let mut layout = ArealightSetLayout {
+        layout: 0,
+        sampled_images: 0,
+        combined_image_samplers: 0,
+        storage_images: 0,
+        storage_buffers: 0,
+    };
+    // SAFETY: the pointers are valid.
+    good(unsafe { arealight_pass_set_layout(pass, &raw mut layout) });
+    layout
+}
+
+/// Memory that a host in C allocated.
+pub struct DeviceMemory {
+    /// The handle.
+    pub raw: vk::DeviceMemory,
+    device: ash::Device,
+}
+
+impl DeviceMemory {
+    /// Of the first type that will do.
+    ///
+    /// # Panics
+    /// Where memory is out.
+    pub fn new(engine: &TestEngine, needed: &ArealightMemory) -> Self {
+        let info = vk::MemoryAllocateInfo::default()
+            .allocation_size(needed.size)
+            .memory_type_index(needed.memory_type_bits.trailing_zeros());
+        let device = engine.host().device().clone();
+        // SAFETY: the device is alive, and has the type.
+        let raw = unsafe { device.allocate_memory(&info, None) }.expect("memory");
+        Self { raw, device }
+    }
+}
+
+impl Drop for DeviceMemory {
+    fn drop(&mut self) {
+        // SAFETY: tests destroy what is bound to it first.
+        unsafe { self.device.free_memory(self.raw, None) };
+    }
+}

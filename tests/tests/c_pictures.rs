@@ -1,0 +1,303 @@
+//! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, and a G-buffer of the
+//! host's own, with a table whose first upload was never run.
+
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightTexture, PolygonLight, TexturePart, Wrap};
+use arealight_capi::{
+    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_WRAP_MIRROR,
+    ArealightImage, ArealightLight, ArealightMemory, ArealightResult, ArealightSetLayout,
+    ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup, ArealightTextureUpdate,
+    ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights, arealight_textures_create,
+    arealight_textures_destroy, arealight_textures_image, arealight_textures_needs, arealight_textures_setup,
+    arealight_textures_update, arealight_textures_write_source_set,
+};
+use arealight_engine::{SourceImage, SourceTexels};
+use arealight_host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
+use arealight_tests::TestEngine;
+use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_LIGHT, good, refused};
+use arealight_tests::one_pixel::{self, OnePixel, lamp};
+use ash::vk::{self, Handle as _};
+use glam::{DVec2, DVec3, Vec3, Vec4};
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+
+const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
+
+/// An image in sRGB, of which no two texels are alike, and the part of it that is shown.
+const SIZE: [u32; 2] = [5, 3];
+
+fn texels() -> Vec<[u8; 4]> {
+    (0..15_u8).map(|texel| [texel * 17, 255 - texel * 11, texel * texel, 255]).collect()
+}
+
+fn part() -> TexturePart {
+    TexturePart { low: DVec2::new(0.25, 0.0), size: DVec2::new(1.5, 0.5), wrap: [Wrap::Mirror, Wrap::Clamp] }
+}
+
+/// Corners of a rectangle over the pixel, from where it shines.
+fn corners(low: [f64; 2], size: f64, height: f64) -> Vec<DVec3> {
+    let [x, y] = low;
+    [(0.0, 0.0), (0.0, size), (size, size), (size, 0.0)]
+        .map(|(u, v)| DVec3::new(x + u, y + v, height))
+        .to_vec()
+}
+
+const SCREEN: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
+
+/// A window, a screen that shows a layer, and a frame around a hole of some size.
+fn lights(hole: f64) -> Result<Vec<PolygonLight>, arealight::LightError> {
+    let window = PolygonLight { name: "window".into(), ..lamp() };
+    let screen = PolygonLight {
+        name: "screen".into(),
+        vertices: corners([0.5, -0.5], 1.0, 1.0),
+        texture: Some(LightTexture { layer: 1, uvs: SCREEN.map(DVec2::from_array).to_vec() }),
+        ..lamp()
+    };
+    let mut frame =
+        PolygonLight { name: "frame".into(), vertices: corners([-2.0, -2.0], 1.5, 1.5), ..lamp() };
+    frame.cut_holes(&[corners([-1.75, -1.75], hole, 1.5)])?;
+    Ok(vec![window, screen, frame])
+}
+
+/// The same as a host in C has them: what each points to, and the lights.
+struct CLights {
+    _vertices: [Vec<DVec3>; 3],
+    _hole: Box<u32>,
+    lights: [ArealightLight; 3],
+}
+
+impl CLights {
+    fn new(hole: f64) -> Self {
+        let vertices = [
+            lamp().vertices,
+            corners([0.5, -0.5], 1.0, 1.0),
+            [corners([-2.0, -2.0], 1.5, 1.5), corners([-1.75, -1.75], hole, 1.5)].concat(),
+        ];
+        let hole = Box::new(4);
+        let mut lights = [0, 1, 2].map(|index: usize| ArealightLight {
+            vertices: vertices[index].as_ptr().cast(),
+            vertex_count: 4,
+            radiance: lamp().radiance.to_array(),
+            ..NO_LIGHT
+        });
+        lights[1].texture_coordinates = SCREEN.as_ptr().cast();
+        lights[1].texture_layer = 1;
+        lights[2].hole_vertex_counts = &raw const *hole;
+        lights[2].hole_count = 1;
+        Self { _vertices: vertices, _hole: hole, lights }
+    }
+}
+
+/// The lights' images, as a host in C sets them up. Fields go in this order.
+struct CTextures<'a> {
+    raw: *mut ArealightTextures,
+    _pools: Vec<DescriptorPool>,
+    _memory: DeviceMemory,
+    library: &'a CLibrary<'a>,
+    engine: &'a TestEngine,
+    needs: ArealightTextureNeeds,
+}
+
+const NO_SET: ArealightSetLayout = ArealightSetLayout {
+    layout: 0,
+    sampled_images: 0,
+    combined_image_samplers: 0,
+    storage_images: 0,
+    storage_buffers: 0,
+};
+
+impl<'a> CTextures<'a> {
+    fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>) -> Self {
+        let options = ArealightTextureOptions { width: 64, height: 128, layers: 2, reserved: 0 };
+        let mut raw = null_mut();
+        let memory =
+            ArealightMemory { size: 0, alignment: 0, staging_size: 0, memory_type_bits: 0, reserved: 0 };
+        let mut needs = ArealightTextureNeeds {
+            memory,
+            level_set: NO_SET,
+            source_set: NO_SET,
+            level_set_count: 0,
+            reserved: 0,
+        };
+        // SAFETY: the pointers are valid; refused calls look behind none, here and below.
+        unsafe {
+            good(arealight_textures_create(library.arealight, &raw const options, &raw mut raw));
+            good(arealight_textures_needs(raw, &raw mut needs));
+        }
+        let memory = DeviceMemory::new(engine, &needs.memory);
+        let (sets, pools): (Vec<_>, Vec<_>) =
+            (0..needs.level_set_count).map(|_| library.set(&needs.level_set)).unzip();
+        let sets: Vec<u64> = sets.into_iter().map(vk::DescriptorSet::as_raw).collect();
+        let setup = |commands: vk::CommandBuffer| ArealightTextureSetup {
+            memory: memory.raw.as_raw(),
+            memory_offset: 0,
+            level_sets: sets.as_ptr(),
+            level_set_count: sets.len() as u32,
+            reserved: 0,
+            command_buffer: commands.as_raw() as *mut c_void,
+        };
+
+        // What is left out is named, and nothing can be used before
+        let argument = ArealightResult::ErrorArgument;
+        let right = setup(vk::CommandBuffer::from_raw(8));
+        let mut image = ArealightImage::default();
+        for (wrong, words) in [
+            (ArealightTextureSetup { memory: 0, ..right }, "setup.memory: is null"),
+            (ArealightTextureSetup { level_sets: null(), ..right }, "setup.level_sets: is null"),
+            (ArealightTextureSetup { level_set_count: 1, ..right }, "setup.level_set_count: 1, but"),
+            (ArealightTextureSetup { command_buffer: null_mut(), ..right }, "setup.command_buffer: is null"),
+        ] {
+            // SAFETY: as above.
+            refused(unsafe { arealight_textures_setup(raw, &raw const wrong) }, argument, words);
+        }
+        let early = "call arealight_textures_setup first";
+        // SAFETY: as above.
+        unsafe {
+            refused(arealight_textures_image(raw, &raw mut image), argument, early);
+            refused(arealight_textures_write_source_set(raw, 8, image), argument, early);
+            refused(arealight_textures_update(raw, null_mut(), null(), 0), argument, early);
+        }
+
+        // The first commands are never run
+        let never = engine.host().try_submit(|commands| {
+            // SAFETY: memory and sets are as was asked for.
+            good(unsafe { arealight_textures_setup(raw, &raw const *Box::new(setup(commands))) });
+            Err(HostError::NoDevice { found: vec![] })
+        });
+        never.unwrap_err();
+        let other = ArealightTextureSetup { memory_offset: 8, ..right };
+        // SAFETY: as above.
+        refused(unsafe { arealight_textures_setup(raw, &raw const other) }, argument, "other memory already");
+        let run = engine.host().submit(|commands| {
+            // SAFETY: as above.
+            good(unsafe { arealight_textures_setup(raw, &raw const *Box::new(setup(commands))) });
+        });
+        run.unwrap();
+        Self { raw, _pools: pools, _memory: memory, library, engine, needs }
+    }
+
+    /// Replaces a layer by an image.
+    fn update(&self, image: &Image) {
+        let (set, _pool) = self.library.set(&self.needs.source_set);
+        let source = ArealightImage {
+            view: image.view().as_raw(),
+            layout: Usage::COMPUTE_READ.layout.as_raw().cast_unsigned(),
+            reserved: 0,
+        };
+        // SAFETY: the set is new, and the image lives until the submission was waited for.
+        good(unsafe { arealight_textures_write_source_set(self.raw, set.as_raw(), source) });
+        let update = ArealightTextureUpdate {
+            source_set: set.as_raw(),
+            part_low: part().low.to_array(),
+            part_size: part().size.to_array(),
+            layer: 1,
+            source_width: SIZE[0],
+            source_height: SIZE[1],
+            decode_srgb: 1,
+            wrap_u: AREALIGHT_WRAP_MIRROR,
+            wrap_v: 0,
+        };
+        let recorded = self.engine.host().submit(|commands| {
+            let commands = commands.as_raw() as *mut c_void;
+            // SAFETY: the commands are being recorded; nothing is where a call is refused.
+            let record = |update: ArealightTextureUpdate| unsafe {
+                arealight_textures_update(self.raw, commands, &raw const update, 1)
+            };
+            for (wrong, words) in [
+                (ArealightTextureUpdate { source_set: 0, ..update }, "updates[0].source_set: is null"),
+                (ArealightTextureUpdate { layer: 2, ..update }, "layer: 2 is not there"),
+                (ArealightTextureUpdate { source_width: 0, ..update }, "source of 0 x 3 texels"),
+                (ArealightTextureUpdate { wrap_v: 3, ..update }, "updates[0].wrap_v: 3"),
+                (ArealightTextureUpdate { decode_srgb: 2, ..update }, "updates[0].decode_srgb: 2"),
+                (ArealightTextureUpdate { part_size: [f64::NAN, 1.0], ..update }, "size"),
+            ] {
+                refused(record(wrong), ArealightResult::ErrorArgument, words);
+            }
+            good(record(update));
+        });
+        recorded.unwrap();
+    }
+
+    fn image(&self) -> ArealightImage {
+        let mut image = ArealightImage::default();
+        // SAFETY: the pointers are valid.
+        good(unsafe { arealight_textures_image(self.raw, &raw mut image) });
+        image
+    }
+}
+
+impl Drop for CTextures<'_> {
+    fn drop(&mut self) {
+        // SAFETY: nothing is pending.
+        good(unsafe { arealight_textures_destroy(self.raw) });
+    }
+}
+
+fn source(engine: &TestEngine, texels: &[[u8; 4]]) -> Image {
+    let (format, usage) = (vk::Format::R8G8B8A8_UNORM, vk::ImageUsageFlags::SAMPLED);
+    let description = ImageDescription { name: "source", extent: SIZE, layers: 1, format, usage };
+    let image = engine.host().image(&description).unwrap();
+    image.upload(texels, Usage::COMPUTE_READ).unwrap();
+    image
+}
+
+#[test]
+fn c_shades_images_and_holes_as_rust_does_to_the_last_bit() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    let shown = SourceImage { size: SIZE, texels: SourceTexels::Srgb(&texels()), part: part() };
+    let size = arealight::PyramidSize::new(64, 128).unwrap();
+    let black = SourceImage {
+        size: [1, 1],
+        texels: SourceTexels::Srgb(&[[0, 0, 0, 255]]),
+        part: TexturePart::default(),
+    };
+    engine.load_textures(size, &[black, shown]).unwrap();
+    let engine = engine;
+    let effects = Effects::DIFFUSE | Effects::TEXTURED | Effects::POLYGON;
+    let options = ShadeOptions { effects, ..one_pixel::options() };
+    let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+    let rust = pixel.shade(options, &lights(1.0).unwrap(), CAMERA, None);
+
+    // In C: the table by commands that are recorded again, because the first were never run
+    let library = CLibrary::new(&engine);
+    let memory = DeviceMemory::new(&engine, &library.table_memory());
+    let staging = library.staging();
+    let never = engine.host().try_submit(|commands| {
+        good(library.record_upload(memory.raw, &staging, commands));
+        Err(HostError::NoDevice { found: vec![] })
+    });
+    never.unwrap_err();
+    let other = DeviceMemory::new(&engine, &library.table_memory());
+    let words = "upload.memory: the table has other memory already";
+    let refusal = library.record_upload(other.raw, &staging, vk::CommandBuffer::from_raw(8));
+    refused(refusal, ArealightResult::ErrorArgument, words);
+    library.upload(&memory);
+
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_POLYGON);
+    let textures = CTextures::new(&engine, &library);
+    let shade = |hole| library.shade(pass, &pixel, &CLights::new(hole).lights, textures.image(), CAMERA);
+    let dark = shade(1.0);
+    textures.update(&source(&engine, &texels()));
+    let c = shade(1.0);
+    assert_eq!(c, rust);
+    assert!(c.min_element() > 0.05 && c.is_finite(), "{c}");
+
+    // The twins: before the image was loaded, with another one, and with another hole
+    assert!((dark - c).truncate().max_element() < 0.0, "{dark} {c}");
+    assert!(shade(0.99) != c);
+    let mut others = texels();
+    others[7][1] ^= 0x40;
+    textures.update(&source(&engine, &others));
+    assert!(shade(1.0) != c);
+
+    // A layer that is not there
+    let mut beyond = CLights::new(1.0).lights;
+    // SAFETY: the lights are as they say.
+    good(unsafe { arealight_textures_check_lights(textures.raw, beyond.as_ptr(), 2) });
+    beyond[1].texture_layer = 2;
+    // SAFETY: as above.
+    let result = unsafe { arealight_textures_check_lights(textures.raw, beyond.as_ptr(), 2) };
+    refused(result, ArealightResult::ErrorLight, "light 'lights[1]'");
+    // SAFETY: nothing is pending.
+    good(unsafe { arealight_pass_destroy(pass) });
+}
