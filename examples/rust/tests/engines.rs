@@ -2,9 +2,10 @@
 
 use arealight_examples::deferred::Deferred;
 use arealight_examples::forward::Forward;
-use arealight_examples::gpu::Gpu;
+use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu};
 use arealight_examples::picture::Picture;
 use arealight_host::testing::instance_or_skip;
+use ash::vk;
 use std::process::Command;
 
 const SIZE: [u32; 2] = [96, 60];
@@ -54,6 +55,38 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     for (a, b) in [(&first, &moved_forward), (&moved, &again.1)] {
         let apart = difference(a, b);
         assert!(apart > 10.0 * TOLERANCE, "{apart:e} apart");
+    }
+}
+
+#[test]
+fn a_frame_that_cannot_be_recorded_keeps_its_place_for_the_next() {
+    let Some(instance) = instance_or_skip() else { return };
+    let gpu = Gpu::new(&instance).unwrap();
+    let mut frames = Frames::new(&gpu).unwrap();
+    let buffer = gpu.buffer(vk::BufferUsageFlags::TRANSFER_DST, 4).unwrap();
+    let fill = |commands, number| {
+        // SAFETY: the commands are being recorded, and waited for before the buffer goes.
+        unsafe { gpu.device.cmd_fill_buffer(commands, buffer.raw, 0, 4, number) };
+    };
+    // More often than frames are in flight, so that each place fails and is used again
+    for number in 1..=2 * FRAMES_IN_FLIGHT as u32 {
+        let mut places = vec![];
+        let failed = frames.submit(|place, commands| {
+            places.push(place);
+            fill(commands, 0);
+            Err("a light of two vertices".into())
+        });
+        assert_eq!(failed.unwrap_err().to_string(), "a light of two vertices");
+        let recorded = frames.submit(|place, commands| {
+            places.push(place);
+            fill(commands, number);
+            Ok(())
+        });
+        recorded.unwrap();
+        assert_eq!(places[0], places[1]);
+        // Nothing of the frame that failed was run
+        frames.wait().unwrap();
+        assert_eq!(buffer.read(), number.to_ne_bytes());
     }
 }
 

@@ -1,0 +1,191 @@
+//! A window that is resized: frames of several sizes are in flight by one pass, and nothing waits for another.
+
+use arealight_engine::Kept;
+use arealight_host::{DescriptorPool, Image, ImageDescription, Usage};
+use arealight_tests::TestEngine;
+use arealight_tests::one_pixel::{self, BEFORE, lamp};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
+use glam::{DVec3, Vec3};
+
+/// What a host makes anew when its window has another size, with a floor in the G-buffer.
+struct Images {
+    size: [u32; 2],
+    radiance: Image,
+    _g_buffer: [Image; 3],
+    set: vk::DescriptorSet,
+    _pool: DescriptorPool,
+}
+
+impl Images {
+    fn new(engine: &TestEngine, pass: &ShadePass, buffers: [vk::Buffer; 2], size: [u32; 2]) -> Self {
+        let host = engine.host();
+        let image = |name, usage| {
+            let format = vk::Format::R32G32B32A32_SFLOAT;
+            host.image(&ImageDescription { name, extent: size, layers: 1, format, usage }).unwrap()
+        };
+        let texels = |texel: &dyn Fn(f32, f32) -> [f32; 4]| -> Vec<[f32; 4]> {
+            (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| texel(x as f32, y as f32))).collect()
+        };
+        let sampled = |name, texels: &[[f32; 4]]| {
+            let image = image(name, vk::ImageUsageFlags::SAMPLED);
+            image.upload(texels, Usage::COMPUTE_READ).unwrap();
+            image
+        };
+        let position = sampled("position", &texels(&|x, y| [0.1 * x - 0.4, 0.1 * y - 0.4, 0.0, 1.0]));
+        let normal = sampled("normal", &texels(&|_, _| [0.0, 0.0, 1.0, 0.5]));
+        let base_color = sampled("base colour", &texels(&|_, _| [0.8, 0.6, 0.4, 0.25]));
+        let radiance = image("radiance", vk::ImageUsageFlags::STORAGE);
+        radiance.upload(&texels(&|_, _| BEFORE.to_array()), Usage::COMPUTE_WRITE).unwrap();
+
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+        let of =
+            |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
+        let resources = ShadeResources {
+            table: engine.table(),
+            lights: Resource::buffer(buffers[0]),
+            light_vertices: Resource::buffer(buffers[1]),
+            position: of(&position),
+            normal: of(&normal),
+            base_color: of(&base_color),
+            specular: of(&base_color),
+            radiance: Resource::StorageImage { view: radiance.view() },
+            glossy: None,
+            light_textures: engine.light_textures(),
+            shapes: Resource::buffer(buffers[0]),
+        };
+        // SAFETY: the set is new; tests wait before the images go.
+        let set = unsafe {
+            let set = pool.allocate(pass.set_layout()).unwrap();
+            pass.write_set(set, &resources).unwrap();
+            set
+        };
+        Self { size, radiance, _g_buffer: [position, normal, base_color], set, _pool: pool }
+    }
+
+    fn picture(&self) -> Vec<[f32; 4]> {
+        self.radiance.download(Usage::COMPUTE_WRITE).unwrap()
+    }
+}
+
+/// Command buffers that are submitted without waiting, each with a fence.
+struct InFlight<'a> {
+    engine: &'a TestEngine,
+    pool: vk::CommandPool,
+    fences: Vec<vk::Fence>,
+}
+
+impl<'a> InFlight<'a> {
+    fn new(engine: &'a TestEngine) -> Self {
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(engine.host().queue_family());
+        // SAFETY: the device is alive.
+        let pool = unsafe { engine.host().device().create_command_pool(&info, None) }.unwrap();
+        Self { engine, pool, fences: vec![] }
+    }
+
+    fn submit(&mut self, record: impl FnOnce(vk::CommandBuffer)) {
+        let (host, device) = (self.engine.host(), self.engine.host().device());
+        let info = vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+        // SAFETY: the commands are new, and end with their pool, which waits.
+        unsafe {
+            let commands = device.allocate_command_buffers(&info).unwrap();
+            device.begin_command_buffer(commands[0], &vk::CommandBufferBeginInfo::default()).unwrap();
+            record(commands[0]);
+            device.end_command_buffer(commands[0]).unwrap();
+            let fence = device.create_fence(&vk::FenceCreateInfo::default(), None).unwrap();
+            self.fences.push(fence);
+            let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
+            device.queue_submit(*host.queue(), &submit, fence).unwrap();
+        }
+    }
+
+    /// Which are done.
+    fn done(&self) -> Vec<bool> {
+        let device = self.engine.host().device();
+        // SAFETY: the fences are ours.
+        self.fences.iter().map(|fence| unsafe { device.get_fence_status(*fence) }.unwrap()).collect()
+    }
+
+    fn wait(&self) {
+        // SAFETY: as above.
+        unsafe { self.engine.host().device().wait_for_fences(&self.fences, true, u64::MAX) }.unwrap();
+    }
+}
+
+impl Drop for InFlight<'_> {
+    fn drop(&mut self) {
+        self.wait();
+        let device = self.engine.host().device();
+        // SAFETY: nothing is pending.
+        unsafe {
+            self.fences.iter().for_each(|fence| device.destroy_fence(*fence, None));
+            device.destroy_command_pool(self.pool, None);
+        }
+    }
+}
+
+#[test]
+fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (host, device) = (engine.host(), engine.host().device());
+    let pass: &Kept<ShadePass> = &engine.shade_pass(one_pixel::options()).unwrap();
+    let packed = pass.pack_lights(&[lamp()], DVec3::ZERO).unwrap();
+    let lights = host.storage_buffer("lights", &packed.lights).unwrap();
+    let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
+    let images = |size| Images::new(&engine, pass, [lights.handle(), vertices.handle()], size);
+    let record = |commands: vk::CommandBuffer, images: &Images, size: [u32; 2]| {
+        let frame = ShadeFrame {
+            size,
+            camera: Vec3::new(0.0, -1.0, 1.0),
+            position_from_clip: None,
+            light_count: 1,
+            quad_count: packed.quad_count,
+            unused: packed.unused,
+            shape_count: 0,
+        };
+        // SAFETY: the commands are being recorded, with a set of images of at least this size.
+        unsafe { pass.record(commands, images.set, &frame) }.unwrap();
+    };
+
+    // Each size by itself
+    let sizes = [[8, 8], [16, 4], [3, 5], [8, 8]];
+    let alone = sizes.map(|size| {
+        let images = images(size);
+        host.submit(|commands| record(commands, &images, size)).unwrap();
+        images.picture()
+    });
+    assert!(alone[0].iter().all(|texel| texel[0] > 0.05) && alone[0][0] != alone[0][63]);
+
+    // All of them, while the first waits for the CPU: images are made, sets written and frames recorded meanwhile
+    let made = sizes.map(images);
+    // SAFETY: the event is destroyed when nothing is pending.
+    let event = unsafe { device.create_event(&vk::EventCreateInfo::default(), None) }.unwrap();
+    {
+        let mut in_flight = InFlight::new(&engine);
+        in_flight.submit(|commands| {
+            let (set, waits) = (vk::PipelineStageFlags::HOST, vk::PipelineStageFlags::COMPUTE_SHADER);
+            // SAFETY: the commands are being recorded.
+            unsafe { device.cmd_wait_events(commands, &[event], set, waits, &[], &[], &[]) };
+            record(commands, &made[0], sizes[0]);
+        });
+        for (images, size) in made.iter().zip(sizes).skip(1) {
+            in_flight.submit(|commands| record(commands, images, size));
+        }
+        assert!(!in_flight.done()[0], "the first still waits");
+        // SAFETY: the event is this test's.
+        unsafe { device.set_event(event) }.unwrap();
+        in_flight.wait();
+        assert_eq!(in_flight.done(), [true; 4]);
+    }
+    // SAFETY: nothing is pending.
+    unsafe { device.destroy_event(event, None) };
+    for (images, alone) in made.iter().zip(&alone) {
+        assert_eq!(images.picture(), *alone, "{:?}", images.size);
+    }
+
+    // The twin: a frame that is told another size leaves the rest as it was
+    let wider = images([16, 4]);
+    host.submit(|commands| record(commands, &wider, [8, 4])).unwrap();
+    let picture = wider.picture();
+    assert_eq!((picture[7], picture[8]), (alone[1][7], BEFORE.to_array()));
+}
