@@ -232,6 +232,7 @@ impl<'a> CLibrary<'a> {
     ///
     /// # Panics
     /// Where the library or the device refuses.
+    #[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
     pub fn shade(
         &self,
         pass: *mut ArealightPass,
@@ -317,6 +318,7 @@ impl Drop for CLibrary<'_> {
 ///
 /// # Panics
 /// Where the library refuses.
+#[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
 pub fn set_layout(pass: *const ArealightPass) -> ArealightSetLayout {
     let mut layout = ArealightSetLayout {
         layout: 0,

@@ -114,8 +114,6 @@ fn lights_that_cannot_be_shaded_are_named() {
     let library = CLibrary::new(&engine);
     let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
     let mut arrays = NO_ARRAYS;
-    let (three, both) = (3_u32, [TRIANGLE, TRIANGLE.map(|number| number + 2.0)].concat());
-    let outside = ArealightLight { vertices: both.as_ptr(), ..light() };
     let nan = [f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     for (wrong, result, words) in [
         (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "light 'lamp': vertices: 2 given"),
@@ -134,22 +132,6 @@ fn lights_that_cannot_be_shaded_are_named() {
             "light 'lamp' calls for the effects: two_sided",
         ),
         (ArealightLight { texture_coordinates: CORNERS.as_ptr(), ..light() }, ErrorEffects, "textured"),
-        (ArealightLight { hole_count: 1, ..light() }, ErrorArgument, "lights[0].hole_vertex_counts: is null"),
-        (
-            ArealightLight { hole_vertex_counts: &raw const three, hole_count: 1, ..outside },
-            ErrorLight,
-            "light 'lamp': holes[0]: vertices[0]",
-        ),
-        (
-            ArealightLight {
-                hole_vertex_counts: &raw const three,
-                hole_count: 1,
-                texture_coordinates: CORNERS.as_ptr(),
-                ..outside
-            },
-            ErrorArgument,
-            "lights[0].hole_count: a light with texture coordinates has no holes",
-        ),
     ] {
         refused(pack(pass, &wrong, &mut arrays), result, words);
     }
@@ -231,6 +213,50 @@ fn lights_that_cannot_be_shaded_are_named() {
         good(arealight_pass_destroy(pass));
     }
     refused(pack(pass, &light(), &mut arrays), ErrorArgument, "pass: is no ArealightPass that is alive");
+}
+
+#[test]
+fn holes_that_cannot_be_cut_are_named() {
+    use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight};
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let mut arrays = NO_ARRAYS;
+    let (three, both) = (3_u32, [TRIANGLE, TRIANGLE.map(|number| number + 2.0)].concat());
+    let outside = ArealightLight { vertices: both.as_ptr(), ..light() };
+    let inside = [TRIANGLE, [0.1, 0.1, 0.0, 0.4, 0.1, 0.0, 0.1, 0.4, 0.0]].concat();
+    for (wrong, result, words) in [
+        (ArealightLight { hole_count: 1, ..light() }, ErrorArgument, "lights[0].hole_vertex_counts: is null"),
+        (
+            ArealightLight { hole_vertex_counts: &raw const three, hole_count: 1, ..outside },
+            ErrorLight,
+            "light 'lamp': holes[0]: vertices[0]",
+        ),
+        (
+            ArealightLight {
+                hole_vertex_counts: &raw const three,
+                hole_count: 1,
+                texture_coordinates: CORNERS.as_ptr(),
+                ..outside
+            },
+            ErrorArgument,
+            "lights[0].hole_count: a light with texture coordinates has no holes",
+        ),
+        (
+            ArealightLight {
+                vertices: inside.as_ptr(),
+                hole_vertex_counts: &raw const three,
+                hole_count: 1,
+                ..light()
+            },
+            ErrorEffects,
+            "light 'lamp' calls for the effects: polygon",
+        ),
+    ] {
+        refused(pack(pass, &wrong, &mut arrays), result, words);
+    }
+    // SAFETY: the pass is this thread's.
+    good(unsafe { arealight_pass_destroy(pass) });
 }
 
 #[test]

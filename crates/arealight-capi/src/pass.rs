@@ -57,7 +57,7 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
     let make = |context: &Context, options| {
-        if size % 4 != 0 {
+        if !size.is_multiple_of(4) {
             return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
         }
         // SAFETY: the same contract, here and below.
