@@ -53,6 +53,8 @@ pub mod tiles;
 
 pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileRung};
 pub use effects::{Effects, UnknownEffect};
+/// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
+pub use glam;
 pub use holes::HoleError;
 pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
