@@ -96,14 +96,20 @@ const FRAMED: u32 = 4;
 
 fn pictures() -> Vec<Arc<Texture>> {
     let side = SIDE as usize;
-    let pictures = [
-        Texture::checker(side, side, 8),
-        Texture::gradient(side, side),
-        Texture::noise(side, side, 1),
-        Texture::spot(side, side),
-        Texture::framed(side, side),
-    ];
-    pictures.map(Arc::new).to_vec()
+    let mut pictures = judged_pictures();
+    pictures.extend([Texture::spot(side, side), Texture::framed(side, side)].map(Arc::new));
+    pictures
+}
+
+/// Those that the bars are for.
+pub(crate) fn judged_pictures() -> Vec<Arc<Texture>> {
+    let side = SIDE as usize;
+    vec![Arc::new(Texture::checker(side, side, 8)), Arc::new(Texture::gradient(side, side)), noise(1)]
+}
+
+/// Noise with the spectrum of photographs.
+pub(crate) fn noise(seed: u64) -> Arc<Texture> {
+    Arc::new(Texture::noise(SIDE as usize, SIDE as usize, seed))
 }
 
 /// What to run.

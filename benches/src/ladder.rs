@@ -1,17 +1,18 @@
 //! What accuracy costs in time: every rung of the quality ladder on a device, its error against the integral of the true BRDF and
 //! its time, beside Monte Carlo, the textbook and the practice.
 
+mod compare;
 mod errors;
 pub(crate) mod frame;
 pub(crate) mod methods;
 mod names;
 mod pictures;
 mod points;
-mod random;
 mod scaling;
 mod text;
 mod timing;
 
+pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
 pub use methods::{DEFAULT, PRACTICE};
 pub use names::{RungNames, UnknownRung};
@@ -59,7 +60,8 @@ impl Options {
     /// How often progress is told of, in all.
     pub fn steps(&self) -> u64 {
         let points: usize = workloads().iter().map(|workload| self.points_of(workload)).sum();
-        points as u64 + self.rounds as u64 + 2 + scaling::STEPS + pictures::STEPS
+        let warm = shares(self.rounds).count() as u64 + 1;
+        points as u64 + self.rounds as u64 + warm + scaling::STEPS + pictures::STEPS
     }
 
     fn points_of(&self, workload: &Workload) -> usize {
@@ -214,11 +216,15 @@ pub fn run(
         }
     }
 
-    // Time: a patch a point. Once to fill the driver's cache: some make other code the first time than they load later
+    // Time: a patch a point. Once to fill the driver's cache: some make other code the first time than they load later. Then with
+    // pipelines that are made anew again and again: where their code lies, and how good it is, is a part of the spread
     let effects: Vec<Effects> = Effects::all().iter().collect();
-    time(&engine, &workloads, &effects, options.seed, 0, progress)?;
-    let engine = self::engine(host, table, &textures)?;
-    let timed = time(&engine, &workloads, &effects, options.seed, options.rounds, progress)?;
+    let mut timed = time(&engine, &workloads, &effects, options.seed, 0, progress)?;
+    let mut engine = engine;
+    for rounds in shares(options.rounds) {
+        engine = self::engine(host, table, &textures)?;
+        timed.extend(time(&engine, &workloads, &effects, options.seed, rounds, progress)?);
+    }
 
     let yardstick = &timed.methods[0];
     let rows: Vec<Row> = rows
@@ -265,12 +271,37 @@ pub fn run(
     Ok((ladder, pictures))
 }
 
+/// How often pipelines are made anew to be timed.
+const SESSIONS: usize = 5;
+
+/// The rounds of each session.
+fn shares(rounds: usize) -> impl Iterator<Item = usize> {
+    let sessions = SESSIONS.min(rounds);
+    (0..sessions).map(move |session| rounds * (session + 1) / sessions - rounds * session / sessions)
+}
+
 /// What the frames took.
 struct Timed {
     pixels: u32,
     methods: Vec<Clock>,
     effects: Vec<Clock>,
     samples: Vec<Clock>,
+}
+
+impl Timed {
+    /// Adds the rounds of another session.
+    fn extend(&mut self, other: Self) {
+        let clocks = [
+            (&mut self.methods, other.methods),
+            (&mut self.effects, other.effects),
+            (&mut self.samples, other.samples),
+        ];
+        for (clocks, others) in clocks {
+            for (clock, other) in clocks.iter_mut().zip(others) {
+                clock.extend(other);
+            }
+        }
+    }
 }
 
 /// Times every method, the default with each effect changed, and Monte Carlo.

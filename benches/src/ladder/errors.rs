@@ -2,6 +2,7 @@
 
 use super::methods::{Method, Workload};
 use super::points::{Point, lights, points};
+use crate::footprints;
 use arealight::{Fresnel, LightTable, Lobes, PolygonLight, Quality};
 use arealight_fit::{Aim, GgxBrdf, fit_at};
 use arealight_oracle::cubature::Settings;
@@ -201,10 +202,11 @@ fn is_right(quality: Quality, known: &Known, index: usize, table: &LightTable) -
     })
 }
 
-/// The images that the textured lights show.
+/// The images that the textured lights show: those that [lookups are judged by](crate::footprints), and noise again.
 pub fn pictures() -> Vec<Arc<Texture>> {
-    let picture = |seed| Arc::new(Texture::noise(16, 16, seed));
-    (1..=super::points::LIGHTS as u64).map(picture).collect()
+    let mut pictures = footprints::judged_pictures();
+    pictures.push(footprints::noise(2));
+    pictures
 }
 
 #[cfg(test)]

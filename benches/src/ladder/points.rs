@@ -3,8 +3,8 @@
 //! Points lie before the lights, at .5 to 8 times their size; half of them look at a light's mirror image, the others
 //! anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
 
-use super::random::Random;
 use arealight::{LightTexture, Material, PolygonLight, Surface};
+use arealight_oracle::hard::stream::Stream;
 use glam::{DVec2, DVec3, Vec3};
 use half::f16;
 use std::f64::consts::TAU;
@@ -85,8 +85,8 @@ pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
 
 /// As many lights as wanted, small ones all about the points.
 pub fn many_lights(count: usize) -> Vec<PolygonLight> {
-    let mut random = Random::new(3);
-    let light = |index| {
+    let light = |index: usize| {
+        let mut random = Stream::new("many lights", index as u64, 0);
         let center =
             DVec3::new(random.between(-4.0, 4.0), random.between(-1.0, 3.0), random.between(-8.0, -2.0));
         let (u, v) = random.direction().any_orthonormal_pair();
@@ -103,11 +103,10 @@ pub fn many_lights(count: usize) -> Vec<PolygonLight> {
 
 /// `count` points about the lights of a kind. Another seed makes others.
 pub fn points(kind: LightKind, count: usize, seed: u64) -> Vec<Point> {
-    let mut random = Random::new(seed);
-    (0..count).map(|index| point(kind, index, &mut random)).collect()
+    (0..count).map(|index| point(kind, index, &mut Stream::new("points", index as u64, seed))).collect()
 }
 
-fn point(kind: LightKind, index: usize, random: &mut Random) -> Point {
+fn point(kind: LightKind, index: usize, random: &mut Stream) -> Point {
     let (center, normal, half_width, half_height) = FRAMES[index % LIGHTS];
     let front = normal.normalize_or(DVec3::Y);
     loop {

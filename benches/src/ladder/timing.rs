@@ -66,6 +66,13 @@ pub struct Clock {
 const ALL: u32 = super::points::LIGHTS as u32;
 
 impl Clock {
+    /// Adds the rounds of another.
+    pub fn extend(&mut self, other: Self) {
+        for (seconds, other) in self.seconds.iter_mut().zip(other.seconds) {
+            seconds.extend(other);
+        }
+    }
+
     /// The time, as a ratio to a yardstick's.
     pub fn time(&self, yardstick: &Self) -> Time {
         let [one, all] = &self.seconds;

@@ -3,7 +3,18 @@
 use crate::failure::Failure;
 use arealight::{Budget, FrameLoad, Limit, ProfileRung, Quality};
 use arealight_benches::ladder::Ladder;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+/// Reads what `arealight bench --json FILE` wrote.
+///
+/// # Errors
+/// A file that cannot be read, or is something else.
+pub fn read_profile(path: &Path) -> Result<Ladder, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::input(path, format!("{error}; write one with `arealight bench --json {}`", path.display()))
+    })
+}
 
 /// What may not be exceeded, and what was measured.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -35,14 +46,7 @@ impl BudgetArguments {
             (None, None) => return Ok(None),
         };
         let Some(path) = &self.profile else { return Ok(None) };
-        let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
-        let found: Ladder = serde_json::from_str(&text).map_err(|error| {
-            Failure::input(
-                path,
-                format!("{error}; write one with `arealight bench --json {}`", path.display()),
-            )
-        })?;
-        let profile = found.profile().map_err(|error| Failure::input(path, error))?;
+        let profile = read_profile(path)?.profile().map_err(|error| Failure::input(path, error))?;
         if profile.device != device {
             let (path, of) = (path.display(), &profile.device);
             eprintln!("warning: {path}: was measured on '{of}', and this is '{device}': times will differ");

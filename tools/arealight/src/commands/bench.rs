@@ -1,5 +1,6 @@
 //! `arealight bench`
 
+mod compare;
 mod ladder;
 mod page;
 mod stability;
@@ -28,6 +29,7 @@ pub struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Bench {
+    Compare(compare::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
 }
@@ -35,6 +37,7 @@ enum Bench {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match &arguments.bench {
         None => ladder::run(&arguments.ladder),
+        Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),
     }
