@@ -52,22 +52,30 @@ pub struct Options {
 }
 
 impl Options {
-    /// As the documents have it: two minutes on two processors.
+    /// As the documents have it: MINUTES on two processors.
     pub const FULL: Self = Self { points: 512, rounds: 15, seed: 1, reference: 1024 };
-    /// Half a minute: to see that it runs, and about what comes out.
+    /// MINUTES: to see that it runs, and about what comes out.
     pub const QUICK: Self = Self { points: 128, rounds: 5, seed: 1, reference: 256 };
 
-    /// How often progress is told of, in all.
+    /// What progress adds up to.
     pub fn steps(&self) -> u64 {
-        let points: usize = workloads().iter().map(|workload| self.points_of(workload)).sum();
-        let warm = shares(self.rounds).count() as u64 + 1;
-        points as u64 + self.rounds as u64 + warm + scaling::STEPS + pictures::STEPS
+        let workloads = workloads();
+        let points: usize = workloads.iter().map(|workload| self.points_of(workload)).sum();
+        let methods: usize = workloads.iter().map(|workload| workload.methods.len()).sum();
+        // Each session makes every pipeline, and warms up
+        let timed = methods + Effects::all().iter().count() + TIMED_SAMPLES.len();
+        let sessions = shares(self.rounds).count() + 1;
+        let long = methods + sessions * (timed + 1) + self.rounds + scaling::STEPS + pictures::STEPS;
+        points as u64 + LONG * long as u64
     }
 
     fn points_of(&self, workload: &Workload) -> usize {
         ((self.points as f64 * workload.share) as usize).max(PATCHES_A_ROW)
     }
 }
+
+/// About as many points are integrated in the time of a pipeline, or of a round: so much it adds to progress.
+const LONG: u64 = 20;
 
 /// A method's error and cost.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -182,7 +190,7 @@ impl Ladder {
 /// Patches of points in a row of the frames.
 const PATCHES_A_ROW: usize = 16;
 
-/// Runs everything on a device. `progress` is told how many more steps are done.
+/// Runs everything on a device. `progress` is told how many more of [`Options::steps`] are done.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -203,10 +211,12 @@ pub fn run(
     let mut monte_carlo = vec![];
     for (index, workload) in workloads.iter().enumerate() {
         let count = options.points_of(workload);
-        let known = Known::new(workload, count, options.seed, table, &textures, progress);
+        let mut known = Known::new(workload, count, options.seed, table, &textures, progress);
         let buffer =
             frame::g_buffer(&engine, &known.points, PATCHES_A_ROW, count.div_ceil(PATCHES_A_ROW), 1)?;
         let frame = Frame::new(&engine, &buffer, &known.lights, DVec3::ZERO, Vec3::ZERO)?;
+        let pipelines = workload.methods.iter().map(|named| frame.pipeline(named.method));
+        engine.passes().make_all(&pipelines.collect::<Vec<_>>(), &|| progress(LONG))?;
         for named in &workload.methods {
             let found = frame.shaded(&frame.ready(named.method)?, 0)?;
             rows.push((workload, named, known.judge(named.method, table, &found)));
@@ -271,12 +281,16 @@ pub fn run(
     Ok((ladder, pictures))
 }
 
-/// How often pipelines are made anew to be timed.
-const SESSIONS: usize = 5;
+/// How often pipelines are made anew to be timed, at most: so few that quartiles of all rounds lie in the fastest and the slowest
+/// session.
+const SESSIONS: usize = 3;
+
+/// Rounds of a session, at least: making its pipelines takes longer.
+const ROUNDS: usize = 5;
 
 /// The rounds of each session.
 fn shares(rounds: usize) -> impl Iterator<Item = usize> {
-    let sessions = SESSIONS.min(rounds);
+    let sessions = (rounds / ROUNDS).clamp(1, SESSIONS);
     (0..sessions).map(move |session| rounds * (session + 1) / sessions - rounds * session / sessions)
 }
 
@@ -311,7 +325,7 @@ fn time(
     effects: &[Effects],
     seed: u64,
     rounds: usize,
-    progress: &dyn Fn(u64),
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Timed, EngineError> {
     let buffers = workloads.iter().map(|workload| patches(engine, workload, seed));
     let buffers = buffers.collect::<Result<Vec<GBuffer>, _>>()?;
@@ -326,19 +340,18 @@ fn time(
         quality: Quality { one_point: *effect == Effects::FAR, ..Quality::default() },
     };
 
-    let mut entries = vec![];
+    let mut timed: Vec<(&Frame<'_>, Method)> = vec![];
     for (workload, frame) in workloads.iter().zip(&frames) {
-        for named in &workload.methods {
-            entries.push(Entry::new(frame, named.method)?);
-        }
+        timed.extend(workload.methods.iter().map(|named| (frame, named.method)));
     }
-    let methods = entries.len();
-    for effect in effects {
-        entries.push(Entry::new(first, changed(effect))?);
-    }
-    for count in TIMED_SAMPLES {
-        entries.push(Entry::new(first, Method::Samples { count })?);
-    }
+    let methods = timed.len();
+    timed.extend(effects.iter().map(|effect| (first, changed(effect))));
+    timed.extend(TIMED_SAMPLES.map(|count| (first, Method::Samples { count })));
+
+    let pipelines: Vec<_> = timed.iter().map(|(frame, method)| frame.pipeline(*method)).collect();
+    engine.passes().make_all(&pipelines, &|| progress(LONG))?;
+    let entries = timed.into_iter().map(|(frame, method)| Entry::new(frame, method));
+    let entries = entries.collect::<Result<Vec<_>, _>>()?;
     let mut clocks = timing::measure(&entries, rounds, progress)?;
     let samples = clocks.split_off(methods + effects.len());
     let effects = clocks.split_off(methods);

@@ -3,7 +3,7 @@
 use super::methods::{Method, Workload};
 use super::points::{Point, lights, points};
 use crate::footprints;
-use arealight::{Fresnel, LightTable, Lobes, PolygonLight, Quality};
+use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality};
 use arealight_fit::{Aim, GgxBrdf, fit_at};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::frame::SurfaceFrame;
@@ -83,6 +83,17 @@ pub struct Known {
     pub truths: Vec<DVec3>,
     relative: Vec<Vec<RelativeLight>>,
     fits: Vec<LightTable>,
+    /// What was integrated of the lobes so far.
+    integrals: Vec<(Integrand, Vec<DVec3>)>,
+}
+
+/// What the integrals of lobes depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Integrand {
+    both_horizons: bool,
+    fresnel: Fresnel,
+    /// None: those fitted to each point.
+    lobes: Option<Lobes>,
 }
 
 /// Estimates of 1e-4 of the integral: errors of about 1e-6, a hundredth of the smallest that is looked for.
@@ -123,22 +134,26 @@ impl Known {
             (integral, fit)
         });
         let (truths, fits) = known.unzip();
-        Self { points, lights, truths, relative, fits }
+        Self { points, lights, truths, relative, fits, integrals: vec![] }
     }
 
     /// Judges what a method made of the points.
-    pub fn judge(&self, method: Method, table: &LightTable, found: &[DVec3]) -> SplitErrors {
+    pub fn judge(&mut self, method: Method, table: &LightTable, found: &[DVec3]) -> SplitErrors {
         let quality = match method {
             Method::Rung { quality, .. } => quality,
             Method::Yardstick { .. } | Method::Samples { .. } => Quality::default(),
         };
         let judged: Vec<usize> =
             (0..self.points.len()).filter(|index| is_right(quality, self, *index, table)).collect();
-        let of_table = self.integrals(quality, &judged, |_| table);
-        let of_fit =
-            self.integrals(Quality { lobes: Lobes::Table, ..quality }, &judged, |index| &self.fits[index]);
-        let truths: Vec<DVec3> = judged.iter().map(|index| self.truths[*index]).collect();
-        let found: Vec<DVec3> = judged.iter().map(|index| found[*index]).collect();
+        let integrand = Integrand {
+            both_horizons: quality.horizon == Horizon::Both,
+            fresnel: quality.fresnel,
+            lobes: Some(quality.lobes),
+        };
+        let at_judged = |all: &[DVec3]| -> Vec<DVec3> { judged.iter().map(|index| all[*index]).collect() };
+        let of_table = at_judged(self.integrals(integrand, table));
+        let of_fit = at_judged(self.integrals(Integrand { lobes: None, ..integrand }, table));
+        let (truths, found) = (at_judged(&self.truths), at_judged(found));
 
         let all = Errors::of(found.iter().zip(&truths));
         // Parts are over the mean of the truth as the whole is
@@ -157,20 +172,29 @@ impl Known {
         }
     }
 
-    /// What the lobes of a table give at the points of some indices, integrated in float64.
-    fn integrals<'a>(
-        &self,
-        quality: Quality,
-        indices: &[usize],
-        table: impl Fn(usize) -> &'a LightTable + Sync,
-    ) -> Vec<DVec3> {
-        let integral = |index: &usize| {
-            let point = &self.points[*index];
+    /// What lobes give at every point, integrated in float64. Once for all methods: of lights that show images it takes long.
+    fn integrals(&mut self, of: Integrand, table: &LightTable) -> &[DVec3] {
+        let done = self.integrals.iter().position(|(done, _)| *done == of);
+        let index = done.unwrap_or_else(|| {
+            let integrals = self.integrate(of, table);
+            self.integrals.push((of, integrals));
+            self.integrals.len() - 1
+        });
+        &self.integrals[index].1
+    }
+
+    fn integrate(&self, of: Integrand, table: &LightTable) -> Vec<DVec3> {
+        let Integrand { both_horizons, fresnel, lobes } = of;
+        let horizon = if both_horizons { Horizon::Both } else { Horizon::Cosine };
+        let quality =
+            Quality { horizon, fresnel, lobes: lobes.unwrap_or(Lobes::Table), ..Quality::default() };
+        let points = self.points.par_iter().zip(&self.relative).zip(&self.fits);
+        let integral = |((point, lights), fit): ((&Point, &Vec<RelativeLight>), &LightTable)| {
             let (surface, normal, view) = (point.surface(), point.normal.as_dvec3(), point.view());
-            let lights = self.relative[*index].iter();
-            lights.map(|light| ltc_on(quality, table(*index), &surface, normal, view, light)).sum()
+            let table = if lobes.is_none() { fit } else { table };
+            lights.iter().map(|light| ltc_on(quality, table, &surface, normal, view, light)).sum()
         };
-        indices.par_iter().map(integral).collect()
+        points.map(integral).collect()
     }
 
     /// What Monte Carlo's answers err by.
@@ -181,7 +205,7 @@ impl Known {
 
 /// Whether a rung is for a point: the bare one asks for lights wholly above each lobe's horizon, without obtuse edges.
 fn is_right(quality: Quality, known: &Known, index: usize, table: &LightTable) -> bool {
-    if quality.horizon != arealight::Horizon::Bare {
+    if quality.horizon != Horizon::Bare {
         return true;
     }
     let point = &known.points[index];
@@ -229,11 +253,11 @@ mod tests {
     fn the_parts_of_an_error_are_told_apart() {
         let table = arealight_table::ggx();
         let workload = &super::super::methods::workloads()[0];
-        let known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
+        let mut known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
         let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;
         // The table's lobes in float64: all that is left is the fit's and the table's
-        let every: Vec<usize> = (0..24).collect();
-        let of_table = known.integrals(Quality::default(), &every, |_| &table);
+        let of_table = Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: Some(Lobes::Table) };
+        let of_table = known.integrate(of_table, &table);
         let errors = known.judge(exact, &table, &of_table);
         assert_eq!(errors.integral, 0.0);
         assert!(errors.fit > 1e-3 && errors.fit < 0.1 && errors.table < 0.5 * errors.fit, "{errors:?}");
@@ -242,6 +266,7 @@ mod tests {
         let wrong = known.judge(exact, &table, &twice);
         assert!(wrong.integral > 0.5 && wrong.fit == errors.fit, "{wrong:?}");
         // Of the truth itself nothing is left
-        assert!(known.judge(exact, &table, &known.truths).all.rmse < 1e-12);
+        let truths = known.truths.clone();
+        assert!(known.judge(exact, &table, &truths).all.rmse < 1e-12);
     }
 }

@@ -4,7 +4,7 @@ use super::methods::{Method, SHADE_YARDSTICK};
 use super::points::Point;
 use crate::textures::{is_software, timed};
 use arealight::gpu::{ReferenceConstants, ShadeConstants};
-use arealight::kernels::REFERENCE;
+use arealight::kernels::{Kernel, REFERENCE};
 use arealight::plan::{ShadeOptions, ShadeVariant, shade_variant_specialization};
 use arealight::{LightSampling, PackedLights, PolygonLight, kernels};
 use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass};
@@ -115,9 +115,9 @@ impl<'a> Frame<'a> {
         Ok(self.g_buffer.radiance.upload(&vec![[0.0_f32; 4]; self.pixels()], Usage::COMPUTE_WRITE)?)
     }
 
-    /// Makes a method's pipeline.
-    pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
-        let (kernel, specialization) = match method {
+    /// The kernel of a method's pipeline, and what it is specialised with.
+    pub fn pipeline(&self, method: Method) -> (&'static Kernel, Vec<(u32, u32)>) {
+        match method {
             Method::Rung { effects, quality } => {
                 let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
                 let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
@@ -127,7 +127,12 @@ impl<'a> Frame<'a> {
                 (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, which as u32)])
             }
             Method::Samples { .. } => (&REFERENCE, vec![]),
-        };
+        }
+    }
+
+    /// Makes a method's pipeline.
+    pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
+        let (kernel, specialization) = self.pipeline(method);
         let resources: Vec<Resource> =
             kernel.bindings.iter().map(|binding| self.resource(binding.name)).collect();
         let pass = self.engine.passes().pass(kernel, &specialization)?;

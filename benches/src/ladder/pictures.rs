@@ -1,5 +1,6 @@
 //! A scene through some of the methods, to be seen.
 
+use super::LONG;
 use super::errors::Errors;
 use super::frame::Frame;
 use super::methods::{Method, Yardstick};
@@ -44,8 +45,8 @@ pub struct Pictures {
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// How often progress is told of.
-pub const STEPS: u64 = 8;
+/// How many long steps of progress it tells of.
+pub const STEPS: usize = 8;
 
 /// Runs a frame so often, for its time.
 const REPEATS: usize = 5;
@@ -105,7 +106,7 @@ pub fn make(
     let frame = Frame::new(&engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
 
     let reference = frame.shaded(&frame.ready(Method::Samples { count: samples })?, 1)?;
-    progress(1);
+    progress(LONG);
     let mut shown = vec![];
     for (name, method) in methods(scene) {
         let ready = frame.ready(method)?;
@@ -114,7 +115,7 @@ pub fn make(
         let seconds = (0..REPEATS).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
         let milliseconds = 1e3 * crate::cost::quantile(&seconds, 0.5);
         shown.push(Picture { name, reflected, errors, milliseconds });
-        progress(1);
+        progress(LONG);
     }
     let (lights, scene) = (scene.lights.len(), scene.name.clone());
     Ok(Pictures { scene, lights, size, emitted, reference, samples, shown })

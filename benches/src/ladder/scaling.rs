@@ -1,5 +1,6 @@
 //! How a frame's time grows with its lights and with its pixels.
 
+use super::LONG;
 use super::frame::{Frame, g_buffer};
 use super::methods::{DEFAULT, LOBES, Method, PRACTICE, Yardstick};
 use super::points::{LightKind, lights, many_lights, points};
@@ -72,7 +73,7 @@ pub fn measure(engine: &Engine, rounds: usize, progress: &dyn Fn(u64)) -> Result
                 }
             }
             steps.push((count, Spread::of(&seconds).times(1e3)));
-            progress(1);
+            progress(LONG);
         }
         by_lights.push(Growth { method: name.to_owned(), steps });
     }
@@ -92,11 +93,11 @@ pub fn measure(engine: &Engine, rounds: usize, progress: &dyn Fn(u64)) -> Result
                 }
             }
             growth.steps.push((frame.pixels() as u32, Spread::of(&seconds).times(1e3)));
-            progress(1);
+            progress(LONG);
         }
     }
     Ok(Scaling { pixels: crowd.pixels() as u32, by_lights, lights: super::points::LIGHTS as u32, by_pixels })
 }
 
-/// How often progress is told of.
-pub const STEPS: u64 = 3 * (LIGHT_STEPS.len() as u64 + SOFTWARE_COLUMNS.len() as u64);
+/// How many long steps of progress it tells of.
+pub const STEPS: usize = 3 * (LIGHT_STEPS.len() + SOFTWARE_COLUMNS.len());

@@ -114,7 +114,7 @@ pub fn measure(
                 }
             }
         }
-        progress(1);
+        progress(super::LONG);
     }
     Ok(clocks)
 }

@@ -6,6 +6,7 @@ use arealight_host::{DescriptorPool, Host};
 use arealight_vk::{ComputePass, Context, HostDevice, Resource};
 use ash::vk;
 use bytemuck::Pod;
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -72,6 +73,42 @@ impl Passes {
                 Ok(Rc::clone(place.insert(Rc::new(Kept::new(&self.host, pass)))))
             }
         }
+    }
+
+    /// Makes all of these pipelines that are not made yet, on every processor. `progress` is called for each, from any thread.
+    ///
+    /// # Errors
+    /// As [`Passes::pass`].
+    pub fn make_all(
+        &self,
+        wanted: &[(&'static Kernel, Vec<(u32, u32)>)],
+        progress: &(dyn Fn() + Sync),
+    ) -> Result<(), EngineError> {
+        let mut made = self.made.borrow_mut();
+        let mut keys: Vec<Specialized> = vec![];
+        let missing = wanted.iter().filter(|(kernel, specialization)| {
+            let key = (kernel.name, specialization.clone());
+            let is_missing = !made.contains_key(&key) && !keys.contains(&key);
+            if is_missing {
+                keys.push(key);
+            } else {
+                progress();
+            }
+            is_missing
+        });
+        let missing: Vec<_> = missing.collect();
+        let context = &self.context;
+        let make = |(kernel, specialization): &&(&'static Kernel, Vec<(u32, u32)>)| {
+            // SAFETY: As in Passes::pass; there is no pipeline cache that threads would share.
+            let pass = unsafe { ComputePass::new(context, kernel, specialization) };
+            progress();
+            pass
+        };
+        let passes = missing.par_iter().map(make).collect::<Vec<_>>();
+        for (key, pass) in keys.into_iter().zip(passes) {
+            made.insert(key, Rc::new(Kept::new(&self.host, pass?)));
+        }
+        Ok(())
     }
 
     /// A descriptor set for `pass` that points at `resources`.
