@@ -5,6 +5,7 @@ use crate::output::print;
 use crate::progress;
 use crate::quality::Parts;
 use arealight::{Fresnel, LightTable};
+use arealight_table::TableFile;
 use channels::Channel;
 use errors::{CELLS, ErrorMap, Source, Subject};
 use lobes::Material;
@@ -73,9 +74,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = format!("{} is not in 0 to 1", arguments.f0);
         return Err(Failure::Argument { argument: "--f0", message });
     }
-    let (name, table) = match &arguments.table {
+    let (name, TableFile { table, fit_error }) = match &arguments.table {
         Some(path) => (path.display().to_string(), load(path)?),
-        None => ("the built-in table".to_owned(), arealight_table::ggx()),
+        None => ("the built-in table".to_owned(), arealight_table::ggx_file()),
     };
     let channels = Channel::all(&table);
     let errors =
@@ -88,7 +89,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         };
         picture.save_png(path)?;
     }
-    let summary = Summary { name: &name, table: &table, channels: &channels, errors: errors.as_deref() };
+    let summary = Summary {
+        name: &name,
+        table: &table,
+        fit_error: fit_error.as_deref(),
+        channels: &channels,
+        errors: errors.as_deref(),
+    };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
@@ -110,8 +117,8 @@ impl Arguments {
     }
 }
 
-fn load(path: &Path) -> Result<LightTable, Failure> {
-    arealight_table::load(path).map_err(|error| Failure::input(path, error))
+fn load(path: &Path) -> Result<TableFile, Failure> {
+    TableFile::load(path).map_err(|error| Failure::input(path, error))
 }
 
 /// Maps the errors of a table in both rungs, of the formula and of other tables, with a progress bar.
@@ -123,9 +130,9 @@ fn measure(table: &LightTable, others: &[PathBuf], quads: u16) -> Result<Vec<Err
         subject("table", Source::Table(table), Fresnel::Split),
         subject("formula", Source::Formula, Fresnel::ByF0),
     ];
-    subjects.extend(others.iter().zip(&loaded).map(|(path, table)| {
+    subjects.extend(others.iter().zip(&loaded).map(|(path, file)| {
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-        subject(&name, Source::Table(table), Fresnel::ByF0)
+        subject(&name, Source::Table(&file.table), Fresnel::ByF0)
     }));
     let bar = progress::bar((CELLS * CELLS) as u64, "cells");
     let maps = errors::measure(&subjects, usize::from(quads), &|| bar.inc(1));
@@ -148,6 +155,8 @@ fn degrees(cosine: f64) -> f64 {
 struct Summary<'a> {
     name: &'a str,
     table: &'a LightTable,
+    /// How far it is from its BRDF, where the file says so.
+    fit_error: Option<&'a str>,
     channels: &'a [Channel],
     errors: Option<&'a [ErrorMap]>,
 }
@@ -159,6 +168,7 @@ impl Summary<'_> {
             "{}\n\
              brdf           {}\n\
              made by        {}\n\
+             fit error      {}\n\
              format         {} {}\n\
              axes           {}\n\
              frame          {}\n\
@@ -168,6 +178,7 @@ impl Summary<'_> {
             // Text of a file that may be anybody's must not steer the terminal
             description.brdf.escape_debug(),
             description.made_by.escape_debug(),
+            self.fit_error.unwrap_or("not said").escape_debug(),
             arealight_table::FORMAT,
             arealight_table::VERSION,
             arealight_table::AXES,
@@ -228,6 +239,7 @@ impl Summary<'_> {
             "table": self.name,
             "brdf": self.table.description().brdf,
             "made_by": self.table.description().made_by,
+            "fit_error": self.fit_error,
             "format": arealight_table::FORMAT,
             "version": arealight_table::VERSION,
             "axes": arealight_table::AXES,
@@ -257,13 +269,16 @@ mod tests {
     fn text_from_the_file_is_escaped() {
         let table = table();
         let channels = Channel::all(&table);
-        let summary = Summary { name: "t", table: &table, channels: &channels, errors: None };
+        let fit_error = Some("1e-3\u{1b}[2J");
+        let summary = Summary { name: "t", table: &table, fit_error, channels: &channels, errors: None };
         let text = summary.to_text();
-        assert!(!text.contains('\u{1b}') && text.contains("size           3 x 3 nodes"), "{text}");
+        assert!(!text.contains('\u{1b}') && text.contains("fit error      1e-3"), "{text}");
+        assert!(text.contains("size           3 x 3 nodes"), "{text}");
         assert!(text.contains("at (1, 2), roughness 0.500, view 90.0°"), "{text}");
         let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
         assert_eq!(value["channels"][2]["largest_step"]["to"], json!([1, 2]));
         assert_eq!(value["errors"], Value::Null);
+        assert_eq!(value["fit_error"], "1e-3\u{1b}[2J");
     }
 
     #[test]
@@ -274,7 +289,8 @@ mod tests {
         let map = ErrorMap { name: "b\u{1b}".into(), fresnel: Fresnel::Split, f0: 0.04, cells };
         let channels = Channel::all(&table);
         let maps = [map];
-        let summary = Summary { name: "t", table: &table, channels: &channels, errors: Some(&maps) };
+        let errors = Some(maps.as_slice());
+        let summary = Summary { name: "t", table: &table, fit_error: None, channels: &channels, errors };
         let text = summary.to_text();
         assert!(!text.contains('\u{1b}') && text.contains(", split, F0 = 0.04"), "{text}");
         assert!(text.contains("most 5.00e-1 at roughness 0.99, view 1.4°\n"), "{text}");
