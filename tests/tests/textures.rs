@@ -1,5 +1,6 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
+use arealight::Effects;
 use arealight::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use arealight_engine::SceneRenderer;
 use arealight_host::Usage;
@@ -39,6 +40,7 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             count: uvs.len() as u32,
         }],
         triangles: uvs.iter().enumerate().map(triangle).collect(),
+        unused: Effects::empty(),
         materials: vec![GpuMaterial {
             base_color: [1.0; 3],
             metalness: 1.0,

@@ -446,7 +446,9 @@ typedef struct ArealightFrame {
     // ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
     // is not counted takes longer.
     uint32_t quad_count;
-    // ArealightPackedLights.unused: AREALIGHT_EFFECT_* that no light calls for, which cost nothing then. 0 is always right.
+    // AREALIGHT_EFFECT_* that nothing of the frame calls for, which cost nothing then: ArealightPackedLights.unused, with what
+    // the host knows of DIFFUSE, GLOSSY and SPECULAR_INPUT (no surface calls for it) and FAR (no light is 282 of its radii
+    // from a surface). 0 is always right.
     uint32_t unused;
     // 0
     uint32_t reserved;

@@ -388,7 +388,9 @@ pub struct ArealightFrame {
     /// ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
     /// is not counted takes longer.
     pub quad_count: u32,
-    /// ArealightPackedLights.unused: AREALIGHT_EFFECT_* that no light calls for, which cost nothing then. 0 is always right.
+    /// AREALIGHT_EFFECT_* that nothing of the frame calls for, which cost nothing then: ArealightPackedLights.unused, with what
+    /// the host knows of DIFFUSE, GLOSSY and SPECULAR_INPUT (no surface calls for it) and FAR (no light is 282 of its radii
+    /// from a surface). 0 is always right.
     pub unused: u32,
     /// 0
     pub reserved: u32,

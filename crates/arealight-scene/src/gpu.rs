@@ -2,13 +2,14 @@
 
 use crate::bvh::Bvh;
 use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
+use arealight::Effects;
 use arealight::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::{DVec3, Vec3};
 
 pub use crate::bvh::Hit;
 
 /// The buffers of the visibility kernel, and of the shade pass's own hierarchy. Any of them may be empty.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SceneBuffers {
     /// What positions are relative to.
     pub origin: DVec3,
@@ -22,6 +23,8 @@ pub struct SceneBuffers {
     pub textures: Vec<GpuTexture>,
     /// The images' texels, one after the other.
     pub texels: Vec<u32>,
+    /// What no surface calls for, of [`Effects::SURFACES`].
+    pub unused: Effects,
     /// Nodes from the root to the deepest leaf, at most [`crate::bvh::MAX_DEPTH`].
     pub max_depth: u32,
 }
@@ -105,8 +108,15 @@ impl SceneBuffers {
             materials: scene.materials.iter().map(pack_material).collect(),
             textures: scene.textures.iter().map(texture).collect(),
             texels,
+            unused: Effects::SURFACES - scene.effects(),
             max_depth: bvh.max_depth,
         })
+    }
+
+    /// The box about all surfaces, from its smallest corner to its largest, relative to the origin: that of the hierarchy's root.
+    /// None without surfaces.
+    pub fn bounds(&self) -> Option<[Vec3; 2]> {
+        self.nodes.first().map(|root| [root.min, root.max].map(Vec3::from_array))
     }
 
     /// Push constants of the visibility kernel for `camera`, in an image of `size` pixels; `background` is

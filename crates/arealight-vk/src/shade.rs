@@ -57,8 +57,8 @@ pub struct ShadeFrame {
     pub light_count: u32,
     /// How many of the first lights are convex quads without an image, [`PackedLights::quad_count`]; the others take longer.
     pub quad_count: u32,
-    /// What no polygon light of the frame calls for, [`PackedLights::unused`]: it costs nothing then. The empty set is
-    /// always right.
+    /// What nothing of the frame calls for, which costs nothing then: of polygon lights [`PackedLights::unused`], and with it, of
+    /// [`Effects::SURFACES`], what the host knows that no surface does. The empty set is always right.
     pub unused: Effects,
     /// How many shapes of their buffer are shaded; none where the pass was made without [`arealight::Effects::SHAPES`].
     pub shape_count: u32,
@@ -99,7 +99,8 @@ pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
 
 /// The shade kernel, specialised for a set of effects and a quality.
 ///
-/// Of the set, pipelines have what the lights of a frame call for: a pass for every effect takes as long as one for just those.
+/// Of the set, pipelines have what the lights and surfaces of a frame call for: a pass for every effect takes as long as one for just
+/// those.
 /// A pipeline is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 #[derive(Debug)]
 pub struct ShadePass {

@@ -51,6 +51,9 @@ impl Effects {
     /// What a convex quad without an image never calls for. Such quads are shaded in a loop of their own.
     pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED);
 
+    /// What the surfaces of a frame call for, whatever its lights.
+    pub const SURFACES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::SPECULAR_INPUT);
+
     /// A light nearer than so many of its radii is never shaded from its centre alone: less than the root of 8e4 in
     /// `arealight_is_far`, since no lobe's space makes a light look smaller against its distance than it is.
     pub const FAR_DISTANCE: f64 = 282.0;

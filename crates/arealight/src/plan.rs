@@ -117,7 +117,8 @@ impl ShadeOptions {
     }
 }
 
-/// What is left of a shade pipeline for the lights of a frame: what none of them calls for costs nothing, and changes nothing.
+/// What is left of a shade pipeline for the lights and surfaces of a frame: what none of them calls for costs nothing, and changes
+/// nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeVariant {
     /// The effects that it handles.
@@ -127,8 +128,8 @@ pub struct ShadeVariant {
 }
 
 impl ShadeVariant {
-    /// What a pass for `effects` needs for the lights that `constants` count, of which none calls for `unused`. Lights that
-    /// are counted beyond the quads are shaded by all that the pass has for such, whatever `unused` says.
+    /// What a pass for `effects` needs for the lights that `constants` count, and surfaces, of which none calls for `unused`. Lights
+    /// that are counted beyond the quads are shaded by all that the pass has for such, whatever `unused` says.
     pub fn new(effects: Effects, unused: Effects, constants: &ShadeConstants) -> Self {
         let of = |count: u32, kinds: Effects| match effects & kinds {
             _ if count == 0 => Effects::empty(),
@@ -140,7 +141,8 @@ impl ShadeVariant {
         // Shapes have two sides too
         let unused_sides =
             if constants.shape_count == 0 { unused & Effects::TWO_SIDED } else { Effects::empty() };
-        let others = effects - Effects::BEYOND_QUADS - Effects::SHAPES - unused_sides;
+        let unused_anywhere = unused & (Effects::SURFACES | Effects::FAR);
+        let others = effects - Effects::BEYOND_QUADS - Effects::SHAPES - unused_sides - unused_anywhere;
         let quad_count = if lights.is_empty() { constants.light_count } else { constants.quad_count };
         Self { effects: others | lights | shapes, quads: quad_count > 0 }
     }
@@ -337,6 +339,9 @@ mod tests {
         assert_eq!(variant(Effects::empty(), counts(3, 0, 2)), (Effects::empty(), false));
         // What is counted is shaded, even where nothing is said to call for it
         assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::SHAPES), Effects::empty());
+        // What depends on surfaces, whatever lights there are
+        let of_surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::FAR;
+        assert_eq!(variant(of_surfaces, counts(3, 1, 2)).0, of_surfaces);
         // A pass without those effects takes all lights for quads
         let plain = ShadeVariant::new(Effects::GLOSSY, Effects::empty(), &counts(3, 0, 0));
         assert_eq!(plain, ShadeVariant { effects: Effects::GLOSSY, quads: true });

@@ -28,7 +28,9 @@ pub enum Horizon {
     /// average and 17 % at grazing angles: lights leak in from there.
     #[default]
     Cosine = 0,
-    /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface.
+    /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface. What the lobe loses there
+    /// is made up for, so that its albedo stays: a light that is wholly above both horizons is brighter than by
+    /// [`Horizon::Cosine`]. So there is no rung without clipping that stands in for this one.
     Both = 1,
     /// Nowhere: the result of [`Horizon::Cosine`] for lights and points of which the host knows that the light is
     /// wholly above that horizon, and that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL

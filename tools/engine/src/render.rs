@@ -49,7 +49,10 @@ impl<'a> SceneRenderer<'a> {
         camera: VisibilityConstants,
         size: [u32; 2],
     ) -> Result<Self, EngineError> {
-        let packed = PackedLights::new(lights, scene.origin)?;
+        let mut packed = PackedLights::new(lights, scene.origin)?;
+        if let Some([low, high]) = scene.bounds() {
+            packed = packed.for_surfaces_within(low, high);
+        }
         engine.check_layers(lights)?;
         let geometry = [
             engine.storage("hierarchy nodes", &scene.nodes)?,
@@ -72,7 +75,7 @@ impl<'a> SceneRenderer<'a> {
             shape_buffer: engine.storage::<GpuShape>("shapes", &[])?,
             sampling: LightSampling::new(lights, &packed),
             quad_count: packed.quad_count,
-            unused: packed.unused,
+            unused: packed.unused | scene.unused,
             shown: false,
         })
     }

@@ -184,10 +184,9 @@ fn effects_are_what_the_scene_calls_for() {
     assert_eq!(calls(&load(textured(maybe))), ["diffuse: material '#0'", "glossy: material '#0'"]);
     let matte = json!({ "name": "matte", "pbrMetallicRoughness": { "metallicFactor": 0 },
                         "extensions": { "KHR_materials_specular": { "specularFactor": 0 } } });
-    assert_eq!(
-        calls(&load(panel_with(matte))),
-        ["diffuse: material 'matte'", "specular_input: material 'matte'"]
-    );
+    let matte = load(panel_with(matte));
+    assert_eq!(calls(&matte), ["diffuse: material 'matte'", "specular_input: material 'matte'"]);
+    assert_eq!(SceneBuffers::new(&matte, DVec3::ZERO).unwrap().unused, Effects::GLOSSY);
     let black = json!({ "name": "black", "pbrMetallicRoughness": {
         "metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1] } });
     assert_eq!(calls(&load(panel_with(black.clone()))), ["glossy: material 'black'"]);
