@@ -5,11 +5,12 @@
 // the binding after it) and LIGHT_TEXTURES_BINDING.
 
 #define AREALIGHT_LIGHT_TEXTURES 1
+#define AREALIGHT_LIGHT_MESHES 1
 #include "arealight/polygon_light.glsl"
 #include "buffers.glsl"
 
 // What a convex quad without an image never calls for: Effects::BEYOND_QUADS in Rust.
-const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
+const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_MESH;
 
 layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
     ArealightGpuLight lights[];
@@ -22,6 +23,10 @@ layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform sampler2DArray light_t
 
 vec3 arealight_bridge_vertex(uint index) {
     return light_vertices[index].xyz;
+}
+
+uint arealight_bridge_face_size(uint index) {
+    return uint(light_vertices[index].w);
 }
 
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {

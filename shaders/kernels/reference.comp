@@ -96,8 +96,19 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
 }
 
-// A point of a light relative to its center, uniform by area.
-vec3 sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
+// A point of a light relative to its center, and the unit normal of the front there.
+struct LightPoint {
+    vec3 offset;
+    vec3 normal;
+};
+
+// The normal of a triangle of a light: the light's, or of a mesh its own.
+vec3 triangle_normal(ArealightGpuLightSampling sampling, vec3 a, vec3 b, vec3 c) {
+    return sampling.normal == vec3(0.0) ? arealight_normalize_or(cross(b - a, c - a), vec3(0.0)) : sampling.normal;
+}
+
+// Uniform by area.
+LightPoint sample_point(ArealightGpuLightSampling sampling, inout RandomState random) {
     float choice = random_float(random);
     uint index = sampling.first_triangle;
     uint last = index + sampling.triangle_count - 1u;
@@ -105,10 +116,12 @@ vec3 sample_point(ArealightGpuLightSampling sampling, inout RandomState random) 
         index++;
     }
     ArealightGpuLightTriangle triangle = light_triangles[index];
+    vec3 a = arealight_bridge_vertex(triangle.vertex0);
+    vec3 b = arealight_bridge_vertex(triangle.vertex1);
+    vec3 c = arealight_bridge_vertex(triangle.vertex2);
     float root = sqrt(random_float(random));
     float v = random_float(random) * root;
-    return arealight_bridge_vertex(triangle.vertex0) * (1.0 - root)
-         + arealight_bridge_vertex(triangle.vertex1) * (root - v) + arealight_bridge_vertex(triangle.vertex2) * v;
+    return LightPoint(a * (1.0 - root) + b * (root - v) + c * v, triangle_normal(sampling, a, b, c));
 }
 
 // Whether a point of a light's plane, relative to its center, lies within its outline: the even-odd rule, along the two
@@ -137,26 +150,26 @@ vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
                                                    : light.radiance * arealight_image_color(light.image, point);
 }
 
-// The light's density in solid angle at a point of it: distance^2 / (area |cosine|); 0 where it does not emit
-// towards the surface.
-float light_density(ArealightPolygonLight light, ArealightGpuLightSampling sampling, vec3 offset) {
+// The light's density in solid angle at a point of it, `offset` from the surface: distance^2 / (area |cosine|); 0 where it does
+// not emit towards the surface.
+float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 offset) {
     float square = dot(offset, offset);
-    float cosine = -dot(sampling.normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
+    float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
     bool emits = light.two_sided ? cosine != 0.0 : cosine > 0.0;
-    return emits ? square / (sampling.area * abs(cosine)) : 0.0;
+    return emits ? square / (area * abs(cosine)) : 0.0;
 }
 
 // One sample of one light: a point of it, weighed against the BRDF's density.
 vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLightSampling sampling,
                        inout RandomState random) {
-    vec3 point = sample_point(sampling, random);
-    vec3 offset = point + (light.center - lobes.position);
-    float by_light = light_density(light, sampling, offset);
+    LightPoint point = sample_point(sampling, random);
+    vec3 offset = point.offset + (light.center - lobes.position);
+    float by_light = light_density(light, sampling.area, point.normal, offset);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
     if (by_light <= 0.0 || direction.z <= 0.0) {
         return vec3(0.0);
     }
-    return light_radiance(light, point) * evaluate(lobes, direction) / (by_light + density(lobes, direction));
+    return light_radiance(light, point.offset) * evaluate(lobes, direction) / (by_light + density(lobes, direction));
 }
 
 // The sample's BRDF direction, where it meets the light, weighed against the light's density.
@@ -171,11 +184,36 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
         return vec3(0.0);
     }
     vec3 offset = ray * distance;
-    float by_light = light_density(light, sampling, offset);
+    float by_light = light_density(light, sampling.area, sampling.normal, offset);
     if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center)) {
         return vec3(0.0);
     }
     return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
+}
+
+// The same for a mesh: every triangle that the direction meets. As in the shade kernel, none hides another.
+vec3 estimate_mesh_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolygonLight light,
+                           ArealightGpuLightSampling sampling) {
+    vec3 ray = direction * lobes.to_surface;
+    vec3 center = light.center - lobes.position;
+    float sum = 0.0;
+    uint end = sampling.first_triangle + sampling.triangle_count;
+    for (uint index = sampling.first_triangle; index < end; index++) {
+        ArealightGpuLightTriangle triangle = light_triangles[index];
+        vec3 a = center + arealight_bridge_vertex(triangle.vertex0);
+        vec3 b = center + arealight_bridge_vertex(triangle.vertex1);
+        vec3 c = center + arealight_bridge_vertex(triangle.vertex2);
+        // On the same side of the three planes through the surface's point and an edge each
+        vec3 volumes = vec3(dot(cross(a, b), ray), dot(cross(b, c), ray), dot(cross(c, a), ray));
+        bool inside = all(greaterThanEqual(volumes, vec3(0.0))) || all(lessThanEqual(volumes, vec3(0.0)));
+        vec3 normal = triangle_normal(sampling, a, b, c);
+        float distance = dot(normal, a) / dot(normal, ray);
+        if (inside && distance > 0.0 && distance < 1e30) {
+            float by_light = light_density(light, sampling.area, normal, ray * distance);
+            sum += by_light > 0.0 ? 1.0 / (by_light + by_brdf) : 0.0;
+        }
+    }
+    return light.radiance * evaluate(lobes, direction) * sum;
 }
 
 // As both estimates above, of a shape.
@@ -204,7 +242,9 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
             continue;
         }
         radiance += estimate_by_light(lobes, light, sampling, random);
-        if (by_brdf > 0.0) {
+        if (by_brdf > 0.0 && sampling.normal == vec3(0.0)) {
+            radiance += estimate_mesh_by_brdf(lobes, direction, by_brdf, light, sampling);
+        } else if (by_brdf > 0.0) {
             radiance += estimate_by_brdf(lobes, direction, by_brdf, light, sampling);
         }
     }

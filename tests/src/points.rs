@@ -77,6 +77,12 @@ pub fn point(surface: Surface, view: DVec3, vertices: Vec<DVec3>, two_sided: boo
         position: DVec3::ZERO,
         normal: DVec3::Z,
         view,
-        light: PolygonLight { name: "test".into(), vertices, radiance: Vec3::ONE, two_sided, texture: None },
+        light: PolygonLight {
+            name: "test".into(),
+            vertices,
+            radiance: Vec3::ONE,
+            two_sided,
+            ..PolygonLight::default()
+        },
     }
 }

@@ -10,6 +10,8 @@ pub enum Path {
     Quad,
     /// The walk around any polygon.
     Walk,
+    /// The walk around each face of a mesh.
+    Mesh,
 }
 
 /// One kind of pipeline.
@@ -54,6 +56,7 @@ impl Rung {
         match self.path {
             Path::Quad => effects,
             Path::Walk => effects | Effects::POLYGON,
+            Path::Mesh => effects | Effects::POLYGON | Effects::MESH,
         }
     }
 

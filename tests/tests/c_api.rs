@@ -2,7 +2,7 @@
 
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_SPHERE,
-    AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_SHAPE_SPHERE,
+    AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_SHAPE_SPHERE,
     AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightHost, ArealightLight, ArealightPackedLights,
     ArealightPass, ArealightResources, ArealightResult, ArealightShape, ArealightTable, ArealightUpload,
     arealight_abi_version, arealight_create, arealight_destroy, arealight_pass_create,
@@ -150,7 +150,10 @@ fn lights_that_cannot_be_shaded_are_named() {
     // Sizes first; then arrays, which may be too small
     good(pack(pass, &light(), &mut arrays));
     assert_eq!((arrays.lights_size, arrays.vertices_size), (128, 48));
-    let unused = AREALIGHT_EFFECT_TWO_SIDED | AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED;
+    let unused = AREALIGHT_EFFECT_TWO_SIDED
+        | AREALIGHT_EFFECT_POLYGON
+        | AREALIGHT_EFFECT_TEXTURED
+        | AREALIGHT_EFFECT_MESH;
     assert_eq!((arrays.quad_count, arrays.unused), (1, unused), "a triangle is a quad");
     let (mut lights, mut vertices) = ([0u32; 32], [0.0f32; 12]);
     let (to_lights, to_vertices) = (lights.as_mut_ptr().cast(), vertices.as_mut_ptr().cast());

@@ -79,7 +79,7 @@ fn lights() -> [PolygonLight; 3] {
         vertices: vertices.iter().map(|vertex| DVec3::from_array(*vertex)).collect(),
         radiance: Vec3::from_array(radiance),
         two_sided,
-        texture: None,
+        ..PolygonLight::default()
     };
     let window = [[994.0, 0.2, -2011.0], [998.0, 0.2, -2012.0], [998.0, 3.2, -2012.0], [994.0, 3.2, -2011.0]];
     let sign = [[1003.0, 0.1, -2010.0], [1006.0, 0.1, -2008.0], [1004.5, 2.1, -2009.0]];

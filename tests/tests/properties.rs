@@ -35,7 +35,7 @@ fn outline(random: &mut Random, path: Path, index: usize) -> Vec<DVec3> {
     let center = random.direction() * random.between(0.5, 3.0);
     match path {
         Path::Quad => on_a_circle(&random.polygon(center, 3 + index % 2, 0.3, 1.5), center),
-        Path::Walk => random.polygon(center, 3 + index % 6, 0.2, 1.5),
+        Path::Walk | Path::Mesh => random.polygon(center, 3 + index % 6, 0.2, 1.5),
     }
 }
 

@@ -126,7 +126,7 @@ fn a_light_that_calls_for_more_is_named() {
         vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
         radiance: Vec3::ONE,
         two_sided: true,
-        texture: None,
+        ..PolygonLight::default()
     };
     let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
     recording(&engine, options, |pass, _, _| {

@@ -78,6 +78,7 @@ pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
             two_sided: kind == LightKind::TwoSided,
             texture: (kind == LightKind::Textured)
                 .then(|| LightTexture { layer: index as u32, uvs: corners.to_vec() }),
+            ..PolygonLight::default()
         }
     };
     FRAMES.iter().enumerate().map(light).collect()

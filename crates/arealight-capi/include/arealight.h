@@ -52,9 +52,11 @@
 
 // Some light is a cylinder or a capsule.
 #define AREALIGHT_EFFECT_TUBE 1024
+// Some light has several faces, which no ArealightLight has.
+#define AREALIGHT_EFFECT_MESH 2048
 
 // Every effect: right for any lights, at the highest cost.
-#define AREALIGHT_EFFECTS_ALL 1919
+#define AREALIGHT_EFFECTS_ALL 3967
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0

@@ -175,6 +175,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<PolygonLigh
     let mut made = PolygonLight {
         name,
         vertices: vertices.by_ref().take(count).collect(),
+        faces: Vec::new(),
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: coordinates.map(|uvs| LightTexture {

@@ -349,6 +349,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_ELLIPSE, Effects::ELLIPSE),
             (c::AREALIGHT_EFFECT_SPHERE, Effects::SPHERE),
             (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
+            (c::AREALIGHT_EFFECT_MESH, Effects::MESH),
             (c::AREALIGHT_EFFECTS_ALL, Effects::all()),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");

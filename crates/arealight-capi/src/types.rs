@@ -25,8 +25,10 @@ pub const AREALIGHT_EFFECT_ELLIPSE: u32 = 256;
 pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
 /// Some light is a cylinder or a capsule.
 pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
+/// Some light has several faces, which no ArealightLight has.
+pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
 /// Every effect: right for any lights, at the highest cost.
-pub const AREALIGHT_EFFECTS_ALL: u32 = 1919;
+pub const AREALIGHT_EFFECTS_ALL: u32 = 3967;
 
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;

@@ -7,7 +7,7 @@ mod shapes;
 mod shown;
 mod textured;
 
-pub use shapes::shape_ltc_on;
+pub use shapes::{shape_ltc_on, shape_truth};
 pub use shown::ShownImage;
 pub use textured::transformed_image_integral;
 
@@ -96,16 +96,34 @@ pub fn truth(
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
     let region = if light.two_sided || faces_origin(&vertices) {
         let most_texels = settings.max_evaluations / EVALUATIONS_PER_TEXEL;
-        let whole = match &image {
+        match &image {
             None => Region::polygon(&vertices),
             Some(image) => image.region(&vertices, most_texels),
-        };
-        whole.clipped(DVec3::Z)
+        }
     } else {
         Region::default()
     };
-    let (view, lobe) = (frame.view(), Ggx { alpha: surface.alpha });
     let shown = |direction| image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
+    let signed = reflected(surface, frame.view(), &region, settings, shown);
+    // A two-sided light seen from behind has a negative solid angle
+    Truth {
+        radiance: light.radiance * if light.two_sided { signed.radiance.abs() } else { signed.radiance.max(DVec3::ZERO) },
+        error: light.radiance * signed.error,
+        evaluations: signed.evaluations,
+    }
+}
+
+/// What a surface reflects of a region of its frame that shines as `shown` says, by direction; of a region that counts negatively
+/// with the other sign.
+fn reflected(
+    surface: &Surface,
+    view: DVec3,
+    region: &Region,
+    settings: &Settings,
+    shown: impl Fn(DVec3) -> DVec3,
+) -> Truth {
+    let region = region.clipped(DVec3::Z);
+    let lobe = Ggx { alpha: surface.alpha };
     // Integrate each lobe over the light
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
         Estimate::default()
@@ -123,13 +141,12 @@ pub fn truth(
             (shown(direction) * fresnel * value).to_array()
         })
     };
-    // Add them; a two-sided light seen from behind has a negative solid angle
+    // Add them
     let sum = |diffuse: [f64; 3], glossy: [f64; 3]| {
-        (surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)) * light.radiance
+        surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)
     };
-    let signed = sum(diffuse.value, glossy.value);
     Truth {
-        radiance: if light.two_sided { signed.abs() } else { signed.max(DVec3::ZERO) },
+        radiance: sum(diffuse.value, glossy.value),
         error: sum(diffuse.error, glossy.error),
         evaluations: diffuse.evaluations + glossy.evaluations,
     }

@@ -44,6 +44,7 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::ELLIPSE),
         light(Effects::SPHERE),
         light(Effects::TUBE),
+        light(Effects::MESH),
     ];
     calls.into_iter().flatten().collect()
 }

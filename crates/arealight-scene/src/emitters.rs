@@ -31,9 +31,23 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
         tolerance: light_textures::tolerance(&loader.scene, texture),
     });
     let outlines = outlines(&instance.positions, &instance.triangles, instance.rounding, coordinates);
+    let Some(texture) = texture else {
+        // One light of one colour, of as many faces as there are flat parts
+        let mut light =
+            PolygonLight { name: instance.name.clone(), radiance, two_sided, ..PolygonLight::default() };
+        outlines.polygons.iter().for_each(|outline| light.add_face(outline));
+        if !light.is_mesh() {
+            light.faces.clear();
+        }
+        push(loader, &place, light);
+        return;
+    };
+    // An image lies on one plane: each straight part is a light of its own
     let count = outlines.polygons.len();
     if outlines.bent {
-        loader.warn(place.as_str(), format!("is not flat: {count} polygon lights, one a flat part"));
+        let text =
+            format!("its texture is on a surface that is not flat: {count} polygon lights, one a flat part");
+        loader.warn(place.as_str(), text);
     }
     if outlines.seams {
         let text = format!("its texture has seams or bends: {count} polygon lights, one a straight part");
@@ -48,14 +62,21 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
         let uvs = uvs.next().unwrap_or_default();
         let name =
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
-        let light = PolygonLight { name, vertices, radiance, two_sided, texture: None };
-        if let Err(problem) = light.validate() {
-            loader.warn(place.as_str(), format!("{problem}: left out"));
-            continue;
+        let light = PolygonLight { name, vertices, radiance, two_sided, ..PolygonLight::default() };
+        if push(loader, &place, light) {
+            loader.textured.push(TexturedLight { light: loader.scene.lights.len() - 1, texture, uvs });
         }
-        if let Some(texture) = texture {
-            loader.textured.push(TexturedLight { light: loader.scene.lights.len(), texture, uvs });
-        }
-        loader.scene.lights.push(light);
     }
+}
+
+/// Adds a light; false where it cannot be shaded.
+fn push(loader: &mut Loader, place: &str, light: PolygonLight) -> bool {
+    match light.validate() {
+        Ok(()) => loader.scene.lights.push(light),
+        Err(problem) => {
+            loader.warn(place, format!("{problem}: left out"));
+            return false;
+        }
+    }
+    true
 }

@@ -33,6 +33,9 @@ bitflags::bitflags! {
         const SPHERE = 1 << 9;
         /// Some light is a cylinder or a capsule ([`Shape::Tube`](crate::Shape::Tube)).
         const TUBE = 1 << 10;
+        /// Some light has several faces ([`PolygonLight::is_mesh`](crate::PolygonLight::is_mesh)). Such a light calls for
+        /// [`Effects::POLYGON`], too.
+        const MESH = 1 << 11;
     }
 }
 
@@ -49,7 +52,7 @@ impl Effects {
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
 
     /// What a convex quad without an image never calls for. Such quads are shaded in a loop of their own.
-    pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED);
+    pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED).union(Self::MESH);
 
     /// What the surfaces of a frame call for, whatever its lights.
     pub const SURFACES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::SPECULAR_INPUT);
@@ -71,6 +74,7 @@ impl Effects {
             (Self::ELLIPSE, "ellipse"),
             (Self::SPHERE, "sphere"),
             (Self::TUBE, "tube"),
+            (Self::MESH, "mesh"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

@@ -170,7 +170,7 @@ pub struct GpuLightTriangle {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuLightSampling {
-    /// Unit normal of the front.
+    /// Unit normal of the front; zero for a mesh.
     pub normal: [f32; 3],
     /// Area.
     pub area: f32,

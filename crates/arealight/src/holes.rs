@@ -45,6 +45,9 @@ pub enum HoleError {
     /// It has no area, or the polygon has none.
     #[error("no area: of the hole, or of the polygon it is in")]
     NoArea,
+    /// The light is a mesh.
+    #[error("the light has several faces: cut holes into a face before it is added")]
+    Mesh,
     /// There is no way to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
     #[error("no straight way to the outline: vertices lie too near to each other")]
     NoBridge,
@@ -70,8 +73,15 @@ impl PolygonLight {
     /// What [`PolygonLight::validate`] refuses, and [`LightError::BadHole`], which names the hole; then the light is as it was.
     pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightError> {
         self.validate()?;
+        if self.is_mesh() && !holes.is_empty() {
+            return Err(LightError::BadHole { light: self.name.clone(), hole: 0, reason: HoleError::Mesh });
+        }
         let bad = |(hole, reason)| LightError::BadHole { light: self.name.clone(), hole, reason };
         self.vertices = with_holes(self, holes).map_err(bad)?;
+        // One outline, if it was said to be one face
+        if !holes.is_empty() {
+            self.faces.clear();
+        }
         Ok(())
     }
 }

@@ -19,6 +19,7 @@
 //! |---|---|
 //! | [`light`] | polygon lights and how they are packed for the GPU |
 //! | [`holes`] | polygon lights with holes |
+//! | [`mesh`] | several flat faces that are one light |
 //! | [`shape`] | disks, spheres, cylinders and capsules as lights |
 //! | [`light_texture`] | what a light shows |
 //! | [`texture_part`] | which part of an image becomes one |
@@ -43,6 +44,7 @@ pub mod light;
 pub mod light_sampling;
 pub mod light_texture;
 pub mod material;
+pub mod mesh;
 pub mod plan;
 pub mod pyramid;
 pub mod quality;
@@ -60,6 +62,7 @@ pub use light::{LightError, PackedLights, PolygonLight};
 pub use light_sampling::LightSampling;
 pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
+pub use mesh::FaceError;
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 pub use shape::{Shape, ShapeError, ShapeKind, ShapeLight, TubeEnds};

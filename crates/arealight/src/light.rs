@@ -4,12 +4,13 @@ use crate::Effects;
 use crate::gpu::GpuLight;
 use crate::holes::HoleError;
 use crate::light_texture::{LightTexture, TextureError, TextureMap};
+use crate::mesh::{FaceError, area_of};
 use glam::{DVec3, Vec3};
 
 /// How far a vertex of a flat polygon may be off its plane, as a part of its size.
 pub(crate) const FLAT: f64 = 1e-4;
 
-/// A flat polygon that emits constant radiance, or shows an image.
+/// A flat polygon that emits constant radiance, or shows an image; or several that are one light ([`crate::mesh`]).
 ///
 /// Any number of vertices from three on, convex or concave; its edges do not cross. Holes are cut by
 /// [`PolygonLight::cut_holes`]. The front is the right-hand side of the vertex order: seen from the front, the vertices run counter-clockwise.
@@ -19,6 +20,8 @@ pub struct PolygonLight {
     pub name: String,
     /// World positions, in the scene's unit of length.
     pub vertices: Vec<DVec3>,
+    /// How many of the vertices each face has, one after another; empty for one polygon.
+    pub faces: Vec<u32>,
     /// Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
     pub radiance: Vec3,
     /// Whether the back emits too.
@@ -67,6 +70,14 @@ pub enum LightError {
         /// What is wrong.
         reason: HoleError,
     },
+    /// Its vertices are not shared out among its faces.
+    #[error("light '{light}': {reason}")]
+    BadFaces {
+        /// The light's name.
+        light: String,
+        /// What is wrong.
+        reason: FaceError,
+    },
     /// Its texture cannot be mapped onto it.
     #[error("light '{light}': texture: {reason}")]
     BadTexture {
@@ -113,6 +124,7 @@ impl PolygonLight {
                 return Err(LightError::VertexNotFinite { light: light(), index, value });
             }
         }
+        self.check_faces().map_err(|reason| LightError::BadFaces { light: light(), reason })?;
         if !self.radiance.is_finite() || self.radiance.min_element() < 0.0 {
             return Err(LightError::BadRadiance { light: light(), value: self.radiance });
         }
@@ -121,12 +133,9 @@ impl PolygonLight {
     }
 
     /// Area times normal, by Newell's sum over the vertices: its direction is the front, its length the area
-    /// (unit of length squared). Zero for a degenerate polygon.
+    /// (unit of length squared). Zero for a degenerate polygon. Of a mesh the sum over its faces, which is zero for a closed one.
     pub fn area_vector(&self) -> DVec3 {
-        let anchor = self.vertices.first().copied().unwrap_or_default();
-        let offsets = self.vertices.iter().map(|v| *v - anchor);
-        let next = self.vertices.iter().cycle().skip(1).map(|v| *v - anchor);
-        offsets.zip(next).map(|(a, b)| a.cross(b)).sum::<DVec3>() * 0.5
+        self.outlines().map(area_of).sum()
     }
 
     /// The middle of the area; of the vertices' box for a degenerate polygon. Zero without finite vertices.
@@ -139,16 +148,19 @@ impl PolygonLight {
             .iter()
             .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
         let middle = (low + high) * 0.5;
-        let normal = self.area_vector().normalize_or_zero();
-        // Weigh the triangles of a fan about a vertex, which is in the plane, by their signed areas
-        let apex = self.vertices[0];
-        let next = self.vertices.iter().cycle().skip(1);
+        // Weigh the triangles of a fan about a vertex of each face, which is in its plane, by their signed areas
         let (mut area, mut moment) = (0.0, DVec3::ZERO);
-        for (a, b) in self.vertices.iter().zip(next) {
-            let (a, b) = (*a - apex, *b - apex);
-            let weight = a.cross(b).dot(normal);
-            area += weight;
-            moment += (a + b) * (weight / 3.0);
+        let apex = self.vertices[0];
+        for outline in self.outlines() {
+            let normal = area_of(outline).normalize_or_zero();
+            let start = outline.first().copied().unwrap_or_default();
+            let next = outline.iter().cycle().skip(1);
+            for (a, b) in outline.iter().zip(next) {
+                let (a, b) = (*a - start, *b - start);
+                let weight = a.cross(b).dot(normal);
+                area += weight;
+                moment += (a + b + (start - apex) * 3.0) * (weight / 3.0);
+            }
         }
         let center = if area > 0.0 { apex + moment / area } else { middle };
         // Rounding has its way with slivers; their middle stays within their box
@@ -158,7 +170,7 @@ impl PolygonLight {
     /// Whether the outline is convex and flat, both to a ten-thousandth of its size, and has at most four vertices:
     /// what is shaded without [`Effects::POLYGON`], as if its vertices were moved by that much.
     pub fn is_convex_quad(&self) -> bool {
-        if self.vertices.len() > 4 {
+        if self.vertices.len() > 4 || self.is_mesh() {
             return false;
         }
         let normal = self.area_vector().normalize_or_zero();
@@ -171,9 +183,12 @@ impl PolygonLight {
         convex && self.is_flat()
     }
 
-    /// Whether every vertex lies in one plane, to a ten-thousandth of the outline's size.
+    /// Whether every vertex lies in one plane, to a ten-thousandth of the outline's size, and every face of a mesh faces one way.
     pub fn is_flat(&self) -> bool {
         let normal = self.area_vector().normalize_or_zero();
+        if self.is_mesh() && !self.outlines().all(|outline| area_of(outline).dot(normal) > 0.0) {
+            return false;
+        }
         let center = self.center();
         let size = self.vertices.iter().map(|v| v.distance(center)).fold(0.0, f64::max);
         self.vertices.iter().all(|v| (*v - center).dot(normal).abs() <= FLAT * size)
@@ -199,41 +214,19 @@ impl PolygonLight {
         effects.set(Effects::TWO_SIDED, self.two_sided);
         effects.set(Effects::POLYGON, !self.is_convex_quad());
         effects.set(Effects::TEXTURED, self.texture.is_some());
+        effects.set(Effects::MESH, self.is_mesh());
         effects
     }
 
     /// Whether a surface as far as `distance` from the light's center may see it as
-    /// [far](Effects::FAR). Conservative: false only where none does.
+    /// [far](Effects::FAR). Conservative: false only where none does. A mesh is always shaded in full.
     pub fn may_be_far(&self, distance: f64) -> bool {
+        if self.is_mesh() {
+            return false;
+        }
         let center = self.center();
         let radius = self.vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
         may_be_far(radius, distance)
-    }
-
-    /// Vertex indices of triangles that cover the polygon once, three a triangle, in the polygon's
-    /// orientation. Empty for a degenerate polygon.
-    pub fn triangles(&self) -> Vec<u32> {
-        let normal = self.area_vector().normalize_or_zero();
-        if normal == DVec3::ZERO {
-            return Vec::new();
-        }
-        // Project onto the polygon's plane, so that its front is counter-clockwise in two dimensions
-        let (tangent, bitangent) = normal.any_orthonormal_pair();
-        let anchor = self.vertices[0];
-        let flat = self.vertices.iter().map(|v| {
-            let offset = *v - anchor;
-            [offset.dot(tangent), offset.dot(bitangent)]
-        });
-        let mut indices: Vec<u32> = Vec::new();
-        earcut::Earcut::new().earcut(flat, &[], &mut indices);
-        // Turn each triangle the way of the outline
-        for triangle in indices.chunks_exact_mut(3) {
-            let [a, b, c] = [0, 1, 2].map(|i| self.vertices[triangle[i] as usize]);
-            if (b - a).cross(c - a).dot(normal) < 0.0 {
-                triangle.swap(1, 2);
-            }
-        }
-        indices
     }
 }
 
@@ -252,7 +245,8 @@ fn flags(light: &PolygonLight) -> u32 {
 pub struct PackedLights {
     /// One record a light: convex quads without an image first, else in the given order.
     pub lights: Vec<GpuLight>,
-    /// Vertex positions relative to their light's center, in xyz; w is zero.
+    /// Vertex positions relative to their light's center, in xyz; w is zero, but with the first vertex of a face of a mesh how many
+    /// vertices the face has.
     pub vertices: Vec<[f32; 4]>,
     /// Which of the given lights each record is of.
     pub order: Vec<u32>,
@@ -359,7 +353,15 @@ impl PackedLights {
             let value = light.vertices[index];
             return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
         }
-        let radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
+        let mut radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
+        if light.is_mesh() {
+            radius = radius.max(light.covering_radius());
+            let mut first = first_vertex as usize;
+            for &count in &light.faces {
+                self.vertices[first][3] = count as f32;
+                first += count as usize;
+            }
+        }
         let area = light.area_vector() / radius.powi(2);
         // The texture's axes keep their precision as the vertices do
         let corner = map.map(|map| map.corner - origin - center.as_dvec3()).unwrap_or_default();
@@ -461,7 +463,7 @@ mod tests {
         ];
         let mut packed = PackedLights::new(&lights, DVec3::ZERO).unwrap();
         assert_eq!((&packed.order[..], packed.quad_count), (&[1, 3, 0, 2][..], 2));
-        assert_eq!(packed.unused, Effects::TEXTURED);
+        assert_eq!(packed.unused, Effects::TEXTURED | Effects::MESH);
         for (record, index) in packed.lights.iter().zip(&packed.order) {
             let first = packed.vertices[record.first_vertex as usize][0] + record.center[0];
             assert!((f64::from(first) - lights[*index as usize].vertices[0].x).abs() < 1e-6);

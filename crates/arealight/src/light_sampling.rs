@@ -1,7 +1,9 @@
 //! What the Monte Carlo reference needs to draw points of lights: triangles and their areas.
 
 use crate::gpu::{GpuLightSampling, GpuLightTriangle};
+use crate::mesh::area_of;
 use crate::{PackedLights, PolygonLight};
+use glam::DVec3;
 
 /// The buffers of the reference kernel beside the lights themselves.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -10,6 +12,45 @@ pub struct LightSampling {
     pub lights: Vec<GpuLightSampling>,
     /// The triangles of all lights. A light without area has none, and is passed over.
     pub triangles: Vec<GpuLightTriangle>,
+}
+
+impl PolygonLight {
+    /// Vertex indices of triangles that cover the polygon, or each face of a mesh, once, three a triangle, in its
+    /// orientation. Empty for a degenerate polygon.
+    pub fn triangles(&self) -> Vec<u32> {
+        let mut indices = Vec::new();
+        let mut first = 0;
+        for outline in self.outlines() {
+            indices.extend(triangles_of(outline).into_iter().map(|index| first + index));
+            first += outline.len() as u32;
+        }
+        indices
+    }
+}
+
+/// Indices of an outline's vertices: triangles that cover it once, in its orientation.
+fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
+    let normal = area_of(outline).normalize_or_zero();
+    if normal == DVec3::ZERO {
+        return Vec::new();
+    }
+    // Project onto the outline's plane, so that its front is counter-clockwise in two dimensions
+    let (tangent, bitangent) = normal.any_orthonormal_pair();
+    let anchor = outline[0];
+    let flat = outline.iter().map(|v| {
+        let offset = *v - anchor;
+        [offset.dot(tangent), offset.dot(bitangent)]
+    });
+    let mut indices: Vec<u32> = Vec::new();
+    earcut::Earcut::new().earcut(flat, &[], &mut indices);
+    // Turn each triangle the way of the outline
+    for triangle in indices.chunks_exact_mut(3) {
+        let [a, b, c] = [0, 1, 2].map(|i| outline[triangle[i] as usize]);
+        if (b - a).cross(c - a).dot(normal) < 0.0 {
+            triangle.swap(1, 2);
+        }
+    }
+    indices
 }
 
 impl LightSampling {
@@ -33,8 +74,10 @@ impl LightSampling {
                     cumulative: (before / total) as f32,
                 });
             }
+            // The faces of a mesh have normals of their own
+            let normal = if light.is_mesh() { DVec3::ZERO } else { light.area_vector().normalize_or_zero() };
             sampling.lights.push(GpuLightSampling {
-                normal: light.area_vector().normalize_or_zero().as_vec3().to_array(),
+                normal: normal.as_vec3().to_array(),
                 area: total as f32,
                 first_triangle,
                 triangle_count: sampling.triangles.len() as u32 - first_triangle,
@@ -48,7 +91,7 @@ impl LightSampling {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DVec3, Vec3};
+    use glam::Vec3;
 
     #[test]
     fn cumulative_areas_end_at_one_and_degenerate_lights_have_no_triangles() {

@@ -19,6 +19,9 @@ pub struct LightTexture {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TextureError {
+    /// The light has several faces, which one image does not fit.
+    #[error("a mesh shows no image; give the faces that show one lights of their own")]
+    Mesh,
     /// There must be one coordinate a vertex.
     #[error("uvs: {uvs} given for {vertices} vertices; give one each")]
     Count {
@@ -82,6 +85,9 @@ impl LightTexture {
     /// # Errors
     /// [`TextureError`] says what is wrong with them.
     pub fn map(&self, light: &PolygonLight) -> Result<TextureMap, TextureError> {
+        if light.is_mesh() {
+            return Err(TextureError::Mesh);
+        }
         let (uvs, vertices) = (&self.uvs, &light.vertices);
         if uvs.len() != vertices.len() {
             return Err(TextureError::Count { uvs: uvs.len(), vertices: vertices.len() });

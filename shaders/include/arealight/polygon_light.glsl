@@ -10,7 +10,20 @@
 // light keeps its shape however far from the origin it is.
 vec3 arealight_bridge_vertex(uint index);
 
-// A flat, simple polygon of constant radiance, or that shows an image.
+// Whether lights may be meshes of several faces. A host that says so defines the bridge below, and sets
+// AREALIGHT_EFFECT_MESH where a light is one.
+#ifndef AREALIGHT_LIGHT_MESHES
+#define AREALIGHT_LIGHT_MESHES 0
+#endif
+
+#if AREALIGHT_LIGHT_MESHES
+// The host's bridge to the faces of meshes: how many vertices the face has whose first vertex is `index`. 0 for a light that
+// is one polygon.
+uint arealight_bridge_face_size(uint index);
+#endif
+
+// A flat, simple polygon of constant radiance, or that shows an image; or a mesh of several, one after another, of constant
+// radiance.
 struct ArealightPolygonLight {
     vec3 radiance;     // of the front, W/(m^2 sr)
     uint first_vertex; // for arealight_bridge_vertex
@@ -124,6 +137,34 @@ ArealightArcs arealight_lobe_walk(ArealightLobeView view, ArealightPolygonLight 
     return unclipped ? ArealightArcs(walk.sum, walk.squares) : arealight_walk_end(walk, view.anchor, rung);
 }
 
+#if AREALIGHT_LIGHT_MESHES
+
+// Whether a light has several faces.
+bool arealight_is_mesh(ArealightPolygonLight light, uint effects) {
+    return (effects & AREALIGHT_EFFECT_MESH) != 0u && arealight_bridge_face_size(light.first_vertex) != 0u;
+}
+
+// The arcs around the faces of a mesh that face the shading point; of a two-sided one around all, each as if it did. Each face
+// is clipped and closed by itself. The sum is of what each sends: where one hides another, both count.
+ArealightArcs arealight_lobe_mesh(ArealightLobeView view, ArealightPolygonLight light, ArealightQuality quality) {
+    ArealightArcs arcs = ArealightArcs(vec3(0.0), 0.0);
+    uint end = light.first_vertex + light.vertex_count;
+    ArealightPolygonLight face = light;
+    for (face.first_vertex = light.first_vertex; face.first_vertex < end; face.first_vertex += face.vertex_count) {
+        uint rest = end - face.first_vertex;
+        uint size = arealight_bridge_face_size(face.first_vertex);
+        face.vertex_count = size == 0u ? rest : min(size, rest);
+        ArealightArcs around = arealight_lobe_walk(view, face, quality);
+        // Seen from the back an outline goes around the other way
+        float side = around.sum.z <= 0.0 ? 1.0 : (light.two_sided ? -1.0 : 0.0);
+        arcs.sum += side * around.sum;
+        arcs.squares += around.squares;
+    }
+    return arcs;
+}
+
+#endif
+
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
 ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
     uint last = clamp(light.vertex_count, 1u, 4u) - 1u;
@@ -139,6 +180,11 @@ ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, Ar
                                   ArealightQuality quality) {
     // A far light of which the surface hides a part is no matter of one point
     bool is_whole = quality.horizon != AREALIGHT_HORIZON_BOTH || view.normal_height > seen.radius;
+#if AREALIGHT_LIGHT_MESHES
+    if (arealight_is_mesh(light, effects)) {
+        return arealight_lobe_mesh(view, light, quality);
+    }
+#endif
     if ((effects & AREALIGHT_EFFECT_FAR) != 0u && (quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0
         && is_whole && arealight_is_far(view.center, view.extent)) {
         return arealight_one_point(view.center, seen.facing * lobe.space.determinant);

@@ -31,7 +31,7 @@ impl Engine {
         // Points get a pipeline that has no more than their lights call for
         let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
         for (index, point) in points.iter().enumerate() {
-            let needed = point.light.effects() & (Effects::POLYGON | Effects::TEXTURED);
+            let needed = point.light.effects() & Effects::BEYOND_QUADS;
             match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
                 Some((_, subset)) => subset.push(index),
                 None => subsets.push((needed, vec![index])),
@@ -39,7 +39,7 @@ impl Engine {
         }
         let mut radiance = vec![Vec3::ZERO; points.len()];
         for (needed, indices) in subsets {
-            let effects = (Effects::all() - (Effects::POLYGON | Effects::TEXTURED)) | needed;
+            let effects = (Effects::all() - Effects::BEYOND_QUADS) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
             let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;

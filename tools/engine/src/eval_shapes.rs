@@ -62,7 +62,7 @@ impl Engine {
             return Ok(Vec::new());
         }
 
-        let effects = Effects::all() - (Effects::POLYGON | Effects::TEXTURED);
+        let effects = Effects::all() - Effects::BEYOND_QUADS;
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);
         let shape_buffer = self.storage("shapes", &shapes)?;
         let shapes = Resource::buffer(shape_buffer.handle());

@@ -10,7 +10,7 @@ use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Measure, UnknownTruth, measure};
-use arealight_oracle::shading::{ltc_on, shape_ltc_on, truth};
+use arealight_oracle::shading::{Truth, ltc_on, shape_ltc_on, shape_truth, truth};
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use indicatif::ParallelProgressIterator;
@@ -80,7 +80,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let known = match &arguments.against {
         Some(path) => {
             let known = read(path, read_answers)?;
-            check_known(&cases, &known, arguments.on).map_err(|error| Failure::input(path, error))?;
+            check_known(&cases, &known).map_err(|error| Failure::input(path, error))?;
             Some((path, known))
         }
         None => None,
@@ -122,12 +122,12 @@ fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<
 }
 
 /// Checks that `known` holds the radiance of every case that can be answered.
-fn check_known(cases: &[Case], known: &[Answer], method: Method) -> Result<(), UnknownTruth> {
+fn check_known(cases: &[Case], known: &[Answer]) -> Result<(), UnknownTruth> {
     let known = known.iter().filter(|answer| answer.radiance.is_some());
     let names: HashSet<&str> = known.map(|answer| answer.name.as_str()).collect();
     // Whether an image can be read is no matter here
     let image = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
-    let is_supported = |case: &Case| supported(case, method, |_| Ok(Arc::clone(&image))).is_ok();
+    let is_supported = |case: &Case| supported(case, |_| Ok(Arc::clone(&image))).is_ok();
     let unknown = |case: &&Case| !names.contains(case.name.as_str()) && is_supported(case);
     match cases.iter().find(unknown) {
         Some(case) => Err(UnknownTruth { case: case.name.clone() }),
@@ -170,14 +170,10 @@ impl Supported {
 /// What a case is, or why it cannot be answered.
 fn supported(
     case: &Case,
-    method: Method,
     load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
 ) -> Result<Supported, String> {
     if matches!(case.light.shape, CaseShape::Polygon { .. }) {
         return case.supported(load).map(Supported::Polygon).map_err(|error| error.to_string());
-    }
-    if method == Method::Truth {
-        return Err(format!("light.type \"{}\": no cubature yet", case.light.shape.name()));
     }
     case.supported_shape().map(Supported::Shape).map_err(|error| error.to_string())
 }
@@ -187,7 +183,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     // Set aside what is not supported
     let mut images = Images::beside(&arguments.cases);
     let sorted: Vec<Result<Supported, String>> =
-        cases.iter().map(|case| supported(case, arguments.on, |path| images.load(path))).collect();
+        cases.iter().map(|case| supported(case, |path| images.load(path))).collect();
     let known = || sorted.iter().flatten();
     let polygons: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
@@ -218,7 +214,18 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
             });
             (polygons, shapes)
         }
-        Method::Truth => (answer_in_parallel(&polygons, answer_by_cubature), Vec::new()),
+        Method::Truth => {
+            let settings = Settings::default();
+            let polygons = answer_in_parallel(&polygons, |case| {
+                let SupportedCase { name, surface, normal, view, light, .. } = case;
+                answer_by_cubature(name, truth(surface, *normal, *view, light, &settings))
+            });
+            let shapes = answer_in_parallel(&shapes, |case| {
+                let ShapeCase { name, surface, normal, view, light } = case;
+                answer_by_cubature(name, shape_truth(surface, *normal, *view, light, &settings))
+            });
+            (polygons, shapes)
+        }
     };
     // Put the reasons in between
     let (mut of_polygons, mut of_shapes) = (of_polygons.into_iter(), of_shapes.into_iter());
@@ -237,14 +244,13 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
 /// the evaluations ran out.
 const UNKNOWN: f64 = 1e-4;
 
-fn answer_by_cubature(case: &SupportedCase) -> Answer {
-    let truth = truth(&case.surface, case.normal, case.view, &case.light, &Settings::default());
+fn answer_by_cubature(name: &str, truth: Truth) -> Answer {
     let error = truth.error.max_element();
     if error > UNKNOWN * truth.radiance.max_element() {
         let reason = format!("the cubature did not converge: {} give or take {error}", truth.radiance);
-        return Answer::none(&case.name, reason);
+        return Answer::none(name, reason);
     }
-    Answer::new(&case.name, truth.radiance)
+    Answer::new(name, truth.radiance)
 }
 
 fn answer_in_parallel<T: Sync>(cases: &[T], answer: impl Fn(&T) -> Answer + Send + Sync) -> Vec<Answer> {

@@ -1,0 +1,308 @@
+//! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are nearly, in frames and
+//! against the Monte Carlo reference.
+
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, Horizon, LightTable, PolygonLight, Quality, Shape, ShapeLight};
+use arealight_engine::{EvalPoint, SceneRenderer, ShapePoint};
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::lobe::{Lobe, Seen};
+use arealight_tests::{
+    Cases, Comparison, Path, Random, Rung, TestEngine, glossy_surface, lambert_surface, point, rounding,
+};
+use glam::{DVec3, Vec3};
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+const SIZE: [u32; 2] = [64, 36];
+
+/// A mesh of three outlines at random places of one region: convex and concave, to the front and the back, some cut by the horizon.
+fn mesh(random: &mut Random, two_sided: bool) -> PolygonLight {
+    let center = random.direction() * random.between(1.0, 3.0);
+    let mut light = point(lambert_surface(), DVec3::Z, Vec::new(), two_sided).light;
+    for number in 0..3 {
+        let place = center + random.direction() * 0.5;
+        let mut outline = random.polygon(place, 3 + number, 0.1, 0.8);
+        if random.unit() < 0.25 {
+            outline.reverse();
+        }
+        light.add_face(&outline);
+    }
+    light
+}
+
+/// A point that sees a mesh, and then one for each of its faces.
+fn group(random: &mut Random, glossy: bool, two_sided: bool) -> Vec<EvalPoint> {
+    let light = mesh(random, two_sided);
+    let (surface, view) = if glossy {
+        let view = random.direction();
+        (glossy_surface(random.between(0.1, 1.0)), view.with_z(view.z.abs()))
+    } else {
+        (lambert_surface(), DVec3::Z)
+    };
+    let seen = |light: PolygonLight| EvalPoint { light, ..point(surface, view, Vec::new(), two_sided) };
+    [vec![light.clone()], light.split()].concat().into_iter().map(seen).collect()
+}
+
+/// That meshes send what their faces do together, by some rungs.
+fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, rungs: &[Rung]) {
+    let mut random = Random::new(401);
+    let groups: Vec<Vec<EvalPoint>> =
+        (0..200).map(|index| group(&mut random, table.is_some(), index % 2 == 0)).collect();
+    let given = Cases::new(&groups.concat());
+    let lobes = if table.is_some() { Effects::GLOSSY } else { Effects::DIFFUSE };
+    for &rung in rungs {
+        let factors = engine.factors(&given, lobes, rung);
+        let mut comparison = Comparison::new(format!("meshes and their faces, {rung}"));
+        let mut without = Comparison::new("without the last face");
+        for (number, found) in factors.chunks_exact(4).enumerate() {
+            let bounds = (1..4).map(|face| {
+                let case = 4 * number + face;
+                let surface = &given.cases[case];
+                let lobe = table.map_or_else(|| Lobe::lambert(surface), |table| Lobe::glossy(table, surface));
+                Seen::new(&given, case, lobe, rung.quality.horizon).judge().bound(rung)
+            });
+            // A face may err by its bound, and as part of the mesh by as much for being given from a center that is twice as far from it
+            let bound = 3.0 * bounds.sum::<f64>();
+            let sum: f64 = found[1..].iter().sum();
+            // What overlaps in the view of the lobe is no more than all there is
+            comparison.add(found[0], sum.min(1.0), bound, || format!("group {number}: {found:?}"));
+            without.add(found[0], sum - found[3], bound, String::new);
+        }
+        comparison.assert_all();
+        assert!(without.failures() > 60, "a face that is left out is noticed: {}", without.failures());
+    }
+}
+
+#[test]
+fn a_mesh_sends_what_its_faces_do() {
+    let Some(engine) = TestEngine::new() else { return };
+    let all = Rung::of(&[Path::Mesh], &[Horizon::Cosine]);
+    assert_sums(&engine, None, &[all[0], all[2]]);
+    let twice = Rung::of(&[Path::Mesh], &[Horizon::Both]);
+    assert_sums(&engine, Some(&TABLE), &[all[1], twice[2]]);
+    faces_in_front_alone_count(&engine, all[0]);
+    any_bits_give_a_form_factor(&engine, all[0]);
+    far_meshes_are_shaded_in_full(&engine, all[0]);
+}
+
+/// A one-sided cube around the point is dark, a two-sided one is all there is; the walk alone takes the cube for one outline.
+fn faces_in_front_alone_count(engine: &TestEngine, rung: Rung) {
+    let cube = |two_sided| EvalPoint {
+        light: PolygonLight { two_sided, ..cube(DVec3::new(0.1, 0.2, 0.3), 1.0) },
+        ..point(lambert_surface(), DVec3::Z, Vec::new(), two_sided)
+    };
+    let given = Cases::new(&[cube(false), cube(true)]);
+    let found = engine.factors(&given, Effects::DIFFUSE, rung);
+    // Five faces reach above the horizon; each errs by 6e-7
+    assert!(found[0] == 0.0 && (found[1] - 1.0).abs() <= 3e-6, "{found:?}");
+    let mut unmarked = given;
+    unmarked.vertices.iter_mut().for_each(|vertex| vertex[3] = 0.0);
+    let found = engine.factors(&unmarked, Effects::DIFFUSE, rung);
+    assert!((found[1] - 1.0).abs() > 0.1, "{found:?}");
+}
+
+/// Whatever is said of the faces: [`TestEngine::factors`] asserts that it is in [0, 1].
+fn any_bits_give_a_form_factor(engine: &TestEngine, rung: Rung) {
+    let mut random = Random::new(402);
+    let points: Vec<EvalPoint> = (0..512).map(|_| group(&mut random, false, true).swap_remove(0)).collect();
+    let mut given = Cases::new(&points);
+    for (index, vertex) in given.vertices.iter_mut().enumerate() {
+        vertex[3] = if index % 3 == 0 { f32::from_bits(random.bits()) } else { (random.bits() % 5) as f32 };
+        if index % 7 == 0 {
+            vertex[index % 3] = f32::from_bits(random.bits());
+        }
+    }
+    assert_eq!(engine.factors(&given, Effects::DIFFUSE, rung).len(), 512);
+}
+
+/// The area vector of a closed mesh is zero: from its center alone it would be dark.
+fn far_meshes_are_shaded_in_full(engine: &TestEngine, rung: Rung) {
+    let center = DVec3::new(3e2, 1e2, 9e2);
+    let light = PolygonLight { radiance: Vec3::ONE, ..cube(center, 1.0) };
+    let given = Cases::new(&[EvalPoint { light, ..point(lambert_surface(), DVec3::Z, Vec::new(), false) }]);
+    let difference = Rung {
+        quality: Quality { form_factor: arealight::FormFactor::ExactDifference, ..rung.quality },
+        ..rung
+    };
+    let [full, one_point] = [difference, difference.with_one_point()]
+        .map(|rung| engine.factors(&given, Effects::DIFFUSE, rung)[0]);
+    let direction = center.normalize_or_zero();
+    // Its projected area, at the distance of the center: (2 / 950)^2 off
+    let expected = 4.0 * (direction.x + direction.y + direction.z) * direction.z
+        / center.length_squared()
+        / std::f64::consts::PI;
+    assert!((full / expected - 1.0).abs() < 1e-5, "{full:e}, {expected:e}");
+    assert_eq!(full.to_bits(), one_point.to_bits());
+}
+
+/// A cube of side 2 `half` that shines outwards.
+fn cube(center: DVec3, half: f64) -> PolygonLight {
+    let mut light = PolygonLight { name: "cube".into(), radiance: Vec3::ONE, ..PolygonLight::default() };
+    for n in [DVec3::X, DVec3::Y, DVec3::Z, -DVec3::X, -DVec3::Y, -DVec3::Z] {
+        let u = n.any_orthonormal_vector();
+        let v = n.cross(u);
+        light.add_face(&[-u - v, u - v, u + v, v - u].map(|corner| center + (n + corner) * half));
+    }
+    light
+}
+
+/// A sphere of triangles whose vertices are on it: an icosahedron, each triangle split in four `times` times.
+fn icosphere(times: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let golden = f64::midpoint(1.0, 5.0_f64.sqrt());
+    let mut corners = Vec::new();
+    for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+        corners.extend([DVec3::new(0.0, a, b), DVec3::new(a, b, 0.0), DVec3::new(b, 0.0, a)]);
+    }
+    let mut corners: Vec<DVec3> = corners.into_iter().map(DVec3::normalize_or_zero).collect();
+    // Three corners that are nearest to each other are a triangle
+    let near = |a: usize, b: usize| corners[a].dot(corners[b]) > 0.4;
+    let mut triangles = Vec::new();
+    for a in 0..12 {
+        for b in (a + 1..12).filter(|&b| near(a, b)) {
+            for c in (b + 1..12).filter(|&c| near(a, c) && near(b, c)) {
+                let outwards = corners[a].dot(corners[b].cross(corners[c])) > 0.0;
+                triangles.push(if outwards { [a, b, c] } else { [a, c, b] }.map(|corner| corner as u32));
+            }
+        }
+    }
+    for _ in 0..times {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                corners.push((corners[a as usize] + corners[b as usize]).normalize_or_zero());
+                corners.len() as u32 - 1
+            })
+        };
+        triangles = triangles
+            .into_iter()
+            .flat_map(|[a, b, c]| {
+                let [ab, bc, ca] = [middle(a, b), middle(b, c), middle(c, a)];
+                [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+            })
+            .collect();
+    }
+    (corners, triangles)
+}
+
+/// A mesh between two spheres sends no less than the inner one and no more than the outer one, before any lobe: so it is a sphere to the
+/// square of the two radii's ratio.
+#[test]
+fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (corners, triangles) = icosphere(2);
+    assert_eq!(triangles.len(), 320);
+    let inner = triangles
+        .iter()
+        .map(|triangle| {
+            let [a, b, c] = triangle.map(|corner| corners[corner as usize]);
+            (b - a).cross(c - a).normalize_or_zero().dot(a)
+        })
+        .fold(1.0, f64::min);
+    assert!((0.98..0.99).contains(&inner), "{inner}");
+    let mut random = Random::new(403);
+    let (mut meshes, mut spheres) = (Vec::new(), Vec::new());
+    for index in 0..64 {
+        // Half of the points see a mirror-coloured surface; many spheres are cut by the horizon
+        let surface =
+            if index % 2 == 0 { lambert_surface() } else { glossy_surface(random.between(0.2, 1.0)) };
+        let view = random.direction();
+        let view = view.with_z(view.z.abs());
+        let radius = random.between(0.1, 1.0);
+        let center = random.direction() * (radius * random.between(1.1, 4.0));
+        let center = if center.z < -radius { -center } else { center };
+        let placed: Vec<DVec3> = corners.iter().map(|corner| center + *corner * radius).collect();
+        let light = PolygonLight::from_triangles("icosphere", &placed, &triangles).expect("a mesh");
+        let light = PolygonLight { radiance: Vec3::ONE, ..light };
+        meshes.push(EvalPoint { light, ..point(surface, view, Vec::new(), false) });
+        for radius in [radius * inner, radius] {
+            let shape = Shape::Sphere { center, radius };
+            let light = ShapeLight { name: "sphere".into(), radiance: Vec3::ONE, two_sided: false, shape };
+            spheres.push(ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light });
+        }
+    }
+    let quality = Quality::default();
+    let found = engine.eval(&meshes, quality).expect("meshes");
+    let bounds = engine.eval_shapes(&spheres, quality).expect("spheres");
+    let mut comparison = Comparison::new("icospheres between two spheres");
+    let mut outside = 0;
+    for (index, (found, bounds)) in found.iter().zip(bounds.chunks_exact(2)).enumerate() {
+        let [found, least, most] = [found, &bounds[0], &bounds[1]].map(|radiance| f64::from(radiance.x));
+        // A sum of 160 triangles' arcs, each of which rounds as much as one light's
+        let bound = 10.0 * rounding(meshes[index].surface.alpha);
+        comparison.add(found, found.clamp(least, most), bound, || format!("case {index}: {least} to {most}"));
+        // The twin: spheres that are smaller by as much again
+        outside += usize::from(found > least + bound);
+    }
+    comparison.assert_all();
+    assert!(outside > 32, "most send more than the sphere inside: {outside}");
+}
+
+/// A frame of lights over the surfaces of a scene.
+struct Frame<'a> {
+    engine: &'a TestEngine,
+    buffers: &'a SceneBuffers,
+    camera: &'a Camera,
+    lights: &'a [PolygonLight],
+}
+
+impl Frame<'_> {
+    fn renderer(&self) -> SceneRenderer<'_> {
+        let constants = self.buffers.constants(self.camera, SIZE, Vec3::ZERO);
+        SceneRenderer::new(self.engine, self.buffers, self.lights, constants, SIZE).expect("lights")
+    }
+
+    fn shade(&self, effects: Effects) -> Vec<[f32; 4]> {
+        let mut renderer = self.renderer();
+        renderer.shade(effects, Quality::default()).expect("it shades");
+        renderer.radiance().expect("radiance").into_iter().map(|texel| texel.to_array()).collect()
+    }
+
+    /// The mean of the first channel by the reference.
+    fn reference(&self) -> f64 {
+        let mut renderer = self.renderer();
+        renderer.reference(32, 1, |_| ()).expect("it samples");
+        let texels = renderer.radiance().expect("radiance");
+        texels.iter().map(|texel| f64::from(texel.x)).sum::<f64>() / texels.len() as f64
+    }
+}
+
+#[test]
+fn a_mesh_is_one_light_of_a_frame() {
+    let Some(engine) = TestEngine::new() else { return };
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/sweep.glb");
+    let mut scene = Scene::load(path).expect("our own scene");
+    // The surfaces alone: the camera sees no light
+    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
+    let buffers = SceneBuffers::new(&scene, camera.position).expect("it fits");
+    let place = scene.lights[0].center();
+    let (mesh, apart) = ([cube(place, 0.4)], cube(place, 0.4).split());
+    let frame = |lights| Frame { engine: &engine, buffers: &buffers, camera: &camera, lights };
+    let effects = Effects::DIFFUSE | Effects::GLOSSY | Effects::POLYGON;
+    let (one, six) = (frame(&mesh).shade(effects | Effects::MESH), frame(&apart).shade(effects));
+    let five = frame(&apart[1..]).shade(effects);
+    let brightest = six.iter().map(|texel| texel[0]).fold(0.0, f32::max);
+    let apart_by = |a: &[[f32; 4]], b: &[[f32; 4]]| {
+        let differences = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).abs());
+        f64::from(differences.fold(0.0, f32::max)) / f64::from(brightest)
+    };
+    // Six faces by two lobes
+    assert!(brightest > 0.0 && apart_by(&one, &six) < 12.0 * 1e-6 / 0.05, "{}", apart_by(&one, &six));
+    assert!(apart_by(&one, &five) > 1e-2, "{}", apart_by(&one, &five));
+
+    // A pass without the effect refuses it by name
+    let options = ShadeOptions { effects, ..ShadeOptions::all() };
+    // SAFETY: the pass is dropped before the engine.
+    let pass = unsafe { arealight_vk::ShadePass::new(engine.context(), options) }.expect("a pass");
+    let error = pass.check_lights(&mesh).expect_err("no mesh").to_string();
+    assert!(error.contains("'cube'") && error.contains("mesh"), "{error}");
+
+    // The reference draws points of all faces, and meets all of them
+    let (one, six) = (frame(&mesh).reference(), frame(&apart).reference());
+    let five = frame(&apart[1..]).reference();
+    println!("reference: mesh {one}, faces {six}, five of them {five}");
+    assert!((one / six - 1.0).abs() < 0.02, "{one}, {six}");
+    assert!((one / five - 1.0).abs() > 0.05, "{one}, {five}");
+}
