@@ -235,6 +235,34 @@ fn inscribed_polygons_tend_to_it() {
     // An inscribed polygon lacks 2 pi^2 / (3 n^2) of the area: 1.6e-3 and 2.5e-5 of form factors of some hundredths
     assert!(median[0] > 3e-6 && median[0] < 1e-3, "{median:?}");
     assert!(median[1] < median[0] / 40.0, "{median:?}");
+    in_contact_it_is_all_there_is(&engine);
+}
+
+/// A disk of radius 1 at the height h over a point that is x from its axis leaves open no more than the directions below h / (1 - x),
+/// which have its square of the cosine; from beyond its rim it covers no more than those below h / (x - 1).
+fn in_contact_it_is_all_there_is(engine: &TestEngine) {
+    let mut random = Random::new(83);
+    let mut cases = Vec::new();
+    for exponent in 1..24 {
+        for _ in 0..20 {
+            let (place, height) = (random.between(0.0, 2.0), f64::from(-exponent).exp2());
+            let (sin, cos) = random.between(0.0, 6.3).sin_cos();
+            let center = DVec3::new(place * cos, place * sin, height);
+            cases.push(rounded(&Ellipse { center, axis_u: DVec3::X, axis_v: DVec3::Y }));
+        }
+    }
+    let mut comparison = Comparison::new("contact");
+    let mut twin = 0;
+    for (case, found) in cases.iter().zip(engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases)) {
+        let place = case.center.truncate().length();
+        let slope = case.center.z / (1.0 - place).abs();
+        let [inside, outside] = [1.0, 0.0];
+        let (limit, other) = if place < 1.0 { (inside, outside) } else { (outside, inside) };
+        comparison.add(found, limit, slope * slope + 2e-6, || format!("{case:?}"));
+        twin += usize::from((found - other).abs() > slope * slope + 2e-6);
+    }
+    comparison.assert_all();
+    assert!(twin > 300, "{twin} noticed");
 }
 
 /// How wild the numbers of a fuzzed case are.

@@ -65,7 +65,7 @@ fn rectangle(random: &mut Random, center: DVec3, size: f64) -> Vec<DVec3> {
     vec![center - u - v, center + u - v, center + u + v, center - u + v]
 }
 
-/// Points under rectangles and under polygons of up to seven vertices: over all angles, distances and roughnesses.
+/// Points under rectangles, under polygons of up to seven vertices, and under such with a hole: over all angles, distances and roughnesses.
 fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     (0..count)
@@ -87,6 +87,11 @@ fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
             };
             let mut given = point(surface, view, vertices, index % 5 == 0);
             shown(&mut given.light, layer);
+            if index % 4 == 1 {
+                // A ring: what is nearer to the middle of a star is within it
+                let hole = given.light.vertices.iter().map(|vertex| center.lerp(*vertex, 0.5)).collect();
+                given.light.cut_holes(&[hole]).expect("a hole within its outline");
+            }
             given
         })
         .collect()

@@ -233,6 +233,45 @@ fn a_capsule_shrinks_to_a_sphere() {
     }
     comparison.assert_all();
     assert!(twin > 20, "{twin} noticed");
+    in_contact_a_tube_is_all_there_is(&engine);
+}
+
+/// A tube over a point sends no less than the sphere in it that is nearest, and no more than all there is: in contact that is the same.
+fn in_contact_a_tube_is_all_there_is(engine: &TestEngine) {
+    let mut random = Random::new(97);
+    for ends in ENDS {
+        let mut tubes = Vec::new();
+        for exponent in 1..20 {
+            for _ in 0..10 {
+                let distance = 1.0 + f64::from(-exponent).exp2();
+                let (sin, cos) = random.between(0.0, 6.3).sin_cos();
+                let axis = DVec3::new(cos, sin, 0.0);
+                let [back, front] = [random.between(1.0, 4.0), random.between(1.0, 4.0)];
+                let above = DVec3::Z * distance;
+                tubes.push(Tube {
+                    start: round(above - axis * back),
+                    end: round(above + axis * front),
+                    radius: 1.0,
+                    ends,
+                });
+            }
+        }
+        let mut comparison = Comparison::new(format!("{ends:?} in contact"));
+        let mut twin = 0;
+        for (tube, found) in
+            tubes.iter().zip(found(engine, EXACT, &tubes, &vec![DMat3::IDENTITY; tubes.len()]))
+        {
+            let least = tube.start.z.powi(-2);
+            // Near tubes are right to 1e-5
+            comparison.add(found, found.clamp(least, 1.0), 1e-5, || format!("{tube:?}"));
+            // The twin: one that is farther by half its radius
+            twin += usize::from(
+                (tube.start.z + 0.5).powi(-2) < least - 1e-5 && found > (tube.start.z + 0.5).powi(-2) + 1e-5,
+            );
+        }
+        comparison.assert_all();
+        assert!(twin > 150, "{ends:?}: {twin} noticed");
+    }
 }
 
 #[test]

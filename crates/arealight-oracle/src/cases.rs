@@ -382,7 +382,9 @@ impl Case {
             CaseShape::Sphere { center, radius } => Shape::Sphere { center: center - self.position, radius },
             CaseShape::Cylinder { p0, p1, radius, caps } => {
                 let (p0, p1) = (p0 - self.position, p1 - self.position);
-                Shape::Tube { p0, p1, radius, ends: self.tube_ends(p0, p1, radius, caps)? }
+                // It emits outwards, whatever is said of its sides
+                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
+                Shape::Tube { p0, p1, radius, ends }
             }
         };
         let light = ShapeLight {
@@ -399,19 +401,6 @@ impl Case {
             view: self.view,
             light,
         })
-    }
-
-    /// What is seen at the ends of a cylinder, which is relative to the shading point.
-    fn tube_ends(&self, p0: DVec3, p1: DVec3, radius: f64, caps: bool) -> Result<TubeEnds, Unsupported> {
-        let axis = (p1 - p0).normalize_or_zero();
-        let (first, last) = (p0.dot(axis), p1.dot(axis));
-        let inside = first <= 0.0 && last >= 0.0 && (p0 - axis * first).length() <= radius;
-        if self.light.two_sided && inside {
-            let reason = "a point inside a two-sided cylinder is not supported yet";
-            return Err(Unsupported { reason: reason.into() });
-        }
-        // From outside, whoever looks into an open end of a two-sided cylinder sees it shine
-        Ok(if caps || self.light.two_sided { TubeEnds::Flat } else { TubeEnds::Open })
     }
 
     fn check_fields(&self) -> Result<(), Unsupported> {

@@ -107,7 +107,8 @@ pub fn truth(
     let signed = reflected(surface, frame.view(), &region, settings, shown);
     // A two-sided light seen from behind has a negative solid angle
     Truth {
-        radiance: light.radiance * if light.two_sided { signed.radiance.abs() } else { signed.radiance.max(DVec3::ZERO) },
+        radiance: light.radiance
+            * if light.two_sided { signed.radiance.abs() } else { signed.radiance.max(DVec3::ZERO) },
         error: light.radiance * signed.error,
         evaluations: signed.evaluations,
     }

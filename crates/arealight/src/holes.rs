@@ -55,7 +55,7 @@ pub enum HoleError {
 
 impl PolygonLight {
     /// Cuts holes into the light, each an outline of its own, in either direction. The light's vertices become one outline
-    /// that goes around all of them; its area and center are those of what is left. A light has as many vertices more as the holes
+    /// that goes around all of them; its area and center are those of what is left, and its image stays where it is. A light has as many vertices more as the holes
     /// have, and two for each hole.
     ///
     /// ```
@@ -76,8 +76,13 @@ impl PolygonLight {
         if self.is_mesh() && !holes.is_empty() {
             return Err(LightError::BadHole { light: self.name.clone(), hole: 0, reason: HoleError::Mesh });
         }
+        let map = self.texture.as_ref().and_then(|texture| texture.map(self).ok());
         let bad = |(hole, reason)| LightError::BadHole { light: self.name.clone(), hole, reason };
         self.vertices = with_holes(self, holes).map_err(bad)?;
+        // The holes' vertices are where the image is
+        if let (Some(texture), Some(map)) = (&mut self.texture, map) {
+            texture.uvs = self.vertices.iter().map(|vertex| map.coordinate(*vertex)).collect();
+        }
         // One outline, if it was said to be one face
         if !holes.is_empty() {
             self.faces.clear();
@@ -280,6 +285,29 @@ mod tests {
             assert!(ring.center().x < -0.1 && ring.center().y.abs() < 1e-12, "{}", ring.center());
             assert!(!ring.is_convex_quad());
         }
+    }
+
+    #[test]
+    fn an_image_stays_where_it_is() {
+        let mut ring = disk();
+        let place = |vertex: &DVec3| DVec2::new(vertex.x, vertex.y) / 8.0 + 0.5;
+        let uvs = ring.vertices.iter().map(place).collect();
+        ring.texture = Some(crate::LightTexture { layer: 0, uvs });
+        let mut stale = ring.clone();
+        let before = ring.texture.as_ref().unwrap().map(&ring).unwrap();
+        let hole = regular([0.5, 0.0], 3.0, 24);
+        ring.cut_holes(std::slice::from_ref(&hole)).unwrap();
+        ring.validate().unwrap();
+        let texture = ring.texture.as_ref().unwrap();
+        let off = |(uv, vertex): (&DVec2, &DVec3)| uv.distance(place(vertex));
+        assert!(texture.uvs.iter().zip(&ring.vertices).map(off).fold(0.0, f64::max) < 1e-12);
+        let after = texture.map(&ring).unwrap();
+        assert!(
+            (after.corner - before.corner).length() < 1e-9 && (after.axis_u - before.axis_u).length() < 1e-9
+        );
+        // The twin: a light whose coordinates stay as they were is refused
+        stale.vertices.clone_from(&ring.vertices);
+        assert!(stale.validate().is_err());
     }
 
     #[test]

@@ -79,6 +79,17 @@ const STRAIGHT: f64 = 0.25 / crate::pyramid::PyramidSize::LARGEST as f64;
 /// How far a coordinate may be outside of [0, 1], from rounding in files.
 const OUTSIDE: f64 = 1e-5;
 
+impl TextureMap {
+    /// The texture coordinate of a position in the light's plane.
+    pub fn coordinate(&self, position: DVec3) -> DVec2 {
+        // Dual axes in the plane
+        let normal = self.axis_u.cross(self.axis_v);
+        let offset = position - self.corner;
+        let along = DVec2::new(offset.cross(self.axis_v).dot(normal), self.axis_u.cross(offset).dot(normal));
+        self.low + self.size * (along / normal.length_squared())
+    }
+}
+
 impl LightTexture {
     /// Checks the coordinates, and maps them onto `light`, whose vertices are valid.
     ///

@@ -93,7 +93,7 @@ fn other_lights_become_shapes_relative_to_the_point() {
     assert_eq!((disk.surface.alpha, disk.light.two_sided), (0.25, false));
     let sphere = shape(r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#).unwrap();
     assert_eq!(sphere.light.shape, Shape::Sphere { center, radius: 0.5 });
-    // Around the point, beside it, and what its ends are
+    // What its ends are
     let cylinder = |more: &str, radius: f64| {
         format!(r#""type": "cylinder", "p0": [1, 2, 2], "p1": [1, 2, 5], "radius": {radius} {more}"#)
     };
@@ -102,12 +102,8 @@ fn other_lights_become_shapes_relative_to_the_point() {
         other => panic!("{other:?}"),
     };
     assert_eq!((ends(""), ends(r#", "caps": true"#)), (TubeEnds::Open, TubeEnds::Flat));
-    assert_eq!(
-        shape_reason(&cylinder(r#", "two_sided": true"#, 0.5)),
-        "a point inside a two-sided cylinder is not supported yet"
-    );
-    let beside = cylinder(r#", "two_sided": true"#, 0.5).replace("1, 2, ", "3, 2, ");
-    assert!(matches!(shape(&beside).unwrap().light.shape, Shape::Tube { ends: TubeEnds::Flat, .. }));
+    // It emits outwards
+    assert_eq!(ends(r#", "two_sided": true"#), TubeEnds::Open);
     // What is wrong
     assert_eq!(shape_reason(QUAD), "the light is a polygon");
     let flat = r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [2, 0, 0]"#;

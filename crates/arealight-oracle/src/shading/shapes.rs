@@ -109,7 +109,9 @@ impl SeenShape {
     /// The directions that it covers where it shines to the point, by a polygon of `count` sides a rim.
     fn region(&self, count: usize) -> Region {
         let outline = match self {
-            Self::Ellipse { ellipse, two_sided } if *two_sided || ellipse.shows_front() => ellipse.polygon(count),
+            Self::Ellipse { ellipse, two_sided } if *two_sided || ellipse.shows_front() => {
+                ellipse.polygon(count)
+            }
             Self::Ellipse { .. } => Vec::new(),
             Self::Sphere { sphere, two_sided } => match sphere.silhouette() {
                 Some(disk) => disk.polygon(count),

@@ -63,7 +63,7 @@ fn survives(bytes: &[u8]) -> bool {
 fn the_file_is_good_to_begin_with() {
     let scene = crate::load(rich());
     let counts = (scene.triangles.len(), scene.lights.len(), scene.cameras.len());
-    assert_eq!(counts, (29, 20, 1));
+    assert_eq!(counts, (29, 18, 1));
     assert!(survives(&rich().glb()));
 }
 

@@ -3,7 +3,8 @@
 use crate::shapes::{floor, panel, polygon, rounded_box, sphere, star};
 use crate::writer::Shape;
 use crate::{emitter_with, load, warnings};
-use arealight_scene::{LUMENS_PER_WATT, Scene};
+use arealight::{Effects, PolygonLight};
+use arealight_scene::{LUMENS_PER_WATT, Scene, required_effects};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 
@@ -44,8 +45,13 @@ fn concave_outlines_are_one_light() {
     }
 }
 
+/// How many vertices each face of a light has.
+fn faces(light: &PolygonLight) -> Vec<usize> {
+    light.outlines().map(<[DVec3]>::len).collect()
+}
+
 #[test]
-fn islands_are_numbered() {
+fn islands_are_faces_of_one_light() {
     let mut islands = panel(1.0, 1.0);
     let other = panel(1.0, 1.0);
     islands.positions.extend(other.positions.iter().map(|[x, y, z]| [x + 3.0, *y, *z]));
@@ -54,25 +60,29 @@ fn islands_are_numbered() {
     islands.indices.extend(other.indices.iter().map(|i| i + 4));
     let scene = load(emitter_with(&islands, json!({})));
     let names: Vec<_> = scene.lights.iter().map(|l| l.name.as_str()).collect();
-    assert_eq!(names, ["lamp#1", "lamp#2"]);
+    assert_eq!((names, faces(&scene.lights[0])), (vec!["lamp"], vec![4, 4]));
     assert_eq!(warnings(&scene), [""; 0]);
+    assert!(scene.effects().contains(Effects::MESH));
+    let call = required_effects(&scene).into_iter().find(|call| call.effect == Effects::MESH).unwrap();
+    assert_eq!(call.to_string(), "mesh: light 'lamp'");
+    // The twin: one of them is a polygon without faces
+    let scene = load(emitter_with(&panel(1.0, 1.0), json!({})));
+    assert!(scene.lights[0].faces.is_empty() && !scene.effects().contains(Effects::MESH));
 }
 
 #[test]
-fn a_bent_emitter_says_how_many_lights_it_is() {
+fn a_bent_emitter_is_one_light_of_its_flat_parts() {
     let scene = load(emitter_with(&rounded_box([1.0; 3], 1e-9, 1).plain(), json!({})));
-    assert_eq!(scene.lights.len(), 6, "a box is six quads");
-    assert!(scene.lights.iter().all(|light| light.vertices.len() == 4));
-    let text = "light 'lamp' (node 0): is not flat: 6 polygon lights, one a flat part";
-    assert_eq!(warnings(&scene), [text]);
+    assert_eq!(scene.lights.len(), 1);
+    assert_eq!(faces(&scene.lights[0]), [4; 6], "a box is six quads");
+    assert_eq!(warnings(&scene), [""; 0]);
 
     let scene = load(emitter_with(&sphere(1.0, 12, 8), json!({})));
     // Quads but at the poles, most of them not quite flat
-    let count = scene.lights.len();
-    assert!((96..=168).contains(&count), "{count}");
-    assert!(warnings(&scene)[0].contains(&format!("{count} polygon lights")));
+    let count = faces(&scene.lights[0]).len();
+    assert!((96..=168).contains(&count) && scene.lights.len() == 1, "{count}");
     // A closed surface's areas add up to zero
-    let sum: DVec3 = scene.lights.iter().map(arealight::PolygonLight::area_vector).sum();
+    let sum = scene.lights[0].area_vector();
     assert!(sum.length() < 1e-4, "{sum}");
 }
 
