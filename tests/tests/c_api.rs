@@ -1,14 +1,14 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_SPHERE,
-    AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_SHAPE_SPHERE,
-    AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightHost, ArealightLight, ArealightPackedLights,
-    ArealightPass, ArealightResources, ArealightResult, ArealightShape, ArealightTable, ArealightUpload,
-    arealight_abi_version, arealight_create, arealight_destroy, arealight_pass_create,
-    arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes, arealight_pass_prepare,
-    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory,
-    arealight_table_upload,
+    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON,
+    AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED,
+    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightHost, ArealightLight,
+    ArealightPackedLights, ArealightPass, ArealightResources, ArealightResult, ArealightShape,
+    ArealightTable, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
+    arealight_pass_create, arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes,
+    arealight_pass_prepare, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
+    arealight_table_memory, arealight_table_upload,
 };
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};

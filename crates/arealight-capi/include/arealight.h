@@ -52,6 +52,7 @@
 
 // Some light is a cylinder or a capsule.
 #define AREALIGHT_EFFECT_TUBE 1024
+
 // Some light has several faces, which no ArealightLight has.
 #define AREALIGHT_EFFECT_MESH 2048
 

@@ -62,6 +62,7 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
                 layer: images.layer(&image.texture),
                 uvs: texture.uv.clone(),
             }),
+            ..PolygonLight::default()
         },
     }
 }
