@@ -56,6 +56,12 @@ vec3 arealight_bridge_vertex(uint index) {
 }
 #endif
 
+#ifndef WITHOUT_arealight_bridge_face_size
+uint arealight_bridge_face_size(uint index) {
+    return index;
+}
+#endif
+
 #ifndef WITHOUT_arealight_bridge_light_texture
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
     return textureLod(LIGHT_TEXTURES, vec3(coordinate, float(layer)), level).rgb;
