@@ -18,7 +18,10 @@ const SIZE: [u32; 2] = [640, 360];
 const FLOOR: f64 = 40.0;
 
 /// What part of a pixel may be left out over the floor.
-const NEGLIGIBLE: [f32; 3] = [0.01, 0.1, 0.5];
+const NEGLIGIBLE: [f32; 2] = [0.01, 0.1];
+
+/// What the floor is made of: a name, and a roughness.
+const FLOORS: [(&str, f32); 2] = [("concrete", 0.9), ("satin", 0.5)];
 
 /// How many lamps there are over it.
 const LAMPS: [usize; 3] = [10, 100, 1000];
@@ -28,13 +31,13 @@ fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(Scene::load(folder.join(name).with_extension("glb"))?)
 }
 
-/// The floor of the sweep by itself, square and rough, under so many lamps.
-fn floor(count: usize) -> Result<Scene, Box<dyn Error>> {
+/// The floor of the sweep by itself, square and of this roughness, under so many lamps.
+fn floor(count: usize, roughness: f32) -> Result<Scene, Box<dyn Error>> {
     let mut scene = scene("sweep")?;
     let floor = scene.materials.iter().position(|material| material.name == "floor").ok_or("a floor")?;
     scene.triangles.retain(|triangle| triangle.material as usize == floor);
     let material = &mut scene.materials[floor].material;
-    (material.base_color, material.roughness) = (Vec3::splat(0.5), 0.5);
+    (material.base_color, material.roughness) = (Vec3::splat(0.5), roughness);
     let middle = scene.bounds.center();
     let corners = scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions);
     for corner in corners {
@@ -81,22 +84,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("{}\n## A floor under lamps\n", markdown(&frames));
 
     let (mut frames, mut growth) = (vec![], String::new());
-    for negligible in NEGLIGIBLE {
-        let first = frames.len();
-        for count in LAMPS {
-            let tiles = TileOptions { negligible, capacity: 512 };
-            let rounds = if count > 100 { rounds.div_ceil(5) } else { rounds };
-            let name = format!("{count} lamps, {negligible} negligible");
-            frames.push(frame(&engine, (&name, &floor(count)?), tiles, rounds)?);
-        }
-        let ten = frames[first].milliseconds[2].median;
-        for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
-            let times = frame.milliseconds[2].median / ten;
-            let _ = writeln!(
-                growth,
-                "- {negligible} negligible: {count} lamps take {times:.1} times as long as {}",
-                LAMPS[0]
-            );
+    for (material, roughness) in FLOORS {
+        for negligible in NEGLIGIBLE {
+            let first = frames.len();
+            for count in LAMPS {
+                let tiles = TileOptions { negligible, capacity: 512 };
+                let rounds = if count > 100 { rounds.div_ceil(5) } else { rounds };
+                let name = format!("{material}, {count} lamps, {negligible} negligible");
+                frames.push(frame(&engine, (&name, &floor(count, roughness)?), tiles, rounds)?);
+            }
+            let ten = frames[first].milliseconds[2].median;
+            for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
+                let times = frame.milliseconds[2].median / ten;
+                let _ = writeln!(
+                    growth,
+                    "- {material}, {negligible} negligible: {count} lamps take {times:.1} times as long as {}",
+                    LAMPS[0]
+                );
+            }
         }
     }
     println!("{}\n{growth}", markdown(&frames));

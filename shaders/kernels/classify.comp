@@ -11,6 +11,7 @@
 // - With CULL lights are left out too which together send less than the fraction `negligible` of what the others do, from each
 //   pixel, in the sum of the channels (tile_reach.glsl).
 // - A light is not clipped where it is wholly above the horizons of both lobes.
+// - Shapes have no lists: a tile is shaded by all of them, if one of them reaches it. Where each is wholly above, disks take their short way.
 //
 // Horizons. Lambert's is the surface. That of a fitted lobe is a plane through the point as well: its normal is
 // proportional to mirror + q across (table.glsl), with the ratio q = z / w of the texel that the table gives. With p = q / sin,
@@ -36,12 +37,14 @@ layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 14) const uint CULL = 0u; // whether lights are left out that send little
 
-#define G_BUFFER_BINDING 2
+#define SHAPES_BINDING 2
+#define G_BUFFER_BINDING 3
 #define G_BUFFER_LAYOUT LAYOUT
-#define TILE_LISTS_BINDING 6
+#define TILE_LISTS_BINDING 7
 #define TILE_LISTS_ACCESS
 #include "g_buffer.glsl"
 #include "buffers.glsl"
+#include "shape_buffer.glsl"
 #include "tile_reach.glsl"
 #include "tiles.glsl"
 #include "position.glsl"
@@ -68,6 +71,8 @@ layout(set = 0, binding = 1, std430) readonly buffer Lights {
 const float MARGIN = 1e-5;
 
 const bool HAS_DIFFUSE = (EFFECTS & AREALIGHT_EFFECT_DIFFUSE) != 0u;
+const bool HAS_SHAPES =
+    (EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & AREALIGHT_EFFECT_GLOSSY) != 0u;
 // Whether the horizon of the glossy lobe can be known: the table's cells say nothing of the formula's.
 const bool HAS_HORIZON = HAS_GLOSSY && LOBES != AREALIGHT_LOBES_FORMULA;
@@ -181,19 +186,24 @@ struct Verdict {
     vec2 reach; // the least and the most that it sends, with CULL alone
 };
 
-Verdict judge(TileBounds bounds, ArealightGpuLight light) {
-    TileLight seen;
-    seen.center = light.center - constants.camera;
-    seen.radius = light.radius;
-    bool is_flat = (light.flags & LIGHT_FLAT) != 0u;
-    seen.normal = is_flat ? arealight_normalize_or(light.area, vec3(0.0)) : vec3(0.0);
+// A light as a tile sees it, that lies within `radius` of its center; `normal` is zero where it is not flat.
+TileLight see(TileBounds bounds, vec3 center, float radius, vec3 normal) {
+    TileLight seen = TileLight(center - constants.camera, radius, normal, 0.0, 0.0);
     seen.reach = sqrt(dot(seen.center, seen.center)) + bounds.distance;
-    seen.margin = MARGIN * (seen.reach + light.radius);
+    seen.margin = MARGIN * (seen.reach + radius);
+    return seen;
+}
 
-    // How far the light's center is in front of the pixels, along its normal: a light lights what is there
-    bool two_sided = (EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u && (light.flags & LIGHT_TWO_SIDED) != 0u;
-    vec2 outside = vec2(dot(seen.normal, seen.center)) - box_dot(bounds.position, seen.normal).yx;
-    bool is_behind = is_flat && !two_sided && outside.x > TILE_FLATNESS * light.radius + seen.margin;
+// How far the pixels are behind a light's center, along its normal.
+vec2 distance_behind(TileBounds bounds, TileLight seen) {
+    return vec2(dot(seen.normal, seen.center)) - box_dot(bounds.position, seen.normal).yx;
+}
+
+Verdict judge_place(TileBounds bounds, TileLight seen, bool two_sided) {
+    // A light lights what is in front of it
+    bool is_flat = seen.normal != vec3(0.0);
+    float behind = distance_behind(bounds, seen).x;
+    bool is_behind = is_flat && !two_sided && behind > TILE_FLATNESS * seen.radius + seen.margin;
 
     TileSide surface = tile_side(bounds.surface, seen);
     bool is_diffuse = HAS_DIFFUSE && bounds.is_diffuse;
@@ -208,18 +218,44 @@ Verdict judge(TileBounds bounds, ArealightGpuLight light) {
         is_above = is_above && lobe.above;
         is_below = is_below && lobe.below;
     }
-    bool is_dark = light.radiance == vec3(0.0);
-    bool is_needed = !bounds.is_known || !(is_behind || is_below || is_dark);
+    return Verdict(!bounds.is_known || !(is_behind || is_below), is_above && bounds.is_known, vec2(0.0, TILE_FAR));
+}
 
-    vec2 reach = vec2(0.0, TILE_FAR);
+Verdict judge(TileBounds bounds, ArealightGpuLight light) {
+    bool is_flat = (light.flags & LIGHT_FLAT) != 0u;
+    vec3 normal = is_flat ? arealight_normalize_or(light.area, vec3(0.0)) : vec3(0.0);
+    bool two_sided = (EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u && (light.flags & LIGHT_TWO_SIDED) != 0u;
+    TileLight seen = see(bounds, light.center, light.radius, normal);
+    Verdict verdict = judge_place(bounds, seen, two_sided);
+    bool is_dark = light.radiance == vec3(0.0);
+    verdict.is_needed = verdict.is_needed && !(is_dark && bounds.is_known);
     if (CULL != 0u) {
-        vec2 sent = tile_reach(bounds.reflection, bounds.surface, bounds.position, seen, light, outside, two_sided);
+        vec2 behind = distance_behind(bounds, seen);
+        vec2 sent = tile_reach(bounds.reflection, bounds.surface, bounds.lobe, bounds.position, seen, light, behind, two_sided);
         // What an image shows may be brighter than the light, or black; NaN is neither little nor much
         bool has_image = (EFFECTS & AREALIGHT_EFFECT_TEXTURED) != 0u && light.texture_layer != NO_LIGHT_TEXTURE;
         bool is_sure = bounds.is_known && bounds.has_lobe && !has_image && sent.x >= 0.0 && sent.y < TILE_FAR;
-        reach = is_sure ? vec2(surface.above ? sent.x : 0.0, sent.y) : reach;
+        bool is_whole = tile_side(bounds.surface, seen).above;
+        verdict.reach = is_sure ? vec2(is_whole ? sent.x : 0.0, sent.y) : verdict.reach;
     }
-    return Verdict(is_needed, is_above && bounds.is_known, reach);
+    return verdict;
+}
+
+// Whether a tile needs the shapes, and has to clip any.
+Verdict judge_shapes(TileBounds bounds) {
+    Verdict all = Verdict(false, true, vec2(0.0));
+    for (uint index = 0u; index < constants.shape_count; index++) {
+        ArealightShape shape = load_shape(index, SHAPE_ANY);
+        bool is_ellipse = shape.kind == AREALIGHT_SHAPE_ELLIPSE;
+        bool is_tube = shape.kind == AREALIGHT_SHAPE_TUBE;
+        vec3 normal = is_ellipse ? arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0)) : vec3(0.0);
+        float radius = shape.radius + (is_tube ? sqrt(dot(shape.axis_u, shape.axis_u)) : 0.0);
+        // Spheres and tubes have no back
+        Verdict verdict = judge_place(bounds, see(bounds, shape.center, radius, normal), shape.two_sided);
+        all.is_needed = all.is_needed || verdict.is_needed;
+        all.is_above = all.is_above && verdict.is_above;
+    }
+    return all;
 }
 
 // What a light may send at most to be left out: so much that those below it together are negligible beside the rest.
@@ -236,23 +272,23 @@ float negligible_reach(TileBounds bounds) {
     // What is left out is to be a fraction of what stays
     float budget = least * constants.negligible / (1.0 + constants.negligible) / TILE_ROUNDING;
 
-    // How much is sent by the lights below each of eight limits
-    vec4 high_limits = budget / vec4(1.0, 4.0, 16.0, 64.0);
-    vec4 low_limits = high_limits / 256.0;
-    vec4 high = vec4(0.0);
-    vec4 low = vec4(0.0);
+    // How much is sent by the lights below each of sixteen limits
+    vec4 limits[4];
+    vec4 sums[4];
+    for (int place = 0; place < 4; place++) {
+        limits[place] = budget / vec4(1.0, 2.0, 4.0, 8.0) / float(1 << (4 * place));
+        sums[place] = vec4(0.0);
+    }
     for (uint index = 0u; index < constants.light_count; index++) {
         Verdict verdict = judge(bounds, lights[index]);
         float most = verdict.is_needed ? verdict.reach.y : 0.0;
-        high += mix(vec4(0.0), vec4(most), lessThan(vec4(most), high_limits));
-        low += mix(vec4(0.0), vec4(most), lessThan(vec4(most), low_limits));
+        for (int place = 0; place < 4; place++) {
+            sums[place] += mix(vec4(0.0), vec4(most), lessThan(vec4(most), limits[place]));
+        }
     }
     float limit = 0.0;
-    for (int place = 3; place >= 0; place--) {
-        limit = low[place] <= budget ? low_limits[place] : limit;
-    }
-    for (int place = 3; place >= 0; place--) {
-        limit = high[place] <= budget ? high_limits[place] : limit;
+    for (int place = 15; place >= 0; place--) {
+        limit = sums[place / 4][place % 4] <= budget ? limits[place / 4][place % 4] : limit;
     }
     return limit;
 }
@@ -262,7 +298,11 @@ uint write_record(TileBounds bounds, uint tile) {
     uint first = tile_record(tile);
     uint quads = 0u;
     uint total = 0u;
-    bool all_above = true;
+    Verdict shapes = Verdict(false, true, vec2(0.0));
+    if (HAS_SHAPES) {
+        shapes = judge_shapes(bounds);
+    }
+    bool all_above = shapes.is_above;
     float negligible = negligible_reach(bounds);
     for (uint index = 0u; index < constants.light_count; index++) {
         Verdict verdict = judge(bounds, lights[index]);
@@ -281,7 +321,7 @@ uint write_record(TileBounds bounds, uint tile) {
     if (!is_listed) {
         return constants.quad_count < constants.light_count ? CLASS_ANY : CLASS_QUADS;
     }
-    if (total == 0u && constants.shape_count == 0u) {
+    if (total == 0u && !shapes.is_needed) {
         return CLASS_EMPTY;
     }
     if (quads == total) {
@@ -311,7 +351,7 @@ void main() {
     // Find out what the tile's pixels are
     TileBounds bounds = tile_bounds(tile_corner(tile));
 
-    // Write down its lights. Shapes are not classified: whatever has a surface is shaded by all of them
+    // Write down its lights
     uint tile_class = CLASS_EMPTY;
     if (bounds.has_surface) {
         tile_class = write_record(bounds, tile);

@@ -37,7 +37,7 @@ layout(constant_id = 13) const int LAYOUT = 0;
 
 // Whether the tiles' lights may be other than convex quads without an image.
 const bool HAS_OTHERS = CLASS == CLASS_ABOVE || CLASS == CLASS_ANY;
-// Whether no polygon has to be clipped.
+// Whether no light has to be clipped.
 const bool IS_ABOVE = CLASS == CLASS_QUADS_ABOVE || CLASS == CLASS_ABOVE;
 
 PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
@@ -75,7 +75,7 @@ PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
     }
     if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u
         && constants.shape_count != 0u) {
-        quality.horizon = HORIZON;
+        quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
         uint index = 0u;
         do {
             ArealightShape shape = load_shape(index, SHAPE_ANY);

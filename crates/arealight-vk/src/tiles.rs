@@ -126,6 +126,7 @@ impl TiledShade {
         let classify = [
             tiles.lobe_horizons,
             resources.lights,
+            resources.shapes,
             resources.position,
             resources.normal,
             resources.base_color,
@@ -146,7 +147,10 @@ impl TiledShade {
     /// # Errors
     /// As [`ShadePass::prepare`].
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        let Checked { variant, .. } = self.checked(frame)?;
+        self.prepare_variant(self.checked(frame)?.variant)
+    }
+
+    fn prepare_variant(&self, variant: ShadeVariant) -> Result<(), Error> {
         self.classify.with(self.classify_constants(variant), |_| ())?;
         for class in self.called_for(variant) {
             self.classes
@@ -182,7 +186,7 @@ impl TiledShade {
         let bytes = bytemuck::bytes_of(&constants);
         self.classify.layouts().check(sets[0], bytes, groups)?;
         self.classes.layouts().check(sets[1], bytes, [1; 3])?;
-        self.prepare(frame)?;
+        self.prepare_variant(variant)?;
 
         let names = &self.classify.layouts().context().names;
         // SAFETY: the same contract.

@@ -261,6 +261,7 @@ pub static CLASSIFY: Kernel = Kernel {
     bindings: &[
         read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]"),
         LIGHTS,
+        SHAPES,
         G_POSITION,
         G_NORMAL,
         G_BASE_COLOR,

@@ -19,9 +19,9 @@ pub struct LobeHorizon {
     /// The least and the largest of Schlick's albedo times `q22` of its lobe, over the same of the lobe without Fresnel term:
     /// what a mixture of the two is weighed by.
     pub weight: [f32; 2],
-    /// `a` and `b` such that neither lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a steradian at the
-    /// angle `delta` from the mirror direction. An isotropic lobe is about as dense as that. Of smooth lobes, below a roughness
-    /// of 0.25, nothing is said: `a` is the largest number there.
+    /// `a` and `b` such that neither lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a steradian, times the
+    /// sine of the elevation above its horizon, at the angle `delta` from the mirror direction. An isotropic lobe is about as
+    /// dense as that. Of smooth lobes, below a roughness of 0.1, nothing is said: `a` is the largest number there.
     pub envelope: [f32; 2],
     /// No Schlick's albedo in the cell is larger.
     pub schlick_albedo: f32,
@@ -37,7 +37,7 @@ const LEAST_SINE: f64 = 1e-3;
 
 /// The envelope at a node.
 struct Peak {
-    /// The most that a lobe's density times `(b + 1 - cos delta)²` is, for each [`width`] as `b`.
+    /// The most that a lobe's density over the elevation's sine, times `(b + 1 - cos delta)²`, is: for each [`width`] as `b`.
     scaled: [f64; WIDTHS],
     /// Schlick's albedo.
     schlick: f64,
@@ -54,17 +54,29 @@ fn width(index: usize) -> f64 {
 /// The angle from the mirror direction that envelopes are made for, as 1 - cos: 37 degrees.
 const OFF_MIRROR: f64 = 0.2;
 
-/// Directions in which densities are taken: so many angles from where a lobe is densest, and about it.
-const POLAR_STEPS: u32 = 64;
+/// Directions in which densities are taken: so many angles from where they are largest over the elevation's sine, and about it.
+const NEAR_STEPS: u32 = 64;
+const FAR_STEPS: u32 = 48;
 const AZIMUTHS: u32 = 8;
+
+/// The angles from where a lobe is largest, as 1 - cos: that, from 1e-9 on angles that grow by 1.19, and even ones, since a lobe
+/// may end at its horizon anywhere.
+fn falls() -> impl Iterator<Item = f64> {
+    let near = (0..NEAR_STEPS - 1).map(|step| 2.0 * 0.71_f64.powi(step.cast_signed()));
+    let far = (1..FAR_STEPS)
+        .map(|step| 1.0 - (std::f64::consts::PI * f64::from(step) / f64::from(FAR_STEPS)).cos());
+    std::iter::once(0.0).chain(near).chain(far)
+}
+
+/// Steps of the power method: what is left of other directions falls by alpha squared a step, or is of no matter.
+const POWER_STEPS: usize = 16;
 
 /// What densities may grow by between nodes, and between the directions: most where lobes are sharpest. A test tries lookups
 /// all over the table.
-const BETWEEN_NODES: f64 = 2.0;
+const BETWEEN_NODES: f64 = 1.3;
 
-/// The roughness below which no envelope is given: the lobe of Schlick's weight changes by an order of magnitude between nodes
-/// there.
-const LEAST_ROUGHNESS: f64 = 0.25;
+/// The roughness below which no envelope is given: lobes change too much between nodes there for [`BETWEEN_NODES`] to be tried.
+const LEAST_ROUGHNESS: f64 = 0.1;
 
 /// What albedos may differ by between nodes: docs/fit.md, and a grazing dip.
 const ALBEDO_ERROR: f64 = 0.01;
@@ -114,21 +126,22 @@ impl LightTable {
         let mut scaled = [0.0_f64; WIDTHS];
         for part in [0.0, 0.5, 1.0] {
             let inverse = found.inverse * (1.0 - part) + found.schlick_inverse * part;
-            let determinant = inverse.determinant();
-            // About where the lobe is densest: there is what may be as sharp as alpha
-            let densest = (inverse.inverse() * glam::DVec3::Z).normalize_or(frame.z_axis);
-            let (u, v) = densest.any_orthonormal_pair();
-            for step in 0..POLAR_STEPS {
-                // The middle, and from 1e-9 on angles that grow by 1.19
-                let fall =
-                    if step == 0 { 0.0 } else { 2.0 * 0.71_f64.powi((POLAR_STEPS - 1 - step).cast_signed()) };
+            // A density over the elevation's sine is this over the fourth power of the length in cosine space
+            let height = glam::DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z).length();
+            let scale = inverse.determinant() * height / std::f64::consts::PI;
+            // About where it is largest, which is in the plane of incidence, as the ridge of a lobe is that is long
+            let largest = least_stretched(inverse).unwrap_or(frame.z_axis);
+            let (u, v) = (frame.y_axis.cross(largest), frame.y_axis);
+            for fall in falls() {
                 let (cosine, sine) = (1.0 - fall, (fall * (2.0 - fall)).max(0.0).sqrt());
                 for turn in 0..AZIMUTHS {
                     let (s, c) = (std::f64::consts::TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
-                    let direction = densest * cosine + (u * c + v * s) * sine;
+                    let direction = largest * cosine + (u * c + v * s) * sine;
                     let seen = inverse * direction;
-                    let density = determinant * seen.z.max(0.0)
-                        / (std::f64::consts::PI * seen.length_squared().powi(2));
+                    if seen.z <= 0.0 {
+                        continue;
+                    }
+                    let density = scale / seen.length_squared().powi(2);
                     // As precise near the mirror direction as 1 - cos is not
                     let from_mirror = 0.5 * (direction - frame.z_axis).length_squared();
                     for (index, most) in scaled.iter_mut().enumerate() {
@@ -186,4 +199,15 @@ impl LightTable {
         let weight = found.schlick * schlick.1 / (found.albedo * lobe.1);
         [ratio(lobe), ratio(schlick), if weight >= 0.0 { weight } else { f64::INFINITY }]
     }
+}
+
+/// The direction that a transform into cosine space stretches least, above the lobe's horizon. `None` if it has no inverse.
+fn least_stretched(inverse: glam::DMat3) -> Option<glam::DVec3> {
+    // The power method, of the inverse of what squares of lengths are
+    let transform = inverse.inverse();
+    let squares = transform * transform.transpose();
+    let begin = transform * glam::DVec3::Z;
+    let found =
+        (0..POWER_STEPS).fold(begin, |along, _| (squares * along).normalize_or(begin)).try_normalize()?;
+    Some(if (inverse * found).z < 0.0 { -found } else { found })
 }
