@@ -234,7 +234,8 @@ Verdict judge(TileBounds bounds, ArealightGpuLight light) {
         vec2 sent = tile_reach(bounds.reflection, bounds.surface, bounds.lobe, bounds.position, seen, light, behind, two_sided);
         // What an image shows may be brighter than the light, or black; NaN is neither little nor much
         bool has_image = (EFFECTS & AREALIGHT_EFFECT_TEXTURED) != 0u && light.texture_layer != NO_LIGHT_TEXTURE;
-        bool is_sure = bounds.is_known && bounds.has_lobe && !has_image && sent.x >= 0.0 && sent.y < TILE_FAR;
+        bool has_bounds = bounds.is_known && bounds.has_lobe && seen.normal != vec3(0.0);
+        bool is_sure = has_bounds && !has_image && sent.x >= 0.0 && sent.y < TILE_FAR;
         bool is_whole = tile_side(bounds.surface, seen).above;
         verdict.reach = is_sure ? vec2(is_whole ? sent.x : 0.0, sent.y) : verdict.reach;
     }

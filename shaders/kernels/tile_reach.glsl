@@ -31,8 +31,9 @@ TileReflection tile_reflection_begin() {
 // How bounds are rounded, generously.
 const float TILE_ROUNDING = 1.001;
 
-// The least and the largest that a light sends. `surface` and `lobe` are the planes of horizons; `outside` is the range of how far its center is from the pixels, along its
-// normal: negative where the front is seen.
+// The least and the largest that a flat light sends. `surface` and `lobe` are the planes of horizons; `outside` is the range of how
+// far its center is from the pixels, along its normal: negative where the front is seen. (Of others nothing is known: the
+// faces of a mesh may send more together than what they lie in could.)
 vec2 tile_reach(TileReflection reflection, TilePlanes surface, TilePlanes lobe, TileBox position, TileLight light,
                 ArealightGpuLight record, vec2 outside, bool two_sided) {
     vec3 to_low = position.low - light.center;
@@ -41,16 +42,15 @@ vec2 tile_reach(TileReflection reflection, TilePlanes surface, TilePlanes lobe, 
     vec3 far = max(abs(to_low), abs(to_high));
     float nearest = sqrt(dot(near, near)) - light.radius - light.margin;
     float farthest = sqrt(dot(far, far)) + light.margin;
-    bool is_flat = light.normal != vec3(0.0);
     float sum = record.radiance.x + record.radiance.y + record.radiance.z;
     float square = light.radius * light.radius;
-    float area = is_flat ? sqrt(dot(record.area, record.area)) * square : 3.1415927 * square;
+    float area = sqrt(dot(record.area, record.area)) * square;
     float per_distance = 1.0 / max(nearest, 1e-30);
 
     // Above
     vec2 height = tile_heights(surface, light);
     float off_plane = max(abs(outside.x), abs(outside.y)) + TILE_FLATNESS * light.radius + light.margin;
-    float light_cosine = is_flat ? min(off_plane * per_distance, 1.0) : 1.0;
+    float light_cosine = min(off_plane * per_distance, 1.0);
     float solid_angle = min((area * per_distance) * (light_cosine * per_distance), 6.2831855);
     solid_angle = nearest > 0.0 ? solid_angle : 6.2831855;
     float surface_cosine = nearest > 0.0 ? clamp(height.y * per_distance, 0.0, 1.0) : 1.0;
@@ -67,9 +67,8 @@ vec2 tile_reach(TileReflection reflection, TilePlanes surface, TilePlanes lobe, 
     front = max(front - TILE_FLATNESS * light.radius - light.margin, 0.0);
     float least_height = max(height.x, 0.0);
     float per_far = inversesqrt(farthest * farthest + square);
-    float least = is_flat
-        ? sum * reflection.diffuse.x * 0.31830989 * (area * per_far * per_far) * (front * per_far) * (least_height * per_far)
-        : 0.0;
+    float least = sum * reflection.diffuse.x * 0.31830989 * (area * per_far * per_far) * (front * per_far)
+                * (least_height * per_far);
     return vec2(least / TILE_ROUNDING, most);
 }
 
