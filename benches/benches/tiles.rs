@@ -14,6 +14,9 @@ use std::path::Path;
 const ROUNDS: usize = 20;
 const SIZE: [u32; 2] = [640, 360];
 
+/// The size of the floor's picture: as tiles get smaller, bounds get sharper.
+const FLOOR_SIZE: [u32; 2] = [1280, 720];
+
 /// The side of the floor in metres.
 const FLOOR: f64 = 40.0;
 
@@ -51,7 +54,7 @@ fn floor(count: usize, roughness: f32) -> Result<Scene, Box<dyn Error>> {
         scene.bounds,
         down,
         DVec3::Y,
-        f64::from(SIZE[0]) / f64::from(SIZE[1]),
+        f64::from(FLOOR_SIZE[0]) / f64::from(FLOOR_SIZE[1]),
     )];
     scene.lights = lamps(count, FLOOR, DVec3::ZERO);
     Ok(scene)
@@ -60,14 +63,15 @@ fn floor(count: usize, roughness: f32) -> Result<Scene, Box<dyn Error>> {
 fn frame(
     engine: &Engine,
     (name, scene): (&str, &Scene),
+    size: [u32; 2],
     tiles: TileOptions,
     rounds: usize,
 ) -> Result<TiledFrame, Box<dyn Error>> {
     let camera =
-        scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).ok_or("the scene has no camera")?;
+        scene.camera(None, f64::from(size[0]) / f64::from(size[1])).ok_or("the scene has no camera")?;
     let buffers = SceneBuffers::new(scene, camera.position)?;
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE)?;
+    let constants = buffers.constants(&camera, size, Vec3::ZERO);
+    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     let what = (scene.effects(), scene.lights.len());
     Ok(measure(engine.host(), name, &mut renderer, what, tiles, rounds)?)
 }
@@ -76,12 +80,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
     let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
     let device = engine.host().device_name();
-    println!("{device}, {} x {}, {rounds} rounds\n\n## Scenes\n", SIZE[0], SIZE[1]);
+    println!("{device}, {rounds} rounds\n\n## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
     let mut frames = vec![];
     for name in ["demo", "room", "sweep"] {
-        frames.push(frame(&engine, (name, &scene(name)?), TileOptions::default(), rounds)?);
+        frames.push(frame(&engine, (name, &scene(name)?), SIZE, TileOptions::default(), rounds)?);
     }
-    println!("{}\n## A floor under lamps\n", markdown(&frames));
+    let [width, height] = FLOOR_SIZE;
+    println!("{}\n## A floor under lamps, {width} x {height}\n", markdown(&frames));
 
     let (mut frames, mut growth) = (vec![], String::new());
     for (material, roughness) in FLOORS {
@@ -89,9 +94,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             let first = frames.len();
             for count in LAMPS {
                 let tiles = TileOptions { negligible, capacity: 512 };
-                let rounds = if count > 100 { rounds.div_ceil(5) } else { rounds };
+                let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
                 let name = format!("{material}, {count} lamps, {negligible} negligible");
-                frames.push(frame(&engine, (&name, &floor(count, roughness)?), tiles, rounds)?);
+                frames.push(frame(&engine, (&name, &floor(count, roughness)?), FLOOR_SIZE, tiles, rounds)?);
             }
             let ten = frames[first].milliseconds[2].median;
             for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
