@@ -1,9 +1,10 @@
-//! What tiles gain: whole frames of our scenes, and a floor under 10 to 1,000 lamps of which those that send little are left out:
-//! `cargo bench -p arealight-benches --bench tiles`. Prints Markdown tables.
+//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses; and a floor under 10 to 1,000 lamps of which
+//! those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with `-- disks` the disks alone. Prints
+//! Markdown tables.
 
 use arealight::plan::TileOptions;
 use arealight_benches::start::start;
-use arealight_benches::tiles::{TiledFrame, lamps, markdown, measure};
+use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure};
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
@@ -29,13 +30,17 @@ const FLOORS: [(&str, f32); 2] = [("concrete", 0.9), ("satin", 0.5)];
 /// How many lamps there are over it.
 const LAMPS: [usize; 3] = [10, 100, 1000];
 
+/// How many disks shine above the same floor, and how high.
+const DISKS: [usize; 3] = [1, 4, 16];
+const DISK_HEIGHT: f64 = 30.0;
+
 fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
     Ok(Scene::load(folder.join(name).with_extension("glb"))?)
 }
 
-/// The floor of the sweep by itself, square and of this roughness, under so many lamps.
-fn floor(count: usize, roughness: f32) -> Result<Scene, Box<dyn Error>> {
+/// The floor of the sweep by itself, square and of this roughness, without lights.
+fn floor(roughness: f32) -> Result<Scene, Box<dyn Error>> {
     let mut scene = scene("sweep")?;
     let floor = scene.materials.iter().position(|material| material.name == "floor").ok_or("a floor")?;
     scene.triangles.retain(|triangle| triangle.material as usize == floor);
@@ -56,7 +61,7 @@ fn floor(count: usize, roughness: f32) -> Result<Scene, Box<dyn Error>> {
         DVec3::Y,
         f64::from(FLOOR_SIZE[0]) / f64::from(FLOOR_SIZE[1]),
     )];
-    scene.lights = lamps(count, FLOOR, DVec3::ZERO);
+    scene.lights.clear();
     Ok(scene)
 }
 
@@ -64,7 +69,7 @@ fn frame(
     engine: &Engine,
     (name, scene): (&str, &Scene),
     size: [u32; 2],
-    tiles: TileOptions,
+    against: (TileOptions, Baseline),
     rounds: usize,
 ) -> Result<TiledFrame, Box<dyn Error>> {
     let camera =
@@ -72,18 +77,37 @@ fn frame(
     let buffers = SceneBuffers::new(scene, camera.position)?;
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
-    let what = (scene.effects(), scene.lights.len());
-    Ok(measure(engine.host(), name, &mut renderer, what, tiles, rounds)?)
+    renderer = renderer.with_shapes(&scene.shapes)?;
+    let what = (scene.effects(), scene.lights.len() + scene.shapes.len());
+    Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
+}
+
+/// Frames of disks that are wholly above.
+fn disk_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
+    let mut frames = vec![];
+    for count in DISKS {
+        let mut scene = floor(FLOORS[0].1)?;
+        scene.shapes = disks(count, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
+        let against = (TileOptions::default(), Baseline::Bare);
+        frames.push(frame(engine, (&format!("disks: {count}"), &scene), SIZE, against, rounds)?);
+    }
+    Ok(frames)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
     let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
     let device = engine.host().device_name();
-    println!("{device}, {rounds} rounds\n\n## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
+    println!("{device}, {rounds} rounds\n\n## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
+    println!("{}", markdown(&disk_frames(&engine, rounds)?));
+    if std::env::args().any(|argument| argument == "disks") {
+        return Ok(());
+    }
+    println!("## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
+    let against = (TileOptions::default(), Baseline::Practice);
     let mut frames = vec![];
     for name in ["demo", "room", "sweep"] {
-        frames.push(frame(&engine, (name, &scene(name)?), SIZE, TileOptions::default(), rounds)?);
+        frames.push(frame(&engine, (name, &scene(name)?), SIZE, against, rounds)?);
     }
     let [width, height] = FLOOR_SIZE;
     println!("{}\n## A floor under lamps, {width} x {height}\n", markdown(&frames));
@@ -93,10 +117,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         for negligible in NEGLIGIBLE {
             let first = frames.len();
             for count in LAMPS {
-                let tiles = TileOptions { negligible, capacity: 512 };
+                let against = (TileOptions { negligible, capacity: 512 }, Baseline::Practice);
+                let mut scene = floor(roughness)?;
+                scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
                 let name = format!("{material}, {count} lamps, {negligible} negligible");
-                frames.push(frame(&engine, (&name, &floor(count, roughness)?), FLOOR_SIZE, tiles, rounds)?);
+                frames.push(frame(&engine, (&name, &scene), FLOOR_SIZE, against, rounds)?);
             }
             let ten = frames[first].milliseconds[2].median;
             for (count, frame) in LAMPS.iter().zip(&frames[first..]) {

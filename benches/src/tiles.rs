@@ -1,22 +1,55 @@
-//! Whole frames by tiles, beside the clipless practice and the same shading without tiles: over scenes, and over a floor under
-//! ever more lights.
+//! Whole frames by tiles, beside a yardstick that clips nothing and the same shading without tiles: over scenes, and over a floor
+//! under ever more lights.
 //!
-//! Every method runs in turn, round after round, and is read as a ratio to the first in the same round.
+//! Every method runs in turn, round after round, and is read as a ratio to the yardstick in the same round.
 
 use crate::ladder::Spread;
 use crate::ladder::methods::{LOBES, SHADE_YARDSTICK, Yardstick};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
-use arealight::kernels::SHADE;
+use arealight::kernels::{Kernel, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
-use arealight::{Effects, PolygonLight, TileClass};
+use arealight::{Effects, Horizon, PolygonLight, Quality, Shape, ShapeLight, TileClass};
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
 use arealight_host::Host;
 use glam::{DVec3, Vec3, Vec4};
 use std::fmt::Write as _;
 
-/// A way to shade a frame.
-const METHODS: [&str; 3] = ["practice", "exact", "exact, by tiles"];
+/// How many ways a frame is shaded: by its yardstick, exactly, and exactly by tiles.
+const METHODS: usize = 3;
+
+/// What a frame is held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Baseline {
+    /// Polygons without images as others shade them: nothing clipped.
+    Practice,
+    /// The shade kernel specialised by hand for shapes that are wholly above every pixel's horizons.
+    Bare,
+}
+
+impl Baseline {
+    /// A word for the head of a table.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Practice => "practice",
+            Self::Bare => "bare",
+        }
+    }
+
+    /// Its kernel, and that kernel's specialisation.
+    fn kernel(self, options: ShadeOptions) -> (&'static Kernel, Vec<(u32, u32)>) {
+        match self {
+            Self::Practice => {
+                let practice = Yardstick::Practice as u32;
+                (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, practice)])
+            }
+            Self::Bare => {
+                let quality = Quality { horizon: Horizon::Bare, ..options.quality };
+                (&SHADE, shade_specialization(ShadeOptions { quality, ..options }))
+            }
+        }
+    }
+}
 
 /// A frame's times and tiles.
 #[derive(Debug, Clone)]
@@ -25,10 +58,12 @@ pub struct TiledFrame {
     pub name: String,
     /// How many lights there are.
     pub lights: usize,
-    /// Milliseconds of the practice, of exact shading, and of that by tiles with all that it takes.
-    pub milliseconds: [Spread; 3],
-    /// Their ratios to the practice in the same round.
-    pub ratios: [Spread; 3],
+    /// What it is held against.
+    pub baseline: Baseline,
+    /// Milliseconds of the baseline, of exact shading, and of that by tiles with all that it takes.
+    pub milliseconds: [Spread; METHODS],
+    /// Their ratios to the baseline in the same round.
+    pub ratios: [Spread; METHODS],
     /// What was found of the tiles.
     pub counts: TileCounts,
     /// How much the picture by tiles differs from that without: root mean square over mean, and the largest difference of a
@@ -45,17 +80,17 @@ pub fn measure(
     name: &str,
     renderer: &mut SceneRenderer<'_>,
     (effects, lights): (Effects, usize),
-    tiles: TileOptions,
+    (tiles, baseline): (TileOptions, Baseline),
     rounds: usize,
 ) -> Result<TiledFrame, EngineError> {
     let options = ShadeOptions { effects, ..ShadeOptions::all() };
     let view = renderer.tiled(options, tiles)?;
-    let practice = [(0, (effects | LOBES).bits()), (1, Yardstick::Practice as u32)];
+    let (kernel, specialization) = baseline.kernel(options);
     let exact = shade_specialization(options);
-    let mut seconds: [Vec<f64>; METHODS.len()] = Default::default();
+    let mut seconds: [Vec<f64>; METHODS] = Default::default();
     for round in 0..=rounds {
         let took = [
-            clocked(host, || renderer.shade_by(&SHADE_YARDSTICK, &practice))?,
+            clocked(host, || renderer.shade_by(kernel, &specialization))?,
             clocked(host, || renderer.shade_by(&SHADE, &exact))?,
             clocked(host, || renderer.shade_tiled(&view))?,
         ];
@@ -75,6 +110,7 @@ pub fn measure(
     Ok(TiledFrame {
         name: name.to_owned(),
         lights,
+        baseline,
         milliseconds: [0, 1, 2].map(|method: usize| Spread::of(&seconds[method]).times(1e3 / processors)),
         ratios: [0, 1, 2].map(ratio),
         counts: view.counts(lights)?,
@@ -116,11 +152,36 @@ pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
     (0..count).map(lamp).collect()
 }
 
-/// Frames as a Markdown table.
+/// Disks that face down to `center` from `height` above it, side by side as many as a square of `side` holds.
+pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLight> {
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let step = side / columns as f64;
+    let disk = |index: usize| {
+        let place = |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
+        let center = center + DVec3::new(place(index % columns), height, place(index / columns));
+        let radius = 0.4 * step;
+        // x cross z is down
+        let shape = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
+        ShapeLight { name: format!("disk {index}"), radiance: Vec3::splat(10.0), two_sided: false, shape }
+    };
+    (0..count).map(disk).collect()
+}
+
+/// Frames as a Markdown table, all of them held against the same.
 pub fn markdown(frames: &[TiledFrame]) -> String {
-    let mut heads = vec!["frame", "lights", "practice, ms"];
-    heads.extend(&METHODS[1..]);
-    heads.extend(["quartiles", "lights a tile", "RMSE", "largest"]);
+    let baseline = frames.first().map_or(Baseline::Practice, |frame| frame.baseline);
+    let time = format!("{}, ms", baseline.name());
+    let heads = [
+        "frame",
+        "lights",
+        &time,
+        "exact",
+        "exact, by tiles",
+        "quartiles",
+        "lights a tile",
+        "RMSE",
+        "largest",
+    ];
     let row = |frame: &TiledFrame| {
         let [_, exact, tiles] = &frame.ratios;
         vec![
