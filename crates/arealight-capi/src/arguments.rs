@@ -48,10 +48,19 @@ pub unsafe fn array<'a, T>(pointer: *const T, count: usize, argument: &str) -> R
     Ok(unsafe { std::slice::from_raw_parts(pointer, count) })
 }
 
-fn check<T>(pointer: *const T, argument: &str) -> Result<(), Failure> {
-    if pointer.is_null() {
-        return Err(Failure::argument(format!("{argument}: is null")));
+/// Refuses the first handle or pointer that is null, by name.
+///
+/// # Errors
+/// [`Failure`] names it.
+pub fn refuse_null<const COUNT: usize>(handles: [(bool, &str); COUNT]) -> Result<(), Failure> {
+    match handles.into_iter().find(|(is_null, _)| *is_null) {
+        Some((_, name)) => Err(Failure::argument(format!("{name}: is null"))),
+        None => Ok(()),
     }
+}
+
+fn check<T>(pointer: *const T, argument: &str) -> Result<(), Failure> {
+    refuse_null([(pointer.is_null(), argument)])?;
     if !pointer.is_aligned() {
         return Err(Failure::argument(format!("{argument}: is not aligned to {} bytes", align_of::<T>())));
     }

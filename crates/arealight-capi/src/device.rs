@@ -162,16 +162,12 @@ pub unsafe extern "C" fn arealight_table_upload(
         // SAFETY: the caller vouches for the pointers.
         let (arealight, upload) =
             unsafe { (handles::borrow(arealight, "arealight")?, arguments::read(upload, "upload")?) };
-        for (is_null, field) in [
-            (upload.memory == 0, "memory"),
-            (upload.staging_data.is_null(), "staging_data"),
-            (upload.staging_buffer == 0, "staging_buffer"),
-            (upload.command_buffer.is_null(), "command_buffer"),
-        ] {
-            if is_null {
-                return Err(Failure::argument(format!("upload.{field}: is null")));
-            }
-        }
+        arguments::refuse_null([
+            (upload.memory == 0, "upload.memory"),
+            (upload.staging_data.is_null(), "upload.staging_data"),
+            (upload.staging_buffer == 0, "upload.staging_buffer"),
+            (upload.command_buffer.is_null(), "upload.command_buffer"),
+        ])?;
         let bytes = arealight.format.bytes(&arealight.table);
         if upload.staging_size < bytes.len() as u64 {
             let message =

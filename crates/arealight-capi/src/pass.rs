@@ -197,9 +197,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
                 arguments::read(resources, "resources")?,
             )
         };
-        if set == 0 {
-            return Err(Failure::argument("set: is null"));
-        }
+        arguments::refuse_null([(set == 0, "set")])?;
         let [table, in_place_of_textures] = arealight.table_resources().ok_or_else(|| {
             Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
         })?;
@@ -270,11 +268,7 @@ pub unsafe extern "C" fn arealight_pass_record(
         // SAFETY: the caller vouches for the pointers, here and below.
         let (pass, frame) =
             unsafe { (&handles::borrow(pass, "pass")?.pass, arguments::read(frame, "frame")?) };
-        for (is_null, argument) in [(command_buffer.is_null(), "command_buffer"), (set == 0, "set")] {
-            if is_null {
-                return Err(Failure::argument(format!("{argument}: is null")));
-            }
-        }
+        arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
         // SAFETY: as above.
         let frame = unsafe { read_frame(frame) }?;
         let (command_buffer, set) =

@@ -130,15 +130,11 @@ pub unsafe extern "C" fn arealight_textures_setup(
         let sets = unsafe {
             arguments::array(setup.level_sets, setup.level_set_count as usize, "setup.level_sets")?
         };
-        for (is_null, field) in [
-            (setup.memory == 0, "memory"),
-            (sets.contains(&0), "level_sets"),
-            (setup.command_buffer.is_null(), "command_buffer"),
-        ] {
-            if is_null {
-                return Err(Failure::argument(format!("setup.{field}: is null")));
-            }
-        }
+        arguments::refuse_null([
+            (setup.memory == 0, "setup.memory"),
+            (sets.contains(&0), "setup.level_sets"),
+            (setup.command_buffer.is_null(), "setup.command_buffer"),
+        ])?;
         let mut inner = textures.inner();
         let Inner { textures, setup: given } = &mut *inner;
         if sets.len() != textures.level_sets() as usize {
@@ -181,9 +177,7 @@ pub unsafe extern "C" fn arealight_textures_write_source_set(
     call(|| {
         // SAFETY: the caller vouches for the pointer.
         let inner = unsafe { handles::borrow(textures, "textures") }?.inner();
-        if set == 0 {
-            return Err(Failure::argument("set: is null"));
-        }
+        arguments::refuse_null([(set == 0, "set")])?;
         inner.setup()?;
         // SAFETY: the caller vouches for the set and the image.
         Ok(unsafe { inner.textures.write_source_set(vk::DescriptorSet::from_raw(set), sampled(source)) }?)
@@ -211,9 +205,7 @@ pub unsafe extern "C" fn arealight_textures_update(
             (textures.inner(), arguments::array(updates, update_count as usize, "updates")?)
         };
         let setup = inner.setup()?;
-        if command_buffer.is_null() {
-            return Err(Failure::argument("command_buffer: is null"));
-        }
+        arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
         let updates: Vec<_> = updates
             .iter()
             .enumerate()
@@ -227,9 +219,7 @@ pub unsafe extern "C" fn arealight_textures_update(
 
 fn read_update(index: usize, update: &ArealightTextureUpdate) -> Result<TextureUpdate, Failure> {
     let field = |name| format!("updates[{index}].{name}");
-    if update.source_set == 0 {
-        return Err(Failure::argument(format!("{}: is null", field("source_set"))));
-    }
+    arguments::refuse_null([(update.source_set == 0, &field("source_set"))])?;
     let wrap = |wrap, name| match wrap {
         AREALIGHT_WRAP_CLAMP => Ok(Wrap::Clamp),
         AREALIGHT_WRAP_REPEAT => Ok(Wrap::Repeat),
