@@ -71,8 +71,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Lights {
 const float MARGIN = 1e-5;
 
 const bool HAS_DIFFUSE = (EFFECTS & AREALIGHT_EFFECT_DIFFUSE) != 0u;
-const bool HAS_SHAPES =
-    (EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u;
+const bool HAS_SHAPES = (EFFECTS & SHAPE_EFFECTS) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & AREALIGHT_EFFECT_GLOSSY) != 0u;
 // Whether the horizon of the glossy lobe can be known: the table's cells say nothing of the formula's.
 const bool HAS_HORIZON = HAS_GLOSSY && LOBES != AREALIGHT_LOBES_FORMULA;
@@ -236,8 +235,7 @@ Verdict judge(TileBounds bounds, ArealightGpuLight light) {
         bool has_image = (EFFECTS & AREALIGHT_EFFECT_TEXTURED) != 0u && light.texture_layer != NO_LIGHT_TEXTURE;
         bool has_bounds = bounds.is_known && bounds.has_lobe && seen.normal != vec3(0.0);
         bool is_sure = has_bounds && !has_image && sent.x >= 0.0 && sent.y < TILE_FAR;
-        bool is_whole = tile_side(bounds.surface, seen).above;
-        verdict.reach = is_sure ? vec2(is_whole ? sent.x : 0.0, sent.y) : verdict.reach;
+        verdict.reach = is_sure ? sent : verdict.reach;
     }
     return verdict;
 }

@@ -74,7 +74,7 @@ void main() {
                 index++;
             } while (index < constants.light_count);
         }
-        if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u
+        if ((EFFECTS & SHAPE_EFFECTS) != 0u
             && constants.shape_count != 0u) {
             uint index = 0u;
             do {

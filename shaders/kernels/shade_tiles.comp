@@ -73,7 +73,7 @@ PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
             index++;
         } while (index < total);
     }
-    if ((EFFECTS & (AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE)) != 0u
+    if ((EFFECTS & SHAPE_EFFECTS) != 0u
         && constants.shape_count != 0u) {
         quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
         uint index = 0u;

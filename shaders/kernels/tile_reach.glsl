@@ -65,6 +65,7 @@ vec2 tile_reach(TileReflection reflection, TilePlanes surface, TilePlanes lobe, 
     // Below
     float front = two_sided ? max(max(outside.x, -outside.y), 0.0) : max(-outside.y, 0.0);
     front = max(front - TILE_FLATNESS * light.radius - light.margin, 0.0);
+    // None where it is not wholly above the surface
     float least_height = max(height.x, 0.0);
     float per_far = inversesqrt(farthest * farthest + square);
     float least = sum * reflection.diffuse.x * 0.31830989 * (area * per_far * per_far) * (front * per_far)
