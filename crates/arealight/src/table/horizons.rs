@@ -54,10 +54,11 @@ fn width(index: usize) -> f64 {
 /// The angle from the mirror direction that envelopes are made for, as 1 - cos: 37 degrees.
 const OFF_MIRROR: f64 = 0.2;
 
-/// Directions in which densities are taken: so many angles from where they are largest over the elevation's sine, and about it.
+/// Directions in which densities are taken: so many angles from where they are largest over the elevation's sine, and about it,
+/// to one side of the plane of incidence: the other is its mirror image.
 const NEAR_STEPS: u32 = 64;
 const FAR_STEPS: u32 = 48;
-const AZIMUTHS: u32 = 8;
+const AZIMUTHS: u32 = 4;
 
 /// The angles from where a lobe is largest, as 1 - cos: that, from 1e-9 on angles that grow by 1.19, and even ones, since a lobe
 /// may end at its horizon anywhere.
@@ -134,8 +135,8 @@ impl LightTable {
             let (u, v) = (frame.y_axis.cross(largest), frame.y_axis);
             for fall in falls() {
                 let (cosine, sine) = (1.0 - fall, (fall * (2.0 - fall)).max(0.0).sqrt());
-                for turn in 0..AZIMUTHS {
-                    let (s, c) = (std::f64::consts::TAU * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
+                for turn in 0..=AZIMUTHS {
+                    let (s, c) = (std::f64::consts::PI * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
                     let direction = largest * cosine + (u * c + v * s) * sine;
                     let seen = inverse * direction;
                     if seen.z <= 0.0 {
