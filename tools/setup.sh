@@ -3,13 +3,14 @@
 #
 #   tools/setup.sh run     what the command line needs: a linker, the Vulkan loader, a Vulkan driver
 #   tools/setup.sh test    that, and what the tests need: validation layers, shader compilers
+#   tools/setup.sh window  what the test of an example's window needs: validation layers, X11's libraries, a screen that needs no monitor
 #
 # On Debian 12 as root it installs by apt-get. Anywhere else it says what to install. Running it again is free.
 set -euo pipefail
 
 mode="${1:-run}"
-if [[ "$mode" != run && "$mode" != test ]]; then
-    echo "usage: tools/setup.sh [run|test]" >&2
+if [[ "$mode" != run && "$mode" != test && "$mode" != window ]]; then
+    echo "usage: tools/setup.sh [run|test|window]" >&2
     exit 2
 fi
 
@@ -27,7 +28,7 @@ vulkan_file() {
 }
 
 has_program() { command -v "$1" >/dev/null; }
-has_loader() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1'; }
+has_shared_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -qF "$1"; }
 has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
 has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
 # The validator is a program, whichever library the compiler is linked with.
@@ -60,11 +61,20 @@ need() { # package, reason, check and its arguments
 }
 need gcc "links Rust programs" has_program cc
 need libc6-dev "the C library, for linking" has_c_library
-need libvulkan1 "the Vulkan loader" has_loader
+need libvulkan1 "the Vulkan loader" has_shared_library libvulkan.so.1
 need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is no GPU" has_driver
+if [[ "$mode" != run ]]; then
+    need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
+fi
+if [[ "$mode" == window ]]; then
+    need libx11-xcb1 "the X11 library" has_shared_library libX11-xcb.so.1
+    need libxcursor1 "its cursors" has_shared_library libXcursor.so.1
+    need libxi6 "its input" has_shared_library libXi.so.6
+    need libxkbcommon-x11-0 "its keyboards" has_shared_library libxkbcommon-x11.so.0
+    need xvfb "a screen that needs no monitor" has_program Xvfb
+fi
 if [[ "$mode" == test ]]; then
     need g++ "the C++ library, for the shader compiler" has_program c++
-    need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
     need libshaderc-dev "the shader compiler" has_library libshaderc_combined.a
     need glslang-dev "a part of it" has_library libMachineIndependent.a
     need spirv-tools "another part of it, and the SPIR-V validator" has_spirv_tools

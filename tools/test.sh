@@ -95,13 +95,15 @@ if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 step "format" cargo fmt --all --check
 step "links of documents" check_links
 step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
-step "lints" cargo clippy --workspace --all-targets --locked --quiet -- -D warnings
+# With the window of an example, which nothing below builds: tools/test-window.sh runs it
+step "lints" cargo clippy --workspace --features arealight-examples/window --all-targets --locked --quiet -- -D warnings
 step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests
 step "GPU tests, GPU-assisted validation" run_assisted
 step "examples in the documentation" cargo test --workspace --doc --locked --quiet
 # The command line and the library have the same name, and their pages would collide.
-step "documentation" env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --exclude arealight-cli --no-deps --locked --quiet
+step "documentation" env RUSTDOCFLAGS="-D warnings" \
+    cargo doc --workspace --exclude arealight-cli --features arealight-examples/window --no-deps --locked --quiet
 step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
 # A note alone: whoever changes the shade kernel counts again when the change is done
 cargo run --locked --quiet -p xtask -- instructions --check || true

@@ -1,16 +1,16 @@
 //! A deferred engine: it draws a G-buffer of its own, and Arealight shades it.
 
 use crate::Result;
-use crate::draw::{Draw, DrawOptions, Users};
-use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory};
+use crate::draw::{Draw, Users};
+use crate::g_buffer::GBuffer;
+use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory, Semaphores};
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::gpu::GpuLight;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Quality};
 use arealight_vk::{
-    Context, HostDevice, Resource, ShadeFormats, ShadeFrame, ShadePass, ShadeResources, TableFormat,
-    TableImage,
+    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -26,19 +26,13 @@ pub struct Deferred<'a> {
     readback: Readback<'a>,
     draw: Draw<'a>,
     shade: ShadePass,
+    users: Users,
     _sets: DescriptorPool<'a>,
-    _table: TableImage,
+    table: TableImage,
     _table_memory: Memory<'a>,
     g_buffer: GBuffer<'a>,
     size: [u32; 2],
-}
-
-/// The images: depth, and what the fragment shader writes.
-struct GBuffer<'a> {
-    depth: Image<'a>,
-    normal_roughness: Image<'a>,
-    base_color_metalness: Image<'a>,
-    radiance: Image<'a>,
+    gpu: &'a Gpu<'a>,
 }
 
 /// What each frame in flight has for itself, because the CPU writes it anew for every frame.
@@ -107,31 +101,12 @@ impl<'a> Deferred<'a> {
         // doc end
 
         // doc: sets
-        // Point a descriptor set of yours at your images and buffers, for each frame in flight
+        // Allocate a descriptor set from a pool of yours for each frame in flight
         let sets = DescriptorPool::new(gpu, &shade.pool_sizes(FRAMES_IN_FLIGHT as u32))?;
         let mut places = vec![];
         for _ in 0..FRAMES_IN_FLIGHT {
             // SAFETY: the layout is the pass's.
-            let place = Place::new(gpu, unsafe { sets.allocate(shade.set_layout()) }?)?;
-            let sampled = |image: &Image<'_>, layout| Resource::SampledImage { view: image.view, layout };
-            let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-            let base_color = sampled(&g_buffer.base_color_metalness, read_only);
-            let resources = ShadeResources {
-                table: image.resource(),
-                lights: Resource::buffer(place.lights.raw),
-                light_vertices: Resource::buffer(place.light_vertices.raw),
-                position: sampled(&g_buffer.depth, vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL),
-                normal: sampled(&g_buffer.normal_roughness, read_only),
-                base_color,
-                specular: base_color, // not read without Effects::SPECULAR_INPUT
-                radiance: Resource::StorageImage { view: g_buffer.radiance.view },
-                glossy: None, // its radiance is in that image too, without RadianceImages::Apart
-                light_textures: image.in_place_of_textures(), // nor these without Effects::TEXTURED
-                shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
-            };
-            // SAFETY: the set is new, and goes before the resources.
-            unsafe { shade.write_set(place.set, &resources) }?;
-            places.push(place);
+            places.push(Place::new(gpu, unsafe { sets.allocate(shade.set_layout()) }?)?);
         }
         // doc end
 
@@ -145,19 +120,72 @@ impl<'a> Deferred<'a> {
         // doc end
         // SAFETY: the images outlive the drawing, which is dropped after the frames.
         let draw = unsafe { g_buffer.make_draw(gpu, size, users) }?;
-        let readback = Readback::new(gpu, size)?;
-        Ok(Self {
+        let engine = Self {
             frames,
             places,
-            readback,
+            readback: Readback::new(gpu, size)?,
             draw,
             shade,
+            users,
             _sets: sets,
-            _table: image,
+            table: image,
             _table_memory: memory,
             g_buffer,
             size,
-        })
+            gpu,
+        };
+        engine.write_sets()?;
+        Ok(engine)
+    }
+
+    /// Points the sets at the images and buffers; no frame is in flight.
+    fn write_sets(&self) -> Result<()> {
+        let Self { table, g_buffer, .. } = self;
+        // doc: write
+        // Point the sets at your images and buffers
+        let sampled = |image: &Image<'_>, layout| Resource::SampledImage { view: image.view, layout };
+        let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+        let base_color = sampled(&g_buffer.base_color_metalness, read_only);
+        for place in &self.places {
+            let resources = ShadeResources {
+                table: table.resource(),
+                lights: Resource::buffer(place.lights.raw),
+                light_vertices: Resource::buffer(place.light_vertices.raw),
+                position: sampled(&g_buffer.depth, vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL),
+                normal: sampled(&g_buffer.normal_roughness, read_only),
+                base_color,
+                specular: base_color, // not read without Effects::SPECULAR_INPUT
+                radiance: Resource::StorageImage { view: g_buffer.radiance.view },
+                glossy: None, // its radiance is in that image too, without RadianceImages::Apart
+                light_textures: table.in_place_of_textures(), // nor these without Effects::TEXTURED
+                shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
+            };
+            // SAFETY: no pending frame uses the set, and the resources outlive its next use.
+            unsafe { self.shade.write_set(place.set, &resources) }?;
+        }
+        // doc end
+        Ok(())
+    }
+
+    /// Goes on with pictures of another size. Waits for the frames in flight.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
+        // doc: resize
+        // Make images and what draws to them anew when no frame uses them, and point the sets at them: the pass knows no size
+        self.frames.wait()?;
+        let (g_buffer, readback) = (GBuffer::new(self.gpu, size)?, Readback::new(self.gpu, size)?);
+        // SAFETY: as in Deferred::new; the drawing before goes before its images.
+        self.draw = unsafe { g_buffer.make_draw(self.gpu, size, self.users) }?;
+        (self.g_buffer, self.readback, self.size) = (g_buffer, readback, size);
+        self.write_sets()
+        // doc end
+    }
+
+    /// The image of the radiance, which a frame leaves in `GENERAL` layout; another after [`Deferred::resize`].
+    pub fn radiance(&self) -> &Image<'a> {
+        &self.g_buffer.radiance
     }
 
     /// Draws and shades the scene as it is after `seconds`. Waits for nothing but the frame before the last.
@@ -165,9 +193,21 @@ impl<'a> Deferred<'a> {
     /// # Errors
     /// Where the device refuses.
     pub fn frame(&mut self, seconds: f64) -> Result<()> {
+        self.frame_then(seconds, |_, _| Ok(Semaphores::default()))
+    }
+
+    /// Likewise, and records `then` behind it, which is given the place among the frames in flight, and the commands.
+    ///
+    /// # Errors
+    /// As [`Deferred::frame`], and those of `then`.
+    pub fn frame_then(
+        &mut self,
+        seconds: f64,
+        then: impl FnOnce(usize, vk::CommandBuffer) -> Result<Semaphores>,
+    ) -> Result<()> {
         let Self { frames, places, draw, shade, size, .. } = self;
-        frames.submit(|place, commands| {
-            let place = &places[place];
+        frames.submit_with(|index, commands| {
+            let place = &places[index];
             // doc: frame
             // Write what is new in this frame: no other frame reads this place's buffers
             let camera = scene::camera(*size);
@@ -193,7 +233,7 @@ impl<'a> Deferred<'a> {
                 shade.record(commands, place.set, &frame)?;
             }
             // doc end
-            Ok(())
+            then(index, commands)
         })
     }
 
@@ -209,56 +249,6 @@ impl<'a> Deferred<'a> {
             vk::ImageLayout::GENERAL,
             Users { stages: vk::PipelineStageFlags::COMPUTE_SHADER, access: vk::AccessFlags::SHADER_WRITE },
         )
-    }
-}
-
-impl<'a> GBuffer<'a> {
-    fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
-        // doc: g_buffer
-        let (color, sampled) = (vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::SAMPLED);
-        let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
-        let radiance = color | vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
-        Ok(Self {
-            depth: gpu.image(vk::Format::D32_SFLOAT, size, depth)?,
-            normal_roughness: gpu.image(vk::Format::R16G16B16A16_SFLOAT, size, color | sampled)?,
-            base_color_metalness: gpu.image(vk::Format::R8G8B8A8_UNORM, size, color | sampled)?,
-            radiance: gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, radiance)?,
-        })
-        // doc end
-    }
-
-    /// What views do not tell the pass.
-    fn formats(&self) -> ShadeFormats {
-        ShadeFormats {
-            position: self.depth.format,
-            normal: self.normal_roughness.format,
-            base_color: self.base_color_metalness.format,
-            specular: vk::Format::UNDEFINED,
-            radiance: self.radiance.format,
-        }
-    }
-
-    /// The drawing into these images.
-    ///
-    /// # Safety
-    /// As [`Draw::new`].
-    unsafe fn make_draw(&self, gpu: &'a Gpu<'a>, size: [u32; 2], users: Users) -> Result<Draw<'a>> {
-        let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-        let colors = [
-            (&self.normal_roughness, read_only),
-            (&self.base_color_metalness, read_only),
-            (&self.radiance, vk::ImageLayout::GENERAL), // as the pass wants it
-        ];
-        let options = DrawOptions {
-            colors: &colors,
-            depth: &self.depth,
-            size,
-            fragment: include_bytes!("../spirv/g_buffer.frag.spv"),
-            set_layout: None,
-            users,
-        };
-        // SAFETY: the same contract.
-        unsafe { Draw::new(gpu, &options) }
     }
 }
 

@@ -150,20 +150,15 @@ impl<'a> Draw<'a> {
         // SAFETY: the device is alive, and what infos point to outlives the calls; so below.
         self.layout = unsafe { device.create_pipeline_layout(&info, None) }?;
 
-        let words = [include_bytes!("../spirv/scene.vert.spv"), options.fragment].map(words);
-        let modules = words.each_ref().map(|words| {
-            let info = vk::ShaderModuleCreateInfo::default().code(words);
-            // SAFETY: as above.
-            unsafe { device.create_shader_module(&info, None) }
-        });
-        let made = match modules {
-            [Ok(vertex), Ok(fragment)] => self.make_pipeline_of(vertex, fragment, options.colors.len()),
-            [Err(error), _] | [_, Err(error)] => Err(error.into()),
-        };
-        for module in modules.into_iter().flatten() {
+        let vertex = self.gpu.shader_module(include_bytes!("../spirv/scene.vert.spv"))?;
+        let made = self.gpu.shader_module(options.fragment).and_then(|fragment| {
+            let made = self.make_pipeline_of(vertex, fragment, options.colors.len());
             // SAFETY: pipelines do not need their modules once they are made.
-            unsafe { device.destroy_shader_module(module, None) };
-        }
+            unsafe { device.destroy_shader_module(fragment, None) };
+            made
+        });
+        // SAFETY: as above.
+        unsafe { device.destroy_shader_module(vertex, None) };
         self.pipeline = made?;
         Ok(())
     }
@@ -288,9 +283,4 @@ impl Drop for Draw<'_> {
             device.destroy_render_pass(self.render_pass, None);
         }
     }
-}
-
-/// SPIR-V as Vulkan takes it.
-fn words(bytes: &[u8]) -> Vec<u32> {
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }

@@ -3,6 +3,7 @@
 
 use crate::Result;
 use ash::vk;
+use std::ffi::CStr;
 
 /// How many frames the CPU may be ahead of the GPU.
 pub const FRAMES_IN_FLIGHT: usize = 2;
@@ -10,7 +11,8 @@ pub const FRAMES_IN_FLIGHT: usize = 2;
 /// A Vulkan instance that destroys itself.
 pub struct Instance {
     raw: ash::Instance,
-    _entry: ash::Entry,
+    /// Where the instance comes from: a window's surface asks for it.
+    pub entry: ash::Entry,
 }
 
 impl Instance {
@@ -19,12 +21,22 @@ impl Instance {
     /// # Errors
     /// Where there is no loader, or no driver.
     pub fn new() -> Result<Self> {
+        Self::with(&[])
+    }
+
+    /// Opens Vulkan with extensions, such as those of a window.
+    ///
+    /// # Errors
+    /// As [`Instance::new`], and where an extension is not there.
+    pub fn with(extensions: &[&CStr]) -> Result<Self> {
         let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_1);
-        let info = vk::InstanceCreateInfo::default().application_info(&application);
+        let names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+        let info =
+            vk::InstanceCreateInfo::default().application_info(&application).enabled_extension_names(&names);
         // SAFETY: the loader's initialisers are safe to run; the info outlives the call, and the entry the instance.
         unsafe {
             let entry = ash::Entry::load()?;
-            Ok(Self { raw: entry.create_instance(&info, None)?, _entry: entry })
+            Ok(Self { raw: entry.create_instance(&info, None)?, entry })
         }
     }
 }
@@ -63,6 +75,19 @@ impl<'a> Gpu<'a> {
     /// # Errors
     /// Where there is no device that draws and computes.
     pub fn new(instance: &'a ash::Instance) -> Result<Self> {
+        Self::with(instance, &[], |_, _| true)
+    }
+
+    /// Makes the first device with a queue that draws, computes and `fits`, which is given the device and the queue's family; with
+    /// extensions, such as that which presents to a window.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn with(
+        instance: &'a ash::Instance,
+        extensions: &[&CStr],
+        fits: impl Fn(vk::PhysicalDevice, u32) -> bool,
+    ) -> Result<Self> {
         let needed = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
         // SAFETY: the instance is alive for 'a; what infos point to outlives the calls.
         unsafe {
@@ -71,13 +96,17 @@ impl<'a> Gpu<'a> {
                 .into_iter()
                 .find_map(|device| {
                     let families = instance.get_physical_device_queue_family_properties(device);
-                    let family = families.iter().position(|family| family.queue_flags.contains(needed))?;
-                    Some((device, family as u32))
+                    let does = |index: &u32| {
+                        families[*index as usize].queue_flags.contains(needed) && fits(device, *index)
+                    };
+                    Some((device, (0..families.len() as u32).find(does)?))
                 })
-                .ok_or("no Vulkan device draws and computes on one queue")?;
+                .ok_or("no Vulkan device does on one queue all that is asked for")?;
             let queues =
                 [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-            let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
+            let names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
+            let info =
+                vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_extension_names(&names);
             let device = instance.create_device(physical_device, &info, None)?;
             let queue = device.get_device_queue(family, 0);
             Ok(Self { instance, physical_device, device, queue, family })
@@ -180,6 +209,18 @@ impl<'a> Gpu<'a> {
             Ok(image)
         }
     }
+
+    /// A shader, which whoever asks for it destroys.
+    ///
+    /// # Errors
+    /// Where memory is out.
+    pub fn shader_module(&self, spirv: &[u8]) -> Result<vk::ShaderModule> {
+        let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
+        let words: Vec<u32> = spirv.chunks_exact(4).map(word).collect();
+        let info = vk::ShaderModuleCreateInfo::default().code(&words);
+        // SAFETY: the device is alive, and the words outlive the call.
+        Ok(unsafe { self.device.create_shader_module(&info, None) }?)
+    }
 }
 
 impl Drop for Gpu<'_> {
@@ -261,6 +302,15 @@ impl Drop for Image<'_> {
     }
 }
 
+/// What the commands of a frame wait for, and what they say when they are done, beside their fence; nothing by default.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Semaphores {
+    /// What is waited for, and the stage that does.
+    pub wait: Option<(vk::Semaphore, vk::PipelineStageFlags)>,
+    /// What is signalled.
+    pub signal: Option<vk::Semaphore>,
+}
+
 /// Command buffers and fences of the frames in flight.
 pub struct Frames<'a> {
     gpu: &'a Gpu<'a>,
@@ -300,6 +350,17 @@ impl<'a> Frames<'a> {
     /// # Errors
     /// Those of `record`, and of the device.
     pub fn submit(&mut self, record: impl FnOnce(usize, vk::CommandBuffer) -> Result<()>) -> Result<()> {
+        self.submit_with(|place, commands| record(place, commands).map(|()| Semaphores::default()))
+    }
+
+    /// Likewise with the semaphores that `record` returns.
+    ///
+    /// # Errors
+    /// As [`Frames::submit`].
+    pub fn submit_with(
+        &mut self,
+        record: impl FnOnce(usize, vk::CommandBuffer) -> Result<Semaphores>,
+    ) -> Result<()> {
         let device = &self.gpu.device;
         let place = self.next;
         let (commands, fence) = self.slots[place];
@@ -308,15 +369,24 @@ impl<'a> Frames<'a> {
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
             device.begin_command_buffer(commands, &begin)?;
-            if let Err(error) = record(place, commands) {
-                // What was begun cannot be begun again before it is reset
-                device.reset_command_buffer(commands, vk::CommandBufferResetFlags::empty())?;
-                return Err(error);
-            }
+            let semaphores = match record(place, commands) {
+                Ok(semaphores) => semaphores,
+                Err(error) => {
+                    // What was begun cannot be begun again before it is reset
+                    device.reset_command_buffer(commands, vk::CommandBufferResetFlags::empty())?;
+                    return Err(error);
+                }
+            };
             device.end_command_buffer(commands)?;
             device.reset_fences(&[fence])?;
             let buffers = [commands];
-            let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+            let (waits, stages): (Vec<_>, Vec<_>) = semaphores.wait.into_iter().unzip();
+            let signals: Vec<_> = semaphores.signal.into_iter().collect();
+            let submit = [vk::SubmitInfo::default()
+                .command_buffers(&buffers)
+                .wait_semaphores(&waits)
+                .wait_dst_stage_mask(&stages)
+                .signal_semaphores(&signals)];
             if let Err(error) = device.queue_submit(self.gpu.queue, &submit, fence) {
                 // Nobody would signal the fence; what waits for it next must not wait for ever
                 device.destroy_fence(fence, None);

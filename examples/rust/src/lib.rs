@@ -8,6 +8,12 @@
 //! cargo run --release -p arealight-examples --bin forward -- forward.png
 //! ```
 //!
+//! The deferred one has a window too, with the feature `window`:
+//!
+//! ```sh
+//! cargo run --release -p arealight-examples --features window --bin deferred
+//! ```
+//!
 //! Both make the same picture. What is theirs alone is in [`deferred`] and [`forward`]; what every Vulkan engine has
 //! is in [`gpu`] and [`draw`].
 
@@ -15,9 +21,14 @@ pub mod command_line;
 pub mod deferred;
 pub mod draw;
 pub mod forward;
+pub mod g_buffer;
 pub mod gpu;
 pub mod picture;
 pub mod scene;
+pub mod swapchain;
+pub mod tone_map;
+#[cfg(feature = "window")]
+pub mod window;
 
 /// What can fail; an engine would have a type of its own.
 pub type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;

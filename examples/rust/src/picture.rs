@@ -17,17 +17,21 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Writes a PNG: brightness is compressed (Reinhard) and encoded as sRGB.
-    ///
-    /// # Errors
-    /// Where the file cannot be written.
-    pub fn save(&self, path: &Path) -> Result<()> {
+    /// Red, green and blue as a screen takes them: brightness is compressed (Reinhard) and encoded as sRGB. `tone_map.comp` does so too.
+    pub fn encoded(&self) -> Vec<u8> {
         let encode = |pixel: &Vec4| {
             let shown = pixel.truncate() / (Vec3::ONE + pixel.truncate());
             shown.to_array().map(|value| (255.0 * srgb(value) + 0.5) as u8)
         };
-        let bytes: Vec<u8> = self.pixels.iter().flat_map(encode).collect();
-        Ok(image::save_buffer(path, &bytes, self.size[0], self.size[1], image::ColorType::Rgb8)?)
+        self.pixels.iter().flat_map(encode).collect()
+    }
+
+    /// Writes a PNG of it [as a screen takes it](Self::encoded).
+    ///
+    /// # Errors
+    /// Where the file cannot be written.
+    pub fn save(&self, path: &Path) -> Result<()> {
+        Ok(image::save_buffer(path, &self.encoded(), self.size[0], self.size[1], image::ColorType::Rgb8)?)
     }
 }
 

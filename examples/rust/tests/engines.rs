@@ -56,6 +56,17 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
         let apart = difference(a, b);
         assert!(apart > 10.0 * TOLERANCE, "{apart:e} apart");
     }
+
+    // Neither do other sizes, larger and smaller, with frames of the size before in flight
+    let mut of_size = |size| {
+        deferred.resize(size).unwrap();
+        deferred.frame(0.5).unwrap();
+        deferred.picture().unwrap()
+    };
+    let (large, small) = (of_size([136, 120]), of_size([24, 40]));
+    assert_eq!((large.pixels.len(), small.pixels.len()), (136 * 120, 24 * 40));
+    assert!(small.pixels != first.pixels[..small.pixels.len()], "it is another picture");
+    assert!(of_size(SIZE) == first);
 }
 
 #[test]

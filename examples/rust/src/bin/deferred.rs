@@ -1,18 +1,31 @@
-//! Draws some frames by the deferred engine, and keeps the last as a PNG.
+//! Draws some frames by the deferred engine, and keeps the last as a PNG; or shows them in a window, where there is one
+//! (with the feature `window`, and no picture asked for).
 
-use arealight_examples::command_line::{CommandLine, FRAMES};
+use arealight_examples::command_line::CommandLine;
 use arealight_examples::deferred::Deferred;
 use arealight_examples::gpu::{Gpu, Instance};
 
 fn main() -> arealight_examples::Result<()> {
-    let wanted = CommandLine::parse("deferred.png", std::env::args().skip(1))?;
+    let wanted = CommandLine::parse(std::env::args().skip(1))?;
+    #[cfg(feature = "window")]
+    if wanted.path.is_none() {
+        use arealight_examples::window::{Shown, show};
+        match show(wanted.size, wanted.frames)? {
+            Shown::Frames(count) => {
+                println!("{count} frames were shown");
+                return Ok(());
+            }
+            Shown::Nowhere(why) => eprintln!("There is no window ({why}): a picture is saved instead"),
+        }
+    }
     let instance = Instance::new()?;
     let gpu = Gpu::new(&instance)?;
     let mut engine = Deferred::new(&gpu, wanted.size)?;
-    for frame in 0..FRAMES {
-        engine.frame(f64::from(frame) / 30.0)?;
+    for seconds in wanted.times() {
+        engine.frame(seconds)?;
     }
-    engine.picture()?.save(&wanted.path)?;
-    println!("{}", wanted.path.display());
+    let path = wanted.path_or("deferred.png");
+    engine.picture()?.save(&path)?;
+    println!("{}", path.display());
     Ok(())
 }

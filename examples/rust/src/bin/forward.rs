@@ -1,18 +1,19 @@
 //! Draws some frames by the forward engine, and keeps the last as a PNG.
 
-use arealight_examples::command_line::{CommandLine, FRAMES};
+use arealight_examples::command_line::CommandLine;
 use arealight_examples::forward::Forward;
 use arealight_examples::gpu::{Gpu, Instance};
 
 fn main() -> arealight_examples::Result<()> {
-    let wanted = CommandLine::parse("forward.png", std::env::args().skip(1))?;
+    let wanted = CommandLine::parse(std::env::args().skip(1))?;
     let instance = Instance::new()?;
     let gpu = Gpu::new(&instance)?;
     let mut engine = Forward::new(&gpu, wanted.size)?;
-    for frame in 0..FRAMES {
-        engine.frame(f64::from(frame) / 30.0)?;
+    for seconds in wanted.times() {
+        engine.frame(seconds)?;
     }
-    engine.picture()?.save(&wanted.path)?;
-    println!("{}", wanted.path.display());
+    let path = wanted.path_or("forward.png");
+    engine.picture()?.save(&path)?;
+    println!("{}", path.display());
     Ok(())
 }
