@@ -69,8 +69,9 @@ pub const NO_LIGHT: ArealightLight = ArealightLight {
     radiance: [1.0; 3],
     two_sided: 0,
     hole_vertex_counts: null(),
+    face_vertex_counts: null(),
     hole_count: 0,
-    reserved: 0,
+    face_count: 0,
 };
 
 /// A light of constant radiance, whose vertices it points to.

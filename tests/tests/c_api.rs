@@ -219,7 +219,7 @@ fn lights_that_cannot_be_shaded_are_named() {
 }
 
 #[test]
-fn holes_that_cannot_be_cut_are_named() {
+fn holes_and_faces_that_cannot_be_are_named() {
     use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight};
     let Some(engine) = TestEngine::new() else { return };
     let library = CLibrary::new(&engine);
@@ -227,6 +227,14 @@ fn holes_that_cannot_be_cut_are_named() {
     let mut arrays = NO_ARRAYS;
     let (three, both) = (3_u32, [TRIANGLE, TRIANGLE.map(|number| number + 2.0)].concat());
     let outside = ArealightLight { vertices: both.as_ptr(), ..light() };
+    let (threes, coordinates, nine) = ([3, 3], [CORNERS; 2].concat(), [TRIANGLE; 3].concat());
+    let mesh = |counts| ArealightLight {
+        vertices: both.as_ptr(),
+        vertex_count: 6,
+        face_vertex_counts: counts,
+        face_count: 2,
+        ..light()
+    };
     let inside = [TRIANGLE, [0.1, 0.1, 0.0, 0.4, 0.1, 0.0, 0.1, 0.4, 0.0]].concat();
     for (wrong, result, words) in [
         (ArealightLight { hole_count: 1, ..light() }, ErrorArgument, "lights[0].hole_vertex_counts: is null"),
@@ -234,16 +242,6 @@ fn holes_that_cannot_be_cut_are_named() {
             ArealightLight { hole_vertex_counts: &raw const three, hole_count: 1, ..outside },
             ErrorLight,
             "light 'lamp': holes[0]: vertices[0]",
-        ),
-        (
-            ArealightLight {
-                hole_vertex_counts: &raw const three,
-                hole_count: 1,
-                texture_coordinates: CORNERS.as_ptr(),
-                ..outside
-            },
-            ErrorArgument,
-            "lights[0].hole_count: a light with texture coordinates has no holes",
         ),
         (
             ArealightLight {
@@ -255,6 +253,45 @@ fn holes_that_cannot_be_cut_are_named() {
             ErrorEffects,
             "light 'lamp' calls for the effects: polygon",
         ),
+        // With an image too, whose coordinates are the outline's alone
+        (
+            ArealightLight {
+                vertices: inside.as_ptr(),
+                texture_coordinates: CORNERS.as_ptr(),
+                hole_vertex_counts: &raw const three,
+                hole_count: 1,
+                ..light()
+            },
+            ErrorEffects,
+            "light 'lamp' calls for the effects: polygon, textured",
+        ),
+        (ArealightLight { face_count: 2, ..light() }, ErrorArgument, "lights[0].face_vertex_counts: is null"),
+        (
+            ArealightLight { face_count: 2, ..mesh([4, 2].as_ptr()) },
+            ErrorLight,
+            "light 'lamp': faces[1]: 2 vertices, a face has at least 3",
+        ),
+        (
+            ArealightLight { face_count: 1, ..mesh(&raw const three) },
+            ErrorLight,
+            "light 'lamp': faces: 3 vertices in all, but the light has 6",
+        ),
+        (
+            ArealightLight { texture_coordinates: coordinates.as_ptr(), ..mesh(threes.as_ptr()) },
+            ErrorLight,
+            "light 'lamp': texture: a mesh shows no image",
+        ),
+        (
+            ArealightLight {
+                vertices: nine.as_ptr(),
+                hole_vertex_counts: &raw const three,
+                hole_count: 1,
+                ..mesh(threes.as_ptr())
+            },
+            ErrorLight,
+            "light 'lamp': holes[0]: the light has several faces",
+        ),
+        (mesh(threes.as_ptr()), ErrorEffects, "light 'lamp' calls for the effects: polygon, mesh"),
     ] {
         refused(pack(pass, &wrong, &mut arrays), result, words);
     }

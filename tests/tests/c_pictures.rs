@@ -1,15 +1,16 @@
-//! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, and a G-buffer of the
-//! host's own, with a table whose first upload was never run.
+//! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, of several faces, and a G-buffer of
+//! the host's own, with a table whose first upload was never run.
 
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightTexture, PolygonLight, TexturePart, Wrap};
 use arealight_capi::{
-    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_WRAP_MIRROR,
-    ArealightImage, ArealightLight, ArealightMemory, ArealightResult, ArealightSetLayout,
-    ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup, ArealightTextureUpdate,
-    ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights, arealight_textures_create,
-    arealight_textures_destroy, arealight_textures_image, arealight_textures_needs, arealight_textures_setup,
-    arealight_textures_update, arealight_textures_write_source_set,
+    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_TEXTURED,
+    AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight, ArealightMemory, ArealightResult,
+    ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
+    ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights,
+    arealight_textures_create, arealight_textures_destroy, arealight_textures_image,
+    arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
+    arealight_textures_write_source_set,
 };
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
@@ -44,37 +45,55 @@ fn corners(low: [f64; 2], size: f64, height: f64) -> Vec<DVec3> {
 
 const SCREEN: [[f64; 2]; 4] = [[0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, 0.0]];
 
-/// A window, a screen that shows a layer, and a frame around a hole of some size.
-fn lights(hole: f64) -> Result<Vec<PolygonLight>, arealight::LightError> {
+/// The sizes of the holes of the frame and of the screen.
+const HOLES: [f64; 2] = [1.0, 0.25];
+
+/// A bent strip of two faces: a square that looks down, and a triangle that hangs from its end.
+fn strip() -> [Vec<DVec3>; 2] {
+    let mut square = corners([1.0, 1.0], 0.75, 2.0);
+    square.reverse();
+    let [a, b] = [DVec3::new(1.75, 1.75, 2.0), DVec3::new(1.0, 1.75, 2.0)];
+    [square, vec![a, b, DVec3::new(1.375, 2.25, 1.25)]]
+}
+
+/// A window, a screen that shows a layer around a hole, a frame around another, and a strip.
+fn lights([frame_hole, screen_hole]: [f64; 2]) -> Result<Vec<PolygonLight>, arealight::LightError> {
     let window = PolygonLight { name: "window".into(), ..lamp() };
-    let screen = PolygonLight {
+    let mut screen = PolygonLight {
         name: "screen".into(),
         vertices: corners([0.5, -0.5], 1.0, 1.0),
         texture: Some(LightTexture { layer: 1, uvs: SCREEN.map(DVec2::from_array).to_vec() }),
         ..lamp()
     };
+    screen.cut_holes(&[corners([0.75, -0.25], screen_hole, 1.0)])?;
     let mut frame =
         PolygonLight { name: "frame".into(), vertices: corners([-2.0, -2.0], 1.5, 1.5), ..lamp() };
-    frame.cut_holes(&[corners([-1.75, -1.75], hole, 1.5)])?;
-    Ok(vec![window, screen, frame])
+    frame.cut_holes(&[corners([-1.75, -1.75], frame_hole, 1.5)])?;
+    let mut bent = PolygonLight { name: "strip".into(), vertices: vec![], ..lamp() };
+    for face in strip() {
+        bent.add_face(&face);
+    }
+    Ok(vec![window, screen, frame, bent])
 }
 
 /// The same as a host in C has them: what each points to, and the lights.
 struct CLights {
-    _vertices: [Vec<DVec3>; 3],
+    _vertices: [Vec<DVec3>; 4],
     _hole: Box<u32>,
-    lights: [ArealightLight; 3],
+    faces: Box<[u32; 2]>,
+    lights: [ArealightLight; 4],
 }
 
 impl CLights {
-    fn new(hole: f64) -> Self {
+    fn new([frame_hole, screen_hole]: [f64; 2]) -> Self {
         let vertices = [
             lamp().vertices,
-            corners([0.5, -0.5], 1.0, 1.0),
-            [corners([-2.0, -2.0], 1.5, 1.5), corners([-1.75, -1.75], hole, 1.5)].concat(),
+            [corners([0.5, -0.5], 1.0, 1.0), corners([0.75, -0.25], screen_hole, 1.0)].concat(),
+            [corners([-2.0, -2.0], 1.5, 1.5), corners([-1.75, -1.75], frame_hole, 1.5)].concat(),
+            strip().concat(),
         ];
-        let hole = Box::new(4);
-        let mut lights = [0, 1, 2].map(|index: usize| ArealightLight {
+        let (hole, faces) = (Box::new(4), Box::new([4, 3]));
+        let mut lights = [0, 1, 2, 3].map(|index: usize| ArealightLight {
             vertices: vertices[index].as_ptr().cast(),
             vertex_count: 4,
             radiance: lamp().radiance.to_array(),
@@ -82,9 +101,13 @@ impl CLights {
         });
         lights[1].texture_coordinates = SCREEN.as_ptr().cast();
         lights[1].texture_layer = 1;
-        lights[2].hole_vertex_counts = &raw const *hole;
-        lights[2].hole_count = 1;
-        Self { _vertices: vertices, _hole: hole, lights }
+        for light in &mut lights[1..3] {
+            light.hole_vertex_counts = &raw const *hole;
+            light.hole_count = 1;
+        }
+        (lights[3].vertex_count, lights[3].face_count) = (7, 2);
+        lights[3].face_vertex_counts = faces.as_ptr();
+        Self { _vertices: vertices, _hole: hole, faces, lights }
     }
 }
 
@@ -242,7 +265,7 @@ fn source(engine: &TestEngine, texels: &[[u8; 4]]) -> Image {
 }
 
 #[test]
-fn c_shades_images_and_holes_as_rust_does_to_the_last_bit() {
+fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     let Some(mut engine) = TestEngine::new() else { return };
     let shown = SourceImage { size: SIZE, texels: SourceTexels::Srgb(&texels()), part: part() };
     let size = arealight::PyramidSize::new(64, 128).unwrap();
@@ -253,10 +276,10 @@ fn c_shades_images_and_holes_as_rust_does_to_the_last_bit() {
     };
     engine.load_textures(size, &[black, shown]).unwrap();
     let engine = engine;
-    let effects = Effects::DIFFUSE | Effects::TEXTURED | Effects::POLYGON;
+    let effects = Effects::DIFFUSE | Effects::TEXTURED | Effects::POLYGON | Effects::MESH;
     let options = ShadeOptions { effects, ..one_pixel::options() };
     let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
-    let rust = pixel.shade(options, &lights(1.0).unwrap(), CAMERA, None);
+    let rust = pixel.shade(options, &lights(HOLES).unwrap(), CAMERA, None);
 
     // In C: the table by commands that are recorded again, because the first were never run
     let library = CLibrary::new(&engine);
@@ -273,30 +296,35 @@ fn c_shades_images_and_holes_as_rust_does_to_the_last_bit() {
     refused(refusal, ArealightResult::ErrorArgument, words);
     library.upload(&memory);
 
-    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_POLYGON);
+    let called_for = AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_MESH;
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE | called_for);
     let textures = CTextures::new(&engine, &library);
-    let shade = |hole| library.shade(pass, &pixel, &CLights::new(hole).lights, textures.image(), CAMERA);
-    let dark = shade(1.0);
+    let shade_all = |lights: &CLights| library.shade(pass, &pixel, &lights.lights, textures.image(), CAMERA);
+    let shade = |holes| shade_all(&CLights::new(holes));
+    let dark = shade(HOLES);
     textures.update(&source(&engine, &texels()));
-    let c = shade(1.0);
+    let c = shade(HOLES);
     assert_eq!(c, rust);
     assert!(c.min_element() > 0.05 && c.is_finite(), "{c}");
 
-    // The twins: before the image was loaded, with another one, and with another hole
+    // The twins: before the image was loaded, with another one, with other holes, and with faces shared out otherwise
     assert!((dark - c).truncate().max_element() < 0.0, "{dark} {c}");
-    assert!(shade(0.99) != c);
+    assert!(shade([0.99, HOLES[1]]) != c && shade([HOLES[0], 0.24]) != c);
+    let mut shared = CLights::new(HOLES);
+    *shared.faces = [3, 4];
+    assert!(shade_all(&shared) != c);
     let mut others = texels();
     others[7][1] ^= 0x40;
     textures.update(&source(&engine, &others));
-    assert!(shade(1.0) != c);
+    assert!(shade(HOLES) != c);
 
     // A layer that is not there
-    let mut beyond = CLights::new(1.0).lights;
+    let mut beyond = CLights::new(HOLES);
     // SAFETY: the lights are as they say.
-    good(unsafe { arealight_textures_check_lights(textures.raw, beyond.as_ptr(), 2) });
-    beyond[1].texture_layer = 2;
+    good(unsafe { arealight_textures_check_lights(textures.raw, beyond.lights.as_ptr(), 2) });
+    beyond.lights[1].texture_layer = 2;
     // SAFETY: as above.
-    let result = unsafe { arealight_textures_check_lights(textures.raw, beyond.as_ptr(), 2) };
+    let result = unsafe { arealight_textures_check_lights(textures.raw, beyond.lights.as_ptr(), 2) };
     refused(result, ArealightResult::ErrorLight, "light 'lights[1]'");
     // SAFETY: nothing is pending.
     good(unsafe { arealight_pass_destroy(pass) });

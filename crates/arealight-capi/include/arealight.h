@@ -53,7 +53,7 @@
 // Some light is a cylinder or a capsule.
 #define AREALIGHT_EFFECT_TUBE 1024
 
-// Some light has several faces, which no ArealightLight has.
+// Some light has several faces: a mesh.
 #define AREALIGHT_EFFECT_MESH 2048
 
 // Every effect: right for any lights, at the highest cost.
@@ -281,16 +281,17 @@ typedef struct ArealightUpload {
     void *command_buffer;
 } ArealightUpload;
 
-// A flat polygon that emits constant radiance, or shows an image. Convex or concave, without crossing edges.
+// A flat polygon that emits constant radiance, or shows an image; or several that are one light, a mesh. Convex or concave, without
+// crossing edges.
 typedef struct ArealightLight {
     // For messages, UTF-8; may be null.
     const char *name;
     // World positions, three numbers a vertex: seen from the front, counter-clockwise.
     const double *vertices;
-    // Null, or two texture coordinates a vertex, in [0, 1], an affine function of the positions: the light shows
+    // Null, or two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions: the light shows
     // `texture_layer` of the light textures.
     const double *texture_coordinates;
-    // From 3 on.
+    // From 3 on: of the outline, or of all faces.
     uint32_t vertex_count;
     // Read only with texture coordinates.
     uint32_t texture_layer;
@@ -299,12 +300,16 @@ typedef struct ArealightLight {
     // 1: the back emits too.
     uint32_t two_sided;
     // Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    // in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON, and has no texture coordinates.
+    // in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON.
     const uint32_t *hole_vertex_counts;
+    // Null, or how many vertices each face of a mesh has, `vertex_count` together: faces follow one another in `vertices`, each an
+    // outline of its own, such as the three of a triangle. What a face hides of another is added all the same. A mesh needs
+    // AREALIGHT_EFFECT_POLYGON and AREALIGHT_EFFECT_MESH, and has neither holes nor texture coordinates.
+    const uint32_t *face_vertex_counts;
     // How many holes.
     uint32_t hole_count;
-    // 0
-    uint32_t reserved;
+    // How many faces; 0 and 1 are one polygon.
+    uint32_t face_count;
 } ArealightLight;
 
 // Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
@@ -774,7 +779,7 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, combined_image_samplers) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 64);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, vertices) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightLight, texture_coordinates) == 16);
@@ -783,8 +788,9 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, texture_layer) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightLight, radiance) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 44);
 AREALIGHT_ASSERT(offsetof(ArealightLight, hole_vertex_counts) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightLight, face_vertex_counts) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightLight, face_count) == 68);
 AREALIGHT_ASSERT(sizeof(ArealightShape) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightShape, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShape, kind) == 8);

@@ -156,26 +156,23 @@ pub(crate) unsafe fn read_lights(lights: &[ArealightLight]) -> Result<Vec<Polygo
 unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<PolygonLight, Failure> {
     let count = light.vertex_count as usize;
     let field = |name| format!("lights[{index}].{name}");
-    // SAFETY: the same contract, for all four.
-    let (name, hole_counts, vertices, coordinates) = unsafe {
+    // SAFETY: the same contract, for all five.
+    let (name, hole_counts, face_counts, vertices, coordinates) = unsafe {
         let name = read_name(light.name, format!("lights[{index}]"));
-        let counts = light.hole_vertex_counts;
-        let counts = arguments::array(counts, light.hole_count as usize, &field("hole_vertex_counts"))?;
-        let all = counts.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
+        let counts = |counts, number: u32, name| arguments::array(counts, number as usize, &field(name));
+        let holes = counts(light.hole_vertex_counts, light.hole_count, "hole_vertex_counts")?;
+        let faces = counts(light.face_vertex_counts, light.face_count, "face_vertex_counts")?;
+        let all = holes.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
         let vertices = arguments::array(light.vertices, all.saturating_mul(3), &field("vertices"))?;
         let uvs = light.texture_coordinates;
         let uvs = (!uvs.is_null()).then(|| arguments::array(uvs, 2 * count, &field("texture_coordinates")));
-        (name, counts, vertices, uvs.transpose()?)
+        (name, holes, faces, vertices, uvs.transpose()?)
     };
-    if coordinates.is_some() && !hole_counts.is_empty() {
-        let message = format!("{}: a light with texture coordinates has no holes", field("hole_count"));
-        return Err(Failure::argument(message));
-    }
     let mut vertices = vertices.chunks_exact(3).map(DVec3::from_slice);
     let mut made = PolygonLight {
         name,
         vertices: vertices.by_ref().take(count).collect(),
-        faces: Vec::new(),
+        faces: face_counts.to_vec(),
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
         texture: coordinates.map(|uvs| LightTexture {

@@ -25,7 +25,7 @@ pub const AREALIGHT_EFFECT_ELLIPSE: u32 = 256;
 pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
 /// Some light is a cylinder or a capsule.
 pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
-/// Some light has several faces, which no ArealightLight has.
+/// Some light has several faces: a mesh.
 pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
 /// Every effect: right for any lights, at the highest cost.
 pub const AREALIGHT_EFFECTS_ALL: u32 = 3967;
@@ -250,7 +250,8 @@ pub struct ArealightSetLayout {
     pub storage_buffers: u32,
 }
 
-/// A flat polygon that emits constant radiance, or shows an image. Convex or concave, without crossing edges.
+/// A flat polygon that emits constant radiance, or shows an image; or several that are one light, a mesh. Convex or concave, without
+/// crossing edges.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightLight {
@@ -258,10 +259,10 @@ pub struct ArealightLight {
     pub name: *const c_char,
     /// World positions, three numbers a vertex: seen from the front, counter-clockwise.
     pub vertices: *const f64,
-    /// Null, or two texture coordinates a vertex, in [0, 1], an affine function of the positions: the light shows
+    /// Null, or two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions: the light shows
     /// `texture_layer` of the light textures.
     pub texture_coordinates: *const f64,
-    /// From 3 on.
+    /// From 3 on: of the outline, or of all faces.
     pub vertex_count: u32,
     /// Read only with texture coordinates.
     pub texture_layer: u32,
@@ -270,12 +271,16 @@ pub struct ArealightLight {
     /// 1: the back emits too.
     pub two_sided: u32,
     /// Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    /// in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON, and has no texture coordinates.
+    /// in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON.
     pub hole_vertex_counts: *const u32,
+    /// Null, or how many vertices each face of a mesh has, `vertex_count` together: faces follow one another in `vertices`, each an
+    /// outline of its own, such as the three of a triangle. What a face hides of another is added all the same. A mesh needs
+    /// AREALIGHT_EFFECT_POLYGON and AREALIGHT_EFFECT_MESH, and has neither holes nor texture coordinates.
+    pub face_vertex_counts: *const u32,
     /// How many holes.
     pub hole_count: u32,
-    /// 0
-    pub reserved: u32,
+    /// How many faces; 0 and 1 are one polygon.
+    pub face_count: u32,
 }
 
 /// A disk, sphere or tube of constant radiance, in world positions.
