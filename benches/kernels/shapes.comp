@@ -70,7 +70,8 @@ float lobe_of(ShapeArguments given, bool sphere) {
                                                 AREALIGHT_FOOTPRINT_ROUND);
     float radius = sphere ? given.b.x : length(given.b.xyz) + length(given.c.xyz);
     ArealightShape shape = ArealightShape(sphere ? AREALIGHT_SHAPE_SPHERE : AREALIGHT_SHAPE_ELLIPSE, vec3(1.0),
-                                          given.a.xyz, given.b.xyz, given.c.xyz, radius, AREALIGHT_TUBE_OPEN, true);
+                                          given.a.xyz, given.b.xyz, given.c.xyz, radius, AREALIGHT_TUBE_OPEN, true,
+                                          AREALIGHT_NO_IMAGE);
     ArealightSeenShape seen = arealight_see_shape(vec3(0.0), shape, 0xffffffffu);
     return arealight_lobe_shape(lobe, vec3(0.0, 0.0, 1.0), seen, shape, false, 0xffffffffu, quality).x;
 }

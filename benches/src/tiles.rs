@@ -162,7 +162,13 @@ pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLi
         let radius = 0.4 * step;
         // x cross z is down
         let shape = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
-        ShapeLight { name: format!("disk {index}"), radiance: Vec3::splat(10.0), two_sided: false, shape }
+        ShapeLight {
+            name: format!("disk {index}"),
+            radiance: Vec3::splat(10.0),
+            two_sided: false,
+            texture: None,
+            shape,
+        }
     };
     (0..count).map(disk).collect()
 }

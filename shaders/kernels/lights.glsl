@@ -4,7 +4,7 @@
 // The light buffers as the library sees them. The including kernel defines LIGHTS_BINDING (the vertices are at
 // the binding after it) and LIGHT_TEXTURES_BINDING.
 
-#define AREALIGHT_LIGHT_TEXTURES 1
+#include "light_textures.glsl"
 #define AREALIGHT_LIGHT_MESHES 1
 #include "arealight/polygon_light.glsl"
 #include "buffers.glsl"
@@ -19,22 +19,12 @@ layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVerti
     vec4 light_vertices[];
 };
 
-layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform sampler2DArray light_textures;
-
 vec3 arealight_bridge_vertex(uint index) {
     return light_vertices[index].xyz;
 }
 
 uint arealight_bridge_face_size(uint index) {
     return uint(light_vertices[index].w);
-}
-
-vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
-    return textureLod(light_textures, vec3(coordinate, float(layer)), level).rgb;
-}
-
-ivec2 arealight_bridge_light_texture_size() {
-    return textureSize(light_textures, 0).xy;
 }
 
 ArealightPolygonLight load_light(uint index) {

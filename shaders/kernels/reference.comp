@@ -222,11 +222,15 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightShape s
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
     if (drawn.density > 0.0 && towards.z > 0.0) {
-        sum += evaluate(lobes, towards) / (drawn.density + density(lobes, towards));
+        vec3 color = shape_color(shape, lobes.position, drawn.offset);
+        sum += color * evaluate(lobes, towards) / (drawn.density + density(lobes, towards));
     }
     if (by_brdf > 0.0) {
-        float by_light = ray_shape_density(shape, lobes.position, direction * lobes.to_surface);
-        sum += by_light > 0.0 ? evaluate(lobes, direction) / (by_light + by_brdf) : vec3(0.0);
+        vec3 ray = direction * lobes.to_surface;
+        float by_light = ray_shape_density(shape, lobes.position, ray);
+        if (by_light > 0.0) {
+            sum += shape_color(shape, lobes.position, ray) * evaluate(lobes, direction) / (by_light + by_brdf);
+        }
     }
     return shape.radiance * sum;
 }

@@ -12,7 +12,7 @@ struct ArealightGpuShape {
     vec3 center;
     float radius;
     vec3 axis_u;
-    uint ends;
+    uint detail; // of a tube: its ends; of an ellipse: the layer that it shows
     vec3 axis_v;
     uint flags;
 };
@@ -32,7 +32,8 @@ layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
 ArealightShape load_shape(uint index, int kind) {
     ArealightGpuShape record = shapes[index];
     return ArealightShape(kind == SHAPE_ANY ? int(record.kind) : kind, record.radiance, record.center, record.axis_u,
-                          record.axis_v, record.radius, int(record.ends), (record.flags & SHAPE_TWO_SIDED) != 0u);
+                          record.axis_v, record.radius, int(record.detail), (record.flags & SHAPE_TWO_SIDED) != 0u,
+                          record.detail);
 }
 
 #endif

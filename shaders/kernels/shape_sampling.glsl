@@ -184,6 +184,16 @@ float ray_tube_density(ArealightShape shape, vec3 center, vec3 ray) {
     return 0.0;
 }
 
+// What multiplies the radiance of a shape that a ray from the shading point meets: its image, if it shows one. The ray has any length.
+vec3 shape_color(ArealightShape shape, vec3 position, vec3 ray) {
+    if (shape.kind != AREALIGHT_SHAPE_ELLIPSE || shape.image == AREALIGHT_NO_IMAGE) {
+        return vec3(1.0);
+    }
+    vec3 center = shape.center - position;
+    vec3 normal = cross(shape.axis_u, shape.axis_v);
+    return arealight_image_color(arealight_ellipse_image(shape), ray * (dot(normal, center) / dot(normal, ray)) - center);
+}
+
 float ray_shape_density(ArealightShape shape, vec3 position, vec3 ray) {
     vec3 center = shape.center - position;
     if (shape.kind == AREALIGHT_SHAPE_TUBE) {

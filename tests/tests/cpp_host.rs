@@ -103,6 +103,7 @@ fn lamp() -> ShapeLight {
         name: "lamp".into(),
         radiance: Vec3::new(8.0, 6.0, 2.0),
         two_sided: false,
+        texture: None,
         shape: Shape::Sphere { center: DVec3::new(996.0, 0.5, -2007.0), radius: 0.3 },
     }
 }

@@ -218,7 +218,13 @@ fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
         meshes.push(EvalPoint { light, ..point(surface, view, Vec::new(), false) });
         for radius in [radius * inner, radius] {
             let shape = Shape::Sphere { center, radius };
-            let light = ShapeLight { name: "sphere".into(), radiance: Vec3::ONE, two_sided: false, shape };
+            let light = ShapeLight {
+                name: "sphere".into(),
+                radiance: Vec3::ONE,
+                two_sided: false,
+                texture: None,
+                shape,
+            };
             spheres.push(ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light });
         }
     }

@@ -46,6 +46,7 @@ fn shapes() -> Vec<ShapeLight> {
         name: name.into(),
         radiance,
         two_sided,
+        texture: None,
         shape,
     };
     let tube =

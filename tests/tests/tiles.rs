@@ -175,6 +175,7 @@ fn shape_scene(height: f64) -> Scene {
         name: name.to_owned(),
         radiance: Vec3::new(1.0, 0.5, 0.25),
         two_sided: false,
+        texture: None,
         shape,
     };
     let shapes = vec![

@@ -391,6 +391,7 @@ impl Case {
             name: self.name.clone(),
             radiance: self.light.radiance.as_vec3(),
             two_sided: self.light.two_sided,
+            texture: None,
             shape,
         };
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;

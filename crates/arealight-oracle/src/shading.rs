@@ -7,7 +7,7 @@ mod shapes;
 mod shown;
 mod textured;
 
-pub use shapes::{shape_ltc_on, shape_truth};
+pub use shapes::{shape_ltc_on, shape_truth, textured_ellipse};
 pub use shown::ShownImage;
 pub use textured::transformed_image_integral;
 

@@ -157,7 +157,7 @@ fn disk(light: &AreaLight, node: &PlacedNode, name: String) -> Result<ShapeLight
     }
     let (axis_u, axis_v) = (right * radius, front.cross(right) * radius);
     let shape = Shape::Ellipse { center: node.world.translation, axis_u, axis_v };
-    let disk = ShapeLight { name, radiance: radiance(light), two_sided: false, shape };
+    let disk = ShapeLight { name, radiance: radiance(light), two_sided: false, texture: None, shape };
     disk.validate().map_err(|e| e.to_string())?;
     Ok(disk)
 }

@@ -45,6 +45,7 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::SPHERE),
         light(Effects::TUBE),
         light(Effects::MESH),
+        light(Effects::TEXTURED_ELLIPSE),
     ];
     calls.into_iter().flatten().collect()
 }

@@ -1,6 +1,6 @@
 //! Emissive geometry to polygon lights.
 
-use crate::light_textures::{self, TexturedLight};
+use crate::light_textures::{self, Owner, TexturedLight};
 use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
@@ -64,7 +64,8 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
         let light = PolygonLight { name, vertices, radiance, two_sided, ..PolygonLight::default() };
         if push(loader, &place, light) {
-            loader.textured.push(TexturedLight { light: loader.scene.lights.len() - 1, texture, uvs });
+            let owner = Owner::Polygon(loader.scene.lights.len() - 1);
+            loader.textured.push(TexturedLight { owner, texture, uvs });
         }
     }
 }

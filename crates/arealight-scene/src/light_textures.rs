@@ -13,7 +13,7 @@ use crate::shown::{Images, Key, Rectangle, Shown};
 use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{LightTexture, PolygonLight, TexturePart};
-use glam::DVec2;
+use glam::{DVec2, Vec3};
 use std::collections::{HashMap, HashSet};
 
 /// The most light textures a scene has; further lights have the mean colour of what they show. As many layers as every
@@ -102,12 +102,37 @@ impl Scene {
 
 /// A light that shows a texture, while the scene is read.
 pub(crate) struct TexturedLight {
-    /// Index into [`Scene::lights`].
-    pub light: usize,
+    /// Which light.
+    pub owner: Owner,
     /// Index into [`Scene::textures`].
     pub texture: u32,
-    /// Of its vertices, in the texture's coordinates.
+    /// Of its vertices, in the texture's coordinates; of a shape those of its box: the first and the last texel's outer corner.
     pub uvs: Vec<DVec2>,
+}
+
+/// A light of a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Owner {
+    /// Index into [`Scene::lights`].
+    Polygon(usize),
+    /// Index into [`Scene::shapes`].
+    Shape(usize),
+}
+
+impl Owner {
+    fn name(self, scene: &Scene) -> &str {
+        match self {
+            Self::Polygon(index) => &scene.lights[index].name,
+            Self::Shape(index) => &scene.shapes[index].name,
+        }
+    }
+
+    fn radiance(self, scene: &mut Scene) -> &mut Vec3 {
+        match self {
+            Self::Polygon(index) => &mut scene.lights[index].radiance,
+            Self::Shape(index) => &mut scene.shapes[index].radiance,
+        }
+    }
 }
 
 /// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be
@@ -125,42 +150,36 @@ pub(crate) fn assign(loader: &mut Loader) {
     let mut images = Images::default();
     let shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
     let mut layers = Layers { whole: shown_in_many_pieces(&shown), ..Layers::default() };
-    let mut is_black = vec![false; scene.lights.len()];
-    let mut losses: Vec<(&str, Vec<usize>)> = Vec::new();
-    for (TexturedLight { light, .. }, shown) in textured.iter().zip(shown) {
+    let mut losses: Vec<(&str, Vec<Owner>)> = Vec::new();
+    for (TexturedLight { owner, .. }, shown) in textured.iter().zip(shown) {
         // Show it, or else its colour
         let (color, loss) = match shown {
             Shown::Color(color) => (color, None),
             Shown::Lost(color, loss) => (color, Some(loss)),
-            Shown::Rectangle(rectangle) => match layers.show(&rectangle, &scene.lights[*light]) {
-                Ok(texture) => {
-                    scene.lights[*light].texture = Some(texture);
-                    continue;
-                }
+            Shown::Rectangle(rectangle) => match layers.show_to(scene, *owner, &rectangle) {
+                Ok(()) => continue,
                 Err(loss) => (rectangle.mean(scene), Some(loss)),
             },
         };
-        let radiance = &mut scene.lights[*light].radiance;
-        *radiance *= color.as_vec3();
-        is_black[*light] = *radiance == glam::Vec3::ZERO;
+        *owner.radiance(scene) *= color.as_vec3();
         if let Some(loss) = loss {
             match losses.iter_mut().find(|(known, _)| *known == loss) {
-                Some((_, lights)) => lights.push(*light),
-                None => losses.push((loss, vec![*light])),
+                Some((_, owners)) => owners.push(*owner),
+                None => losses.push((loss, vec![*owner])),
             }
         }
     }
     scene.light_textures = layers.made;
     scale_down(scene);
     for (loss, lights) in losses {
-        let name = &loader.scene.lights[lights[0]].name;
+        let name = lights[0].name(&loader.scene);
         let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
         let text = format!("emissiveTexture: {loss}: its mean colour is everywhere");
         loader.warn(format!("light '{name}'{more}"), text);
     }
-    // A black light lights nothing
-    let mut is_black = is_black.into_iter();
-    loader.scene.lights.retain(|_| !is_black.next().unwrap_or_default());
+    // A black light lights nothing. None is that shows no texture: its material would not emit
+    loader.scene.lights.retain(|light| light.radiance != Vec3::ZERO);
+    loader.scene.shapes.retain(|shape| shape.radiance != Vec3::ZERO);
 }
 
 /// Textures of which there are more pieces than a few that make up at least half of it.
@@ -216,6 +235,44 @@ struct Layers {
 }
 
 impl Layers {
+    /// Gives a light the texture that shows `rectangle`, or says why there is none.
+    fn show_to(
+        &mut self,
+        scene: &mut Scene,
+        owner: Owner,
+        rectangle: &Rectangle,
+    ) -> Result<(), &'static str> {
+        match owner {
+            Owner::Polygon(index) => {
+                scene.lights[index].texture = Some(self.show(rectangle, &scene.lights[index])?);
+            }
+            Owner::Shape(index) => {
+                // A shape shows the whole of a layer, upright
+                if rectangle.uvs.first() != Some(&rectangle.low) {
+                    return Err("its texture is mirrored");
+                }
+                let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
+                let new = SceneLightTexture { texture: rectangle.texture, low, size };
+                scene.shapes[index].texture = Some(self.layer(rectangle.key(), new)?);
+            }
+        }
+        Ok(())
+    }
+
+    /// The layer of a rectangle that is shown whole: one that is known, or a new one.
+    fn layer(&mut self, key: Key, new: SceneLightTexture) -> Result<u32, &'static str> {
+        if let Some(layer) = self.known.get(&key) {
+            return Ok(*layer);
+        }
+        if self.made.len() == MAX_LIGHT_TEXTURES {
+            return Err("there are too many light textures");
+        }
+        let layer = self.made.len() as u32;
+        self.made.push(new);
+        self.known.insert(key, layer);
+        Ok(layer)
+    }
+
     /// The texture of a light that shows `rectangle`, or why there is none.
     fn show(&mut self, rectangle: &Rectangle, light: &PolygonLight) -> Result<LightTexture, &'static str> {
         // Find the layer, or make one
@@ -225,25 +282,18 @@ impl Layers {
             (low, size) = (DVec2::ZERO, DVec2::ONE);
             key = Key::of(rectangle.texture, low, size);
         }
-        let layer = self.known.get(&key).copied();
+        let known = self.known.get(&key).copied();
         let new = SceneLightTexture { texture: rectangle.texture, low, size };
-        let SceneLightTexture { low, size, .. } = layer.map_or(new, |layer| self.made[layer as usize]);
-        if layer.is_none() && self.made.len() == MAX_LIGHT_TEXTURES {
-            return Err("there are too many light textures");
-        }
+        let SceneLightTexture { low, size, .. } = known.map_or(new, |layer| self.made[layer as usize]);
 
         // Map the light onto it
         let uvs = rectangle.uvs.iter().map(|uv| ((*uv - low) / size).clamp(DVec2::ZERO, DVec2::ONE));
-        let number = layer.unwrap_or(self.made.len() as u32);
-        let texture = LightTexture { layer: number, uvs: uvs.collect() };
+        let mut texture = LightTexture { layer: known.unwrap_or_default(), uvs: uvs.collect() };
         let with_texture = PolygonLight { texture: Some(texture.clone()), ..light.clone() };
         if with_texture.validate().is_err() {
             return Err("its texture cannot be mapped");
         }
-        if layer.is_none() {
-            self.made.push(new);
-            self.known.insert(key, number);
-        }
+        texture.layer = self.layer(key, new)?;
         Ok(texture)
     }
 }

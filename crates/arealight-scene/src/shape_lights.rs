@@ -1,10 +1,12 @@
 //! Emissive meshes that stand for a disk, a sphere or a tube, by a word in their node's `extras`.
 
+use crate::light_textures::{self, Owner, TexturedLight};
 use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
+use crate::uv_map::{UvMap, UvTolerance};
 use arealight::{Shape, ShapeLight, TubeEnds};
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -56,18 +58,31 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
         }
         return true;
     }
-    let (double_sided, textured) = (material.double_sided, material.emission_texture.is_some());
+    let (double_sided, texture) = (material.double_sided, material.emission_texture);
     let shape = Said::deserialize(said).map_err(|error| error.to_string());
-    let shape = shape.and_then(|said| said.placed(&node.world)).and_then(|shape| {
+    let placed = shape.and_then(|said| said.placed(&node.world)).and_then(|shape| match texture {
+        Some(texture) if matches!(shape, Shape::Ellipse { .. }) => {
+            let tolerance = UvTolerance {
+                uv: light_textures::tolerance(&loader.scene, texture),
+                position: instance.rounding,
+            };
+            upright(&shape, instance, tolerance).map(|(shape, uvs)| (shape, Some((texture, uvs))))
+        }
+        _ => Ok((shape, None)),
+    });
+    let shape = placed.and_then(|(shape, image)| {
         // Solids shine outwards, whatever their material says
         let two_sided = double_sided && matches!(shape, Shape::Ellipse { .. });
-        let light = ShapeLight { name: instance.name.clone(), radiance, two_sided, shape };
-        light.validate().map(|()| light).map_err(|error| error.to_string())
+        let light = ShapeLight { name: instance.name.clone(), radiance, two_sided, texture: None, shape };
+        light.validate().map(|()| (light, image)).map_err(|error| error.to_string())
     });
     match shape {
-        Ok(light) => {
-            if textured {
-                loader.warn(place, "its texture is not shown in what it lights: a shape has one colour");
+        Ok((light, image)) => {
+            if let Some((texture, uvs)) = image {
+                let owner = Owner::Shape(loader.scene.shapes.len());
+                loader.textured.push(TexturedLight { owner, texture, uvs: uvs.into() });
+            } else if texture.is_some() {
+                loader.warn(place, "its texture is not shown in what it lights: only disks show images");
             }
             loader.shaped = Some((node.index, radiance));
             loader.scene.shapes.push(light);
@@ -79,6 +94,53 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
         }
     }
 }
+
+/// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture coordinates of the image's box around
+/// it: its first and its last corner. Or why there is none.
+fn upright(
+    shape: &Shape,
+    instance: &Instance,
+    tolerance: UvTolerance,
+) -> Result<(Shape, [DVec2; 2]), String> {
+    let Shape::Ellipse { center, axis_u, axis_v } = *shape else { return Err("it is no disk".into()) };
+    // One map for the whole mesh: that of its largest triangle
+    let corners = |triangle: &[u32; 3]| triangle.map(|index| instance.positions[index as usize]);
+    let uv = |index: u32| instance.uvs[index as usize].as_dvec2();
+    let area = |triangle: &[u32; 3]| {
+        let [a, b, c] = corners(triangle);
+        (b - a).cross(c - a).length_squared()
+    };
+    let largest = instance.triangles.iter().max_by(|a, b| area(a).total_cmp(&area(b)));
+    let largest = largest.ok_or("it has no triangle")?;
+    let map = UvMap::new(corners(largest), largest.map(uv));
+    let agrees = |index: &u32| map.agrees(instance.positions[*index as usize], uv(*index), tolerance);
+    if !instance.triangles.iter().flatten().all(agrees) {
+        return Err("its texture is not laid flat on it".into());
+    }
+    // How u and v rise along both half axes, and along the outline at most
+    let middle = map.at(center);
+    let (along_u, along_v) = (map.at(center + axis_u) - middle, map.at(center + axis_v) - middle);
+    let rise = DVec2::new(along_u.x, along_v.x);
+    let fall = DVec2::new(along_u.y, along_v.y);
+    let reach = DVec2::new(rise.length(), fall.length());
+    // Turn the axes until the first one is along u alone: the other must be against v
+    let Some(turn) = rise.try_normalize() else { return Err("its texture is a line".into()) };
+    if fall.dot(turn).abs() > STRAIGHT * reach.y {
+        return Err("its texture is sheared".into());
+    }
+    if fall.perp_dot(turn) < 0.0 {
+        return Err("its texture is mirrored".into());
+    }
+    let turned = Shape::Ellipse {
+        center,
+        axis_u: axis_u * turn.x + axis_v * turn.y,
+        axis_v: axis_v * turn.x - axis_u * turn.y,
+    };
+    Ok((turned, [middle - reach, middle + reach]))
+}
+
+/// How much u may rise along the axis of v, over what v does: less than a texel of the largest image.
+const STRAIGHT: f64 = 1e-4;
 
 impl Said {
     /// The shape in the world, or why it is none there.

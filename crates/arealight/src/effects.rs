@@ -36,6 +36,9 @@ bitflags::bitflags! {
         /// Some light has several faces ([`PolygonLight::is_mesh`](crate::PolygonLight::is_mesh)). Such a light calls for
         /// [`Effects::POLYGON`], too.
         const MESH = 1 << 11;
+        /// Some disk or ellipse shows an image ([`ShapeLight::texture`](crate::ShapeLight::texture)). Such a light calls for
+        /// [`Effects::ELLIPSE`], too.
+        const TEXTURED_ELLIPSE = 1 << 12;
     }
 }
 
@@ -51,8 +54,14 @@ impl Effects {
     /// Every kind of light that is no polygon.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
 
+    /// What lights that are no polygons may call for, beside two sides.
+    pub const OF_SHAPES: Self = Self::SHAPES.union(Self::TEXTURED_ELLIPSE);
+
     /// What a convex quad without an image never calls for. Such quads are shaded in a loop of their own.
     pub const BEYOND_QUADS: Self = Self::POLYGON.union(Self::TEXTURED).union(Self::MESH);
+
+    /// With any of these the light textures are read.
+    pub const IMAGES: Self = Self::TEXTURED.union(Self::TEXTURED_ELLIPSE);
 
     /// What the surfaces of a frame call for, whatever its lights.
     pub const SURFACES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::SPECULAR_INPUT);
@@ -75,6 +84,7 @@ impl Effects {
             (Self::SPHERE, "sphere"),
             (Self::TUBE, "tube"),
             (Self::MESH, "mesh"),
+            (Self::TEXTURED_ELLIPSE, "textured_ellipse"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -173,6 +183,7 @@ mod tests {
             name: name.into(),
             radiance: Vec3::ONE,
             two_sided,
+            texture: None,
             shape,
         };
         let (center, radius) = (DVec3::ZERO, 1.0);

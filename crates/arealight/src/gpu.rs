@@ -67,8 +67,8 @@ pub struct GpuShape {
     pub radius: f32,
     /// A half axis of an ellipse; of a tube, from the center to one end. Else zero.
     pub axis_u: [f32; 3],
-    /// [`crate::TubeEnds`] of a tube, else zero.
-    pub ends: u32,
+    /// Of a tube [`crate::TubeEnds`]; of an ellipse the layer of the image that it shows, or [`GpuLight::NO_TEXTURE`]; else zero.
+    pub detail: u32,
     /// The other half axis of an ellipse, else zero.
     pub axis_v: [f32; 3],
     /// [`GpuShape::TWO_SIDED`] or zero.

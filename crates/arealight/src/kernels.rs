@@ -196,7 +196,7 @@ const LIGHT_TEXTURES: Binding = read(
     "light_textures",
     BindingKind::FilteredImage,
     "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only with \
-     Effects::TEXTURED, else bind any 2D array image",
+     Effects::IMAGES, else bind any 2D array image",
 );
 
 const SHAPES: Binding = read(
@@ -354,6 +354,7 @@ pub static EVAL_SHAPES: Kernel = Kernel {
         read("shapes", BindingKind::StorageBuffer, "GpuShape[]"),
         read("cases", BindingKind::StorageBuffer, "GpuCase[], whose light is a shape's index"),
         write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
+        LIGHT_TEXTURES,
     ],
     constants: &[
         constant::EFFECTS,
@@ -361,6 +362,7 @@ pub static EVAL_SHAPES: Kernel = Kernel {
         constant::HORIZON,
         constant::FRESNEL,
         constant::LOBES,
+        constant::FOOTPRINT,
         constant::SHAPE,
     ],
 };

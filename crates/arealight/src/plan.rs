@@ -137,12 +137,12 @@ impl ShadeVariant {
             all => all - unused,
         };
         let lights = of(constants.light_count.saturating_sub(constants.quad_count), Effects::BEYOND_QUADS);
-        let shapes = of(constants.shape_count, Effects::SHAPES);
+        let shapes = of(constants.shape_count, Effects::OF_SHAPES);
         // Shapes have two sides too
         let unused_sides =
             if constants.shape_count == 0 { unused & Effects::TWO_SIDED } else { Effects::empty() };
         let unused_anywhere = unused & (Effects::SURFACES | Effects::FAR);
-        let others = effects - Effects::BEYOND_QUADS - Effects::SHAPES - unused_sides - unused_anywhere;
+        let others = effects - Effects::BEYOND_QUADS - Effects::OF_SHAPES - unused_sides - unused_anywhere;
         let quad_count = if lights.is_empty() { constants.light_count } else { constants.quad_count };
         Self { effects: others | lights | shapes, quads: quad_count > 0 }
     }
@@ -255,7 +255,10 @@ pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
 /// As [`eval`], of shapes that are all of one kind, or of [`ShapeKind::Any`].
 pub fn eval_shapes(effects: Effects, quality: Quality, kind: ShapeKind, case_count: u32) -> Dispatch {
     let mut specialization = lobe_specialization(effects, quality);
-    specialization.push((kernels::constant::SHAPE, kind as u32));
+    specialization.extend([
+        (kernels::constant::FOOTPRINT, quality.footprint as u32),
+        (kernels::constant::SHAPE, kind as u32),
+    ]);
     Dispatch {
         kernel: &kernels::EVAL_SHAPES,
         specialization,
@@ -325,20 +328,22 @@ mod tests {
             (all - effects, quads)
         };
         // Quads, one-sided or not
-        assert_eq!(variant(of_lights, counts(3, 3, 0)), (of_lights | Effects::SHAPES, true));
+        assert_eq!(variant(of_lights, counts(3, 3, 0)), (of_lights | Effects::OF_SHAPES, true));
         let beyond = Effects::BEYOND_QUADS;
-        assert_eq!(variant(beyond, counts(3, 3, 0)), (beyond | Effects::SHAPES, true));
+        assert_eq!(variant(beyond, counts(3, 3, 0)), (beyond | Effects::OF_SHAPES, true));
         // Others, with quads and without
         let no_image = Effects::TEXTURED;
-        assert_eq!(variant(no_image, counts(3, 1, 0)), (no_image | Effects::SHAPES, true));
-        assert_eq!(variant(no_image, counts(3, 0, 0)), (no_image | Effects::SHAPES, false));
+        assert_eq!(variant(no_image, counts(3, 1, 0)), (no_image | Effects::OF_SHAPES, true));
+        assert_eq!(variant(no_image, counts(3, 0, 0)), (no_image | Effects::OF_SHAPES, false));
         // Shapes may have two sides, whatever polygons have
         assert_eq!(variant(of_lights, counts(0, 0, 2)), (beyond, false));
         assert_eq!(variant(of_lights | Effects::TUBE, counts(0, 0, 2)), (beyond | Effects::TUBE, false));
+        let no_image = Effects::TEXTURED_ELLIPSE;
+        assert_eq!(variant(no_image, counts(0, 0, 2)), (beyond | no_image, false));
         // Nothing is known: right, and slower
         assert_eq!(variant(Effects::empty(), counts(3, 0, 2)), (Effects::empty(), false));
         // What is counted is shaded, even where nothing is said to call for it
-        assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::SHAPES), Effects::empty());
+        assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::OF_SHAPES), Effects::empty());
         // What depends on surfaces, whatever lights there are
         let of_surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::FAR;
         assert_eq!(variant(of_surfaces, counts(3, 1, 2)).0, of_surfaces);

@@ -1,10 +1,10 @@
 //! Disks, ellipses, spheres, cylinders and capsules as lights, and how they are packed for the GPU.
 
 use crate::Effects;
-use crate::gpu::GpuShape;
+use crate::gpu::{GpuLight, GpuShape};
 use glam::{DVec3, Vec3};
 
-/// A light of constant radiance that is no polygon.
+/// A light of constant radiance, or that shows an image, that is no polygon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShapeLight {
     /// A name for messages; it need not be unique.
@@ -13,6 +13,10 @@ pub struct ShapeLight {
     pub radiance: Vec3,
     /// Whether the back of an ellipse, or the inside of a sphere, emits too. Of a tube only the outside is shaded.
     pub two_sided: bool,
+    /// The layer of the light textures (see [`crate::pyramid`]) that an ellipse shows: an image that multiplies the radiance. Seen from
+    /// the front, its rows run along `axis_u` and the top row is where `axis_v` points to; the ellipse is what is seen of it within the
+    /// parallelogram of both, which touches its edges. The back shows it mirrored, as a slide does.
+    pub texture: Option<u32>,
     /// What shines.
     pub shape: Shape,
 }
@@ -118,6 +122,22 @@ pub enum ShapeError {
         /// The point.
         value: DVec3,
     },
+    /// It is to show an image, and is no ellipse.
+    #[error("light '{light}': texture: only ellipses show images; a sphere or tube has one colour")]
+    NoImage {
+        /// The light's name.
+        light: String,
+    },
+    /// It shows a layer that the lights' textures do not have.
+    #[error("light '{light}': texture: layer {layer} is not there: there are {layers}")]
+    NoTextureLayer {
+        /// The light's name.
+        light: String,
+        /// The layer that it refers to.
+        layer: u32,
+        /// How many layers there are.
+        layers: u32,
+    },
     /// Radiance is NaN, infinite or negative.
     #[error("light '{light}': radiance: {value} must be finite and not negative")]
     BadRadiance {
@@ -170,7 +190,23 @@ impl ShapeLight {
         };
         // A tube's inside is not shaded
         let sides = self.two_sided && kind != Effects::TUBE;
-        if sides { kind | Effects::TWO_SIDED } else { kind }
+        let mut effects = kind;
+        effects.set(Effects::TWO_SIDED, sides);
+        effects.set(Effects::TEXTURED_ELLIPSE, self.texture.is_some());
+        effects
+    }
+
+    /// Checks that a light that shows an image has its layer among `layers`.
+    ///
+    /// # Errors
+    /// [`ShapeError::NoTextureLayer`] where it has not: the device would show another.
+    pub fn check_texture_layer(&self, layers: u32) -> Result<(), ShapeError> {
+        match self.texture {
+            Some(layer) if layer >= layers => {
+                Err(ShapeError::NoTextureLayer { light: self.name.clone(), layer, layers })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The light as the GPU reads it, relative to `origin`: the subtraction is made in float64, so that a scene far
@@ -181,6 +217,9 @@ impl ShapeLight {
     pub fn pack(&self, origin: DVec3) -> Result<GpuShape, ShapeError> {
         if !self.radiance.is_finite() || self.radiance.min_element() < 0.0 {
             return Err(ShapeError::BadRadiance { light: self.name.clone(), value: self.radiance });
+        }
+        if self.texture.is_some() && self.shape.kind() != ShapeKind::Ellipse {
+            return Err(ShapeError::NoImage { light: self.name.clone() });
         }
         let empty = GpuShape {
             radiance: self.radiance.to_array(),
@@ -201,6 +240,7 @@ impl ShapeLight {
                     axis_v: v.to_array(),
                     // Not below the longer half axis
                     radius: (radius.unwrap_or_default() as f32).next_up(),
+                    detail: self.texture.unwrap_or(GpuLight::NO_TEXTURE),
                     ..empty
                 })
             }
@@ -221,7 +261,7 @@ impl ShapeLight {
                     center: ((p0 - origin) * 0.5 + (p1 - origin) * 0.5).as_vec3().to_array(),
                     axis_u: half.to_array(),
                     radius: self.radius(radius)?,
-                    ends: ends as u32,
+                    detail: ends as u32,
                     ..empty
                 })
             }
@@ -270,7 +310,7 @@ mod tests {
     use super::*;
 
     fn light(shape: Shape) -> ShapeLight {
-        ShapeLight { name: "lamp".into(), radiance: Vec3::ONE, two_sided: false, shape }
+        ShapeLight { name: "lamp".into(), radiance: Vec3::ONE, two_sided: false, texture: None, shape }
     }
 
     fn disk(center: DVec3, axis_u: DVec3, axis_v: DVec3) -> ShapeLight {
@@ -293,11 +333,12 @@ mod tests {
         assert_eq!((found.center, found.kind, found.flags), ([0.125, 0.25, 0.5], 0, GpuShape::TWO_SIDED));
         assert_eq!((found.axis_u, found.axis_v), ([0.0, 3.0, 0.0], [4.0, 0.0, 0.0]));
         assert!(found.radius >= 4.0 && found.radius < 4.00001, "{}", found.radius);
+        assert_eq!(found.detail, GpuLight::NO_TEXTURE);
         let found = packed(light(Shape::Sphere { center: origin + near, radius: 0.75 }));
         assert_eq!((found.center, found.radius, found.kind, found.flags), ([0.125, 0.25, 0.5], 0.75, 1, 0));
         let found = packed(tube(origin, origin + near, 0.75));
         assert_eq!((found.center, found.axis_u), ([0.0625, 0.125, 0.25], [0.0625, 0.125, 0.25]));
-        assert_eq!((found.kind, found.ends), (2, TubeEnds::Round as u32));
+        assert_eq!((found.kind, found.detail), (2, TubeEnds::Round as u32));
     }
 
     #[test]
@@ -327,6 +368,7 @@ mod tests {
         let (nan, huge) = (DVec3::new(0.0, f64::NAN, 0.0), DVec3::new(0.0, 0.0, 1e39));
         let (x, y, zero) = (DVec3::X, DVec3::Y, DVec3::ZERO);
         let sphere = |radius: f64| light(Shape::Sphere { center: x, radius });
+        let shown = ShapeLight { texture: Some(0), ..sphere(1.0) };
         let dark = ShapeLight { radiance: Vec3::new(0.0, -1.0, 0.0), ..sphere(1.0) };
         for (light, expected) in [
             (disk(nan, x, y), "center: [0, NaN, 0] is not a finite"),
@@ -346,15 +388,30 @@ mod tests {
             (tube(x, huge, 1.0), "p1: "),
             (tube(x, x, 1.0), "p0 and p1: [1, 0, 0] is both ends of the axis"),
             (tube(x, y, -1.0), "radius: -1 "),
+            (shown, "texture: only ellipses show images"),
             (dark, "radiance: [0, -1, 0] must be finite and not negative"),
         ] {
             let message = light.validate().unwrap_err().to_string();
             assert!(message.starts_with(&format!("light 'lamp': {expected}")), "{message}\nnot {expected}");
         }
         // The twins: the same, as they should be
-        for light in [disk(x, x, y), sphere(1.0), tube(x, y, 1.0)] {
+        let shown = ShapeLight { texture: Some(0), ..disk(x, x, y) };
+        for light in [disk(x, x, y), shown, sphere(1.0), tube(x, y, 1.0)] {
             light.validate().unwrap();
         }
+    }
+
+    #[test]
+    fn a_disk_that_shows_an_image_says_so() {
+        let plain = disk(DVec3::ZERO, DVec3::X, DVec3::Y);
+        let shown = ShapeLight { texture: Some(7), ..plain.clone() };
+        assert_eq!(shown.pack(DVec3::ZERO).unwrap().detail, 7);
+        assert_eq!(shown.effects(), Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
+        assert_eq!(plain.effects(), Effects::ELLIPSE);
+        assert_eq!(plain.check_texture_layer(0), Ok(()));
+        assert_eq!(shown.check_texture_layer(8), Ok(()));
+        let message = shown.check_texture_layer(7).unwrap_err().to_string();
+        assert_eq!(message, "light 'lamp': texture: layer 7 is not there: there are 7");
     }
 
     #[test]

@@ -26,6 +26,8 @@ const uint AREALIGHT_EFFECT_SPHERE = 512u;
 const uint AREALIGHT_EFFECT_TUBE = 1024u;
 // Some light has several faces; AREALIGHT_EFFECT_POLYGON is set then, too.
 const uint AREALIGHT_EFFECT_MESH = 2048u;
+// Some disk or ellipse shows an image; AREALIGHT_EFFECT_ELLIPSE is set then, too.
+const uint AREALIGHT_EFFECT_TEXTURED_ELLIPSE = 4096u;
 
 // Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
 // arealight::Quality::form_factor_bits.

@@ -110,9 +110,9 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc, int rung) 
     return integral;
 }
 
-// The form factor of the part of a cone above the horizon of a unit `normal`, given in the cone's frame, in [-2^-20, 1]. The
-// cone must cross the horizon. Source: Lambert's formula, the contour closed along the horizon.
-float arealight_cone_above_horizon(ArealightCone cone, vec3 normal, int rung) {
+// The contour of the part of a cone above the horizon of a unit `normal`, given in the cone's frame: arealight_elliptic_arc of its
+// outline, and what closes it along the horizon, a vector along the normal of the length w. The cone must cross the horizon.
+vec4 arealight_cone_contour_above_horizon(ArealightCone cone, vec3 normal, int rung) {
     // Where on the outline the height a n.x cos(t) + b n.y sin(t) + c n.z is positive
     vec2 slope = vec2(cone.a * normal.x, cone.b * normal.y);
     float steepness = sqrt(dot(slope, slope));
@@ -128,21 +128,30 @@ float arealight_cone_above_horizon(ArealightCone cone, vec3 normal, int rung) {
     float sin_sin = (arc.middle.y * cosine - arc.middle.x * sine) * (arc.middle.y * cosine + arc.middle.x * sine);
     float closing = arealight_arctangent(2.0 * cone.a * cone.b * cone.c * sine * reciprocal,
                                          cone.c * cone.c + cone.a * cone.a * cos_cos + cone.b * cone.b * sin_sin, rung);
-    return (dot(normal, integral) + closing) * AREALIGHT_INVERSE_TWO_PI;
+    return vec4(integral, closing);
 }
 
-// The form factor of a small ellipse that crosses the horizon, with relative precision: its radiance all comes from the
-// centroid of the heights above the horizon, the part above being a segment of the unit disk to which the axes map it.
-//
-// `up` is the horizon's normal in the ellipse's frame. Relative error: 2 (major / distance)^2.
-float arealight_small_ellipse_crossing(ArealightEllipse ellipse, vec3 up, int rung) {
+// The form factor of that part, in [-2^-20, 1]. Source: Lambert's formula.
+float arealight_cone_above_horizon(ArealightCone cone, vec3 normal, int rung) {
+    vec4 contour = arealight_cone_contour_above_horizon(cone, normal, rung);
+    return (dot(normal, contour.xyz) + contour.w) * AREALIGHT_INVERSE_TWO_PI;
+}
+
+// The part of a small ellipse above the horizon.
+struct ArealightEllipseSegment {
+    vec3 middle;   // centroid of the heights above the horizon, in the ellipse's frame
+    float moment;  // the integral of the height over the segment of the unit disk to which the axes map it, over the rise
+};
+
+// `up` is the horizon's normal in the ellipse's frame. The ellipse must cross the horizon.
+ArealightEllipseSegment arealight_ellipse_segment(ArealightEllipse ellipse, vec3 up, int rung) {
     float reciprocal = 1.0 / max(ellipse.rise, 1e-37);
     // Half the arc above the horizon
     float cosine = clamp(-ellipse.height * reciprocal, -1.0, 1.0);
     float sine = sqrt(max((ellipse.rise - ellipse.height) * (ellipse.rise + ellipse.height), 0.0)) * reciprocal;
     float angle = arealight_arctangent(sine, cosine, rung);
     float w = angle * angle;
-    // The integral of the height over the segment, and the mean height there, weighed with the height, over the rise
+    // The moment, and the mean height, weighed with the height, over the rise
     float moment;
     float mean;
     if (w < 1.0) {
@@ -157,10 +166,22 @@ float arealight_small_ellipse_crossing(ArealightEllipse ellipse, vec3 up, int ru
         mean = (second - cosine * first) / moment;
     }
     vec2 half_axes = vec2(ellipse.major, ellipse.minor);
-    vec3 position = ellipse.center + vec3(half_axes * half_axes * up.xy * (mean * reciprocal), 0.0);
-    float square = dot(position, position);
+    vec3 middle = ellipse.center + vec3(half_axes * half_axes * up.xy * (mean * reciprocal), 0.0);
+    return ArealightEllipseSegment(middle, moment);
+}
+
+// The form factor of a small ellipse that crosses the horizon, with relative precision: its radiance all comes from the
+// centroid of its segment. Arguments as above. Relative error: 2 (major / distance)^2.
+float arealight_small_ellipse_crossing(ArealightEllipse ellipse, vec3 up, int rung) {
+    ArealightEllipseSegment segment = arealight_ellipse_segment(ellipse, up, rung);
+    float square = dot(segment.middle, segment.middle);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
-    return area * ellipse.rise * moment * AREALIGHT_INVERSE_PI / (square * square);
+    return area * ellipse.rise * segment.moment * AREALIGHT_INVERSE_PI / (square * square);
+}
+
+// Whether an ellipse is so small that its segment stands for it where it crosses the horizon.
+bool arealight_is_small_ellipse(ArealightEllipse ellipse) {
+    return ellipse.major * ellipse.major < 4e-4 * dot(ellipse.center, ellipse.center);
 }
 
 // The form factor of an ellipse, clipped at the horizon z = 0: in [0, 1]; one-sided: 0 for one seen from its back. All
@@ -180,14 +201,34 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
         form_factor = 0.0;
     } else if (ellipse.height >= ellipse.rise) {
         form_factor = arealight_whole_ellipse(ellipse, root);
-    } else if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0
-               && ellipse.major * ellipse.major < 4e-4 * dot(ellipse.center, ellipse.center)) {
+    } else if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0 && arealight_is_small_ellipse(ellipse)) {
         form_factor = arealight_small_ellipse_crossing(ellipse, up, rung);
     } else {
         ArealightCone cone = arealight_ellipse_cone(ellipse, root);
         form_factor = arealight_cone_above_horizon(cone, up * cone.frame, rung);
     }
     return arealight_guarded_form_factor(two_sided || ellipse.front ? form_factor : 0.0, ellipse.square);
+}
+
+// The mean direction in which the part of an ellipse above the horizon z = 0 is seen, of no particular length; of what
+// arealight_ellipse_form_factor integrates, and of the same arguments. Below the horizon, and for NaN, anything.
+vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v, int rung) {
+    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
+    float root = arealight_confocal_root(ellipse, rung);
+    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
+    vec3 direction;
+    if (ellipse.height >= ellipse.rise || ellipse.height <= -ellipse.rise) {
+        direction = arealight_ellipse_cone_axis(ellipse, root);
+    } else if (arealight_is_small_ellipse(ellipse)) {
+        // Where the cone's parts cancel
+        direction = arealight_ellipse_segment(ellipse, up, rung).middle;
+    } else {
+        ArealightCone cone = arealight_ellipse_cone(ellipse, root);
+        vec3 normal = up * cone.frame;
+        vec4 contour = arealight_cone_contour_above_horizon(cone, normal, rung);
+        direction = cone.frame * (contour.xyz + contour.w * normal);
+    }
+    return ellipse.frame * direction;
 }
 
 #endif

@@ -49,6 +49,10 @@ vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
 // Width and height of level 0, in texels.
 ivec2 arealight_bridge_light_texture_size();
 
+// ArealightSeenImage.end of lights that fill the box of their image, and of ellipses in its middle.
+const float AREALIGHT_IMAGE_END = 6.0;
+const float AREALIGHT_ELLIPSE_IMAGE_END = 10.0;
+
 // An image as a lobe sees it, in its cosine space.
 struct ArealightSeenImage {
     uint layer;
@@ -60,6 +64,7 @@ struct ArealightSeenImage {
     vec3 normal;  // axis_u x axis_v
     vec2 texels;  // of the box
     float last;   // level
+    float end;    // inverse of the widest variance of a blur, in units of the box's area
 };
 
 // `center` and `transform` as ArealightLobeView has them.
@@ -76,6 +81,7 @@ ArealightSeenImage arealight_see_image(ArealightImage image, vec3 center, mat3 t
     seen.texels = vec2(size) * image.size;
     // The last level is four texels wide or high
     seen.last = float(findMSB(min(size.x, size.y)) - 2);
+    seen.end = AREALIGHT_IMAGE_END;
     return seen;
 }
 
@@ -170,10 +176,10 @@ vec3 arealight_footprint(ArealightSeenImage image, vec3 sum, int footprint) {
     vec2 box = arealight_clamp_coordinate(point.box, vec2(0.0), vec2(1.0));
     if (footprint == AREALIGHT_FOOTPRINT_ROUND) {
         float area = sqrt(dot(image.normal, image.normal));
-        return arealight_image_blurred(image, box, point.square / (1.5 * area + 6.0 * point.square));
+        return arealight_image_blurred(image, box, point.square / (1.5 * area + image.end * point.square));
     }
     // Four taps along the longer axis, with the variance that is missing to it between them
-    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.5, 6.0);
+    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, point.square, 1.5, image.end);
     float variance = min(ellipse.major, max(ellipse.minor, 0.08265625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = vec3(0.0);

@@ -2,6 +2,7 @@
 #define AREALIGHT_SHAPES_GLSL
 
 #include "arealight/effects.glsl"
+#include "arealight/footprint.glsl"
 #include "arealight/form_factor.glsl"
 #include "arealight/rim.glsl"
 #include "arealight/shading_point.glsl"
@@ -36,7 +37,8 @@ bool arealight_is_tube(int kind, uint effects) {
     return arealight_shape_is(AREALIGHT_SHAPE_TUBE, AREALIGHT_EFFECT_TUBE, kind, effects);
 }
 
-// A light of constant radiance.
+// A light of constant radiance; or an ellipse that shows an image. Its rows run along axis_u, and the top row is where axis_v points
+// to, seen from the front; the parallelogram of both axes touches its edges.
 struct ArealightShape {
     int kind;       // one of AREALIGHT_SHAPE_*
     vec3 radiance;  // of the front or outside, W/(m^2 sr)
@@ -46,6 +48,7 @@ struct ArealightShape {
     float radius;   // of a sphere or tube; of an ellipse the longer half axis, or more
     int ends;       // of a tube: one of AREALIGHT_TUBE_*
     bool two_sided; // ellipse: the back emits too; sphere: so does the inside
+    uint image;     // ellipse: a layer, or AREALIGHT_NO_IMAGE; multiplies the radiance (AREALIGHT_EFFECT_TEXTURED_ELLIPSE alone)
 };
 
 // A shape before a shading point, made ready for any number of lobes: scaled by a power of two, in the surface's space.
@@ -118,8 +121,36 @@ float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape
     return arealight_ellipse_form_factor(center, axis_u, axis_v, two_sided, rung);
 }
 
-// What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space.
-// `keeps_lengths`: the lobe is Lambert's.
+#if AREALIGHT_LIGHT_TEXTURES
+
+// The image of an ellipse, and where it is.
+ArealightImage arealight_ellipse_image(ArealightShape shape) {
+    return ArealightImage(shape.image, shape.axis_v - shape.axis_u, 2.0 * shape.axis_u, -2.0 * shape.axis_v, vec2(0.0),
+                          vec2(1.0));
+}
+
+// The mean colour that a lobe sees of an ellipse's image: where the light comes from in its cosine space, as of polygons
+// (arealight_footprint). The rungs that split the light are ELLIPSE here.
+vec3 arealight_lobe_ellipse_image(ArealightLobe lobe, ArealightSeenShape seen, ArealightShape shape,
+                                  ArealightQuality quality) {
+    mat3 transform = lobe.space.to_cosine;
+    vec3 axis_u = transform * seen.axis_u;
+    vec3 axis_v = transform * seen.axis_v;
+    vec3 center = transform * seen.center;
+    vec3 direction = quality.horizon == AREALIGHT_HORIZON_BARE
+        ? arealight_ellipse_vector_form_factor(center, axis_u, axis_v, quality.form_factor)
+        : arealight_ellipse_mean_direction(center, axis_u, axis_v, quality.form_factor);
+    shape.axis_u = seen.axis_u;
+    shape.axis_v = seen.axis_v;
+    ArealightSeenImage image = arealight_see_image(arealight_ellipse_image(shape), center, transform);
+    image.end = AREALIGHT_ELLIPSE_IMAGE_END;
+    return arealight_footprint(image, direction, min(quality.footprint, AREALIGHT_FOOTPRINT_ELLIPSE));
+}
+
+#endif
+
+// What a lobe reflects of a shape of unit radiance, a channel: its albedo times the form factor in its cosine space, times what
+// it sees of the shape's image. `keeps_lengths`: the lobe is Lambert's.
 vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape seen, ArealightShape shape,
                           bool keeps_lengths, uint effects, ArealightQuality quality) {
     float form_factor;
@@ -138,7 +169,14 @@ vec3 arealight_lobe_shape(ArealightLobe lobe, vec3 normal, ArealightSeenShape se
         form_factor = arealight_lobe_ellipse(lobe, normal, seen, shape.two_sided, quality);
         form_factor = seen.inside ? (shape.two_sided ? 1.0 : 0.0) : form_factor;
     }
-    return lobe.albedo * min(form_factor * lobe.gain, 1.0);
+    vec3 color = vec3(min(form_factor * lobe.gain, 1.0));
+#if AREALIGHT_LIGHT_TEXTURES
+    bool shows = shape.kind == AREALIGHT_SHAPE_ELLIPSE && shape.image != AREALIGHT_NO_IMAGE;
+    if ((effects & AREALIGHT_EFFECT_TEXTURED_ELLIPSE) != 0u && shows) {
+        color *= arealight_lobe_ellipse_image(lobe, seen, shape, quality);
+    }
+#endif
+    return lobe.albedo * color;
 }
 
 // What a surface reflects of one shape of unit radiance towards the viewer, without visibility, lobe by lobe. Errors: as

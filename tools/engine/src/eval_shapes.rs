@@ -55,6 +55,7 @@ impl Engine {
         let mut shapes: Vec<GpuShape> = Vec::with_capacity(points.len());
         let mut cases: Vec<GpuCase> = Vec::with_capacity(points.len());
         for (index, point) in points.iter().enumerate() {
+            point.light.check_texture_layer(self.texture_layers())?;
             shapes.push(point.light.pack(point.position)?);
             cases.push(surface_case(&point.surface, point.normal, point.view, index as u32));
         }
@@ -62,12 +63,15 @@ impl Engine {
             return Ok(Vec::new());
         }
 
-        let effects = Effects::all() - Effects::BEYOND_QUADS;
+        // Points under lights of one colour do not pay for images
+        let images = points.iter().any(|point| point.light.texture.is_some());
+        let mut effects = Effects::all() - Effects::BEYOND_QUADS;
+        effects.set(Effects::TEXTURED_ELLIPSE, images);
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);
         let shape_buffer = self.storage("shapes", &shapes)?;
         let shapes = Resource::buffer(shape_buffer.handle());
         self.dispatch_cases(dispatch.kernel, &dispatch.specialization, &cases, |cases, results| {
-            vec![self.table(), shapes, cases, results]
+            vec![self.table(), shapes, cases, results, self.light_textures()]
         })
     }
 }

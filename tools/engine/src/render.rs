@@ -85,6 +85,8 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] names the shape that cannot be shaded.
     pub fn with_shapes(mut self, shapes: &'a [ShapeLight]) -> Result<Self, EngineError> {
+        let layers = self.engine.texture_layers();
+        shapes.iter().try_for_each(|shape| shape.check_texture_layer(layers))?;
         let packed = shapes.iter().map(|shape| shape.pack(self.origin));
         let packed = packed.collect::<Result<Vec<GpuShape>, _>>()?;
         self.shape_buffer = self.engine.storage("shapes", &packed)?;

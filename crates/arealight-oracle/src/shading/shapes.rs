@@ -1,17 +1,19 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
-use super::{Truth, glossy_part, reflected};
+use super::{RelativeLight, ShownImage, Truth, glossy_part, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
 use crate::frame::SurfaceFrame;
 use crate::polygon;
 use crate::polygon::{above_horizon, emitted};
 use crate::sphere::{self, Sphere};
+use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
 use arealight::table::share_above_surface;
-use arealight::{Horizon, LightTable, Quality, Shape, ShapeLight, Surface, TubeEnds};
-use glam::{DMat3, DVec3};
+use arealight::{Horizon, LightTable, Quality, Shape, ShapeLight, Surface, TextureMap, TubeEnds};
+use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_shape_radiance`, as
 /// [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With [`Horizon::Both`] outlines are polygons of
@@ -151,11 +153,11 @@ impl SeenShape {
             |outline: &[DVec3]| polygon::transformed_form_factor(inverse, &above_horizon(outline)).abs();
         match self {
             Self::Ellipse { ellipse, two_sided } if *two_sided || ellipse.shows_front() => {
-                cut(&outline_of_its_area(ellipse))
+                cut(&outline_of_its_area(ellipse, 1024))
             }
             Self::Ellipse { .. } => 0.0,
             Self::Sphere { sphere, .. } => match sphere.silhouette() {
-                Some(disk) => cut(&outline_of_its_area(&disk)),
+                Some(disk) => cut(&outline_of_its_area(&disk, 1024)),
                 None => self.form_factor(inverse),
             },
             Self::Tube(tube) => {
@@ -166,11 +168,32 @@ impl SeenShape {
     }
 }
 
-/// A polygon of many sides that has the area of an ellipse.
-fn outline_of_its_area(ellipse: &Ellipse) -> Vec<DVec3> {
-    const COUNT: usize = 1024;
-    let angle = TAU / COUNT as f64;
+/// A polygon of `count` sides that has the area of an ellipse.
+fn outline_of_its_area(ellipse: &Ellipse, count: usize) -> Vec<DVec3> {
+    let angle = TAU / count as f64;
     let growth = (angle / angle.sin()).sqrt();
     let grown = Ellipse { axis_u: ellipse.axis_u * growth, axis_v: ellipse.axis_v * growth, ..*ellipse };
-    grown.polygon(COUNT)
+    grown.polygon(count)
+}
+
+/// An ellipse that shows `texture`, as a polygon of its area; what they differ in is 1e-5 of what it sends. None for other shapes.
+pub fn textured_ellipse(light: &ShapeLight, texture: Arc<Texture>) -> Option<RelativeLight> {
+    const COUNT: usize = 64;
+    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { return None };
+    // Turned by half a side, the polygon stays within the image
+    let (sin, cos) = (0.5 * TAU / COUNT as f64).sin_cos();
+    let turned = Ellipse { center, axis_u: axis_u * cos + axis_v * sin, axis_v: axis_v * cos - axis_u * sin };
+    let map = TextureMap {
+        corner: center - axis_u + axis_v,
+        axis_u: axis_u * 2.0,
+        axis_v: axis_v * -2.0,
+        low: DVec2::ZERO,
+        size: DVec2::ONE,
+    };
+    Some(RelativeLight {
+        vertices: outline_of_its_area(&turned, COUNT),
+        radiance: light.radiance.as_dvec3(),
+        two_sided: light.two_sided,
+        image: Some(ShownImage { texture, map }),
+    })
 }

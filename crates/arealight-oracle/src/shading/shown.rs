@@ -141,7 +141,19 @@ struct Part {
     sign: f64,
 }
 
-/// The box itself where the outline is it, else the triangles of a fan.
+impl Part {
+    /// The inside of a convex outline, whose doubled area has this sign.
+    fn new(corners: &[DVec2], sign: f64) -> Self {
+        let side = |(from, to): (&DVec2, &DVec2)| {
+            let along = (*to - *from) * sign;
+            // along x (place - from) >= 0
+            DVec3::new(-along.y, along.x, along.y * from.x - along.x * from.y)
+        };
+        Self { sides: corners.iter().zip(corners.iter().cycle().skip(1)).map(side).collect(), sign }
+    }
+}
+
+/// The box itself where the outline is it, or the whole of a convex outline; else the triangles of a fan.
 fn parts_of(outline: &[DVec2]) -> Vec<Part> {
     let is_corner = |place: &DVec2| {
         [place.x, place.y].iter().all(|x| x.abs().min((x - 1.0).abs()) < BOX) // no rounding makes a sliver
@@ -151,19 +163,18 @@ fn parts_of(outline: &[DVec2]) -> Vec<Part> {
     if outline.len() == 4 && outline.iter().all(is_corner) && (doubled_area.abs() - 2.0).abs() < 1e-6 {
         return vec![Part { sides: Vec::new(), sign: doubled_area.signum() }];
     }
+    let whole = Part::new(outline, doubled_area.signum());
+    let inside = |place: &DVec2| whole.sides.iter().all(|side| side.dot(place.extend(1.0)) >= -BOX);
+    if doubled_area != 0.0 && outline.iter().all(inside) {
+        return vec![whole];
+    }
     let triangle = |pair: &[DVec2]| {
         let corners = [outline[0], pair[0], pair[1]];
         let doubled_area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
         if doubled_area == 0.0 {
             return None;
         }
-        let sign = doubled_area.signum();
-        let side = |i: usize| {
-            let (from, along) = (corners[i], (corners[(i + 1) % 3] - corners[i]) * sign);
-            // along x (place - from) >= 0
-            DVec3::new(-along.y, along.x, along.y * from.x - along.x * from.y)
-        };
-        Some(Part { sides: (0..3).map(side).collect(), sign })
+        Some(Part::new(&corners, doubled_area.signum()))
     };
     outline.get(1..).unwrap_or_default().windows(2).filter_map(triangle).collect()
 }

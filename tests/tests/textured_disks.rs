@@ -1,0 +1,206 @@
+//! Disks that show an image: energy, orientation, and how far off the lookups are.
+
+use arealight::{Footprint, FormFactor, Fresnel, Horizon, Quality, Shape, ShapeKind, ShapeLight};
+use arealight_benches::pictures;
+use arealight_engine::ShapePoint;
+use arealight_oracle::shading::footprint::Filter;
+use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, poses};
+use arealight_oracle::shading::{ltc_on, textured_ellipse};
+use arealight_oracle::texture::Texture;
+use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface};
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+
+/// Texels a side.
+const SIDE: usize = 128;
+
+/// Layers of the test's textures: those that the bars are for, and others.
+const JUDGED: std::ops::Range<u32> = 0..3;
+const WHITE: u32 = 3;
+const HALVES: u32 = 4;
+
+/// The bars' pictures; white; red on the left half, green on the right, and blue added to the upper half.
+fn textures() -> Vec<Arc<Texture>> {
+    let half = |index: usize| if index < SIDE / 2 { 1.0 } else { 0.0 };
+    let halves = |column, row| DVec3::new(half(column), 1.0 - half(column), half(row));
+    [
+        Texture::checker(SIDE, SIDE, 8),
+        Texture::gradient(SIDE, SIDE),
+        Texture::noise(SIDE, SIDE, 1),
+        Texture::from_fn(SIDE, SIDE, |_, _| DVec3::ONE),
+        Texture::from_fn(SIDE, SIDE, halves),
+    ]
+    .map(Arc::new)
+    .into()
+}
+
+fn engine() -> Option<TestEngine> {
+    let mut engine = TestEngine::new()?;
+    pictures::load(&mut engine, &textures()).unwrap();
+    Some(engine)
+}
+
+fn ellipse(center: DVec3, axis_u: DVec3, axis_v: DVec3, layer: u32) -> ShapeLight {
+    ShapeLight {
+        name: "disk".into(),
+        radiance: Vec3::ONE,
+        two_sided: false,
+        texture: Some(layer),
+        shape: Shape::Ellipse { center, axis_u, axis_v },
+    }
+}
+
+/// Points under disks and ellipses all around, of all roughnesses.
+fn points(seed: u64, layer: u32, count: usize) -> Vec<ShapePoint> {
+    let mut random = Random::new(seed);
+    let mut point = |index: usize| {
+        let distance = 10.0_f64.powf(random.between(-1.0, 2.0));
+        let (u, v) = random.direction().any_orthonormal_pair();
+        let mut size = || distance * random.between(0.05, 1.5);
+        let (u, v) = (u * size(), v * size());
+        let mut light = ellipse(random.direction() * distance, u, v + u * 0.3, layer);
+        light.two_sided = index % 2 == 0;
+        let surface = match index % 3 {
+            0 => lambert_surface(),
+            _ => glossy_surface(10.0_f64.powf(random.between(-3.0, 0.0))),
+        };
+        let view = random.direction();
+        let view = view.with_z(view.z.abs() + 0.02);
+        ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light }
+    };
+    (0..count).map(&mut point).collect()
+}
+
+/// The same points with lights of another texture.
+fn showing(points: &[ShapePoint], texture: Option<u32>) -> Vec<ShapePoint> {
+    let light = |light: &ShapeLight| ShapeLight { texture, ..light.clone() };
+    points.iter().map(|point| ShapePoint { light: light(&point.light), ..point.clone() }).collect()
+}
+
+/// One fetch, four along an axis, and the dearest of all.
+fn qualities() -> [Quality; 3] {
+    let four = Quality { footprint: Footprint::Ellipse, ..Quality::default() };
+    let dear = Quality {
+        form_factor: FormFactor::ExactDifference,
+        fresnel: Fresnel::Split,
+        horizon: Horizon::Both,
+        footprint: Footprint::SplitFour,
+        ..Quality::default()
+    };
+    [Quality { footprint: Footprint::Round, ..Quality::default() }, four, dear]
+}
+
+#[test]
+fn images_multiply_what_disks_send() {
+    let Some(engine) = engine() else { return };
+    let white = points(1, WHITE, 500);
+    let eval = |points: &[ShapePoint], quality| {
+        engine.eval_shapes_as(ShapeKind::Ellipse, &points.iter().collect::<Vec<_>>(), quality).unwrap()
+    };
+    for quality in qualities() {
+        // White is exact in binary16, at every level
+        let plain = eval(&showing(&white, None), quality);
+        let mut comparison = Comparison::new(format!("white, {quality:?}"));
+        for (index, (with, without)) in eval(&white, quality).iter().zip(&plain).enumerate() {
+            comparison
+                .add(with.x.into(), without.x.into(), 1e-6 * f64::from(without.x), || format!("{index}"));
+        }
+        comparison.assert_all();
+        assert!(plain.iter().filter(|radiance| radiance.x > 1e-3).count() > 100);
+
+        // Red and green are all there is, once each; no color is brighter than the image's
+        let halves = eval(&showing(&white, Some(HALVES)), quality);
+        let mut comparison = Comparison::new(format!("halves, {quality:?}"));
+        let mut colored = 0;
+        for (index, (shown, plain)) in halves.iter().zip(&plain).enumerate() {
+            assert!(shown.is_finite() && shown.min_element() >= 0.0, "{index}: {shown}");
+            // What blurs round to in binary16: 5e-4 each
+            let bound = 1e-3 * f64::from(plain.x);
+            comparison.add((shown.x + shown.y).into(), plain.x.into(), bound, || format!("{index}"));
+            assert!(
+                f64::from(shown.max_element()) <= f64::from(plain.x) + bound,
+                "{index}: {shown}, {plain}"
+            );
+            colored += usize::from((shown.x - shown.y).abs() > 0.2 * plain.x);
+        }
+        comparison.assert_all();
+        // The twin: it is an image, not a mean
+        assert!(colored > 30, "{colored}");
+    }
+}
+
+#[test]
+fn an_image_lies_as_the_axes_say_and_the_back_shows_it_mirrored() {
+    let Some(engine) = engine() else { return };
+    // Above a mirror-like floor seen from straight above: the point sees what is over it
+    let seen = |offset: DVec3, front: f64| {
+        // Its front is down, its rows run along x, and its top is where y is negative
+        let (center, axis_v) = (DVec3::Z - offset, DVec3::NEG_Y * front);
+        let light = ShapeLight { two_sided: true, ..ellipse(center, DVec3::X, axis_v, HALVES) };
+        let surface = glossy_surface(0.01);
+        let point = ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view: DVec3::Z, light };
+        let radiance = engine.eval_shapes_as(ShapeKind::Ellipse, &[&point], Quality::default()).unwrap()[0];
+        assert!(radiance.max_element() > 0.1, "{radiance}");
+        radiance / radiance.max_element()
+    };
+    let [left, right] = [-0.4, 0.4].map(|x| DVec3::X * x);
+    let [top, bottom] = [-0.4, 0.4].map(|y| DVec3::Y * y);
+    let (red, green) = (Vec3::X, Vec3::Y);
+    for (place, expected) in [
+        (left + top, red + Vec3::Z),
+        (left + bottom, red),
+        (right + top, green + Vec3::Z),
+        (right + bottom, green),
+    ] {
+        // The lobe is narrow, and its tail is long: some of the next quarter's light
+        assert!(seen(place, 1.0).distance(expected) < 0.1, "{place}: {}", seen(place, 1.0));
+        // Turned over about its rows, the back shows the bottom at the top
+        let mirrored = DVec3::new(place.x, -place.y, 0.0);
+        assert!(seen(mirrored, -1.0).distance(expected) < 0.1, "{place}: {}", seen(mirrored, -1.0));
+        assert!(seen(mirrored, 1.0).distance(expected) > 0.5, "the twin");
+    }
+}
+
+/// The disk in a pose's rectangle.
+fn disk(pose: &Pose, layer: u32) -> ShapePoint {
+    let [a, b, c, d] = pose.vertices;
+    let light = ellipse((a + b + c + d) * 0.25, (b - a) * 0.5, (d - a) * 0.5, layer);
+    ShapePoint { surface: pose.surface, position: DVec3::ZERO, normal: DVec3::Z, view: pose.view, light }
+}
+
+#[test]
+fn lookups_are_within_the_bars_of_polygons() {
+    let Some(engine) = engine() else { return };
+    let (table, textures) = (arealight_table::ggx(), textures());
+    // More of them by hand, for the table of docs/textures.md
+    let count = std::env::var("AREALIGHT_POSES").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
+    for family in Family::ALL {
+        let poses = poses(family, count, 1, &table);
+        let points: Vec<ShapePoint> =
+            JUDGED.flat_map(|layer| poses.iter().map(move |pose| disk(pose, layer))).collect();
+        let truth = |point: &ShapePoint| {
+            let texture = &textures[point.light.texture.unwrap_or_default() as usize];
+            let light = textured_ellipse(&point.light, Arc::clone(texture)).expect("a disk");
+            ltc_on(Quality::default(), &table, &point.surface, point.normal, point.view, &light)
+        };
+        let truths: Vec<DVec3> = points.iter().map(truth).collect();
+        let errors = |points: &[ShapePoint], footprint| {
+            let quality = Quality { footprint, ..Quality::default() };
+            let found = engine
+                .eval_shapes_as(ShapeKind::Ellipse, &points.iter().collect::<Vec<_>>(), quality)
+                .unwrap();
+            let mut errors = Errors::default();
+            found.iter().zip(&truths).for_each(|(found, truth)| errors.add(found.as_dvec3(), *truth));
+            errors.summary()
+        };
+        for footprint in [Footprint::Round, Footprint::Ellipse] {
+            let found = errors(&points, footprint);
+            println!("{} {footprint:?}: {found:.2?}", family.description());
+            let Some(bar) = Bar::of(Filter::Rung(footprint), family) else { continue };
+            assert!(bar.holds(&found), "{family:?}, {footprint:?}: {found:?}, {bar:?}");
+            // The twin: of one colour
+            let plain = errors(&showing(&points, Some(WHITE)), footprint);
+            assert!(!bar.holds(&plain), "{family:?}: {plain:?}");
+        }
+    }
+}
