@@ -1,16 +1,20 @@
-//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses; and a floor under 10 to 1,000 lamps of which
+//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses, and what images on them cost; and a floor under 10 to 1,000 lamps of which
 //! those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with `-- disks` the disks alone. Prints
 //! Markdown tables.
 
-use arealight::plan::TileOptions;
+use arealight::plan::{ShadeOptions, TileOptions};
+use arealight::{Footprint, Quality};
+use arealight_benches::pictures;
 use arealight_benches::start::start;
 use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure};
 use arealight_engine::{Engine, SceneRenderer};
+use arealight_oracle::texture::Texture;
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::Arc;
 
 const ROUNDS: usize = 20;
 const SIZE: [u32; 2] = [640, 360];
@@ -69,6 +73,7 @@ fn frame(
     engine: &Engine,
     (name, scene): (&str, &Scene),
     size: [u32; 2],
+    quality: Quality,
     against: (TileOptions, Baseline),
     rounds: usize,
 ) -> Result<TiledFrame, Box<dyn Error>> {
@@ -78,7 +83,8 @@ fn frame(
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     renderer = renderer.with_shapes(&scene.shapes)?;
-    let what = (scene.effects(), scene.lights.len() + scene.shapes.len());
+    let options = ShadeOptions { effects: scene.effects(), quality, ..ShadeOptions::all() };
+    let what = (options, scene.lights.len() + scene.shapes.len());
     Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
 }
 
@@ -89,17 +95,35 @@ fn disk_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dy
         let mut scene = floor(FLOORS[0].1)?;
         scene.shapes = disks(count, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
         let against = (TileOptions::default(), Baseline::Bare);
-        frames.push(frame(engine, (&format!("disks: {count}"), &scene), SIZE, against, rounds)?);
+        let name = format!("disks: {count}");
+        frames.push(frame(engine, (&name, &scene), SIZE, Quality::default(), against, rounds)?);
+    }
+    Ok(frames)
+}
+
+/// Frames of disks that show an image, by one fetch and by four.
+fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
+    let mut frames = vec![];
+    let mut scene = floor(FLOORS[0].1)?;
+    scene.shapes = disks(DISKS[2], 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
+    scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(0));
+    for footprint in [Footprint::Round, Footprint::Ellipse] {
+        let quality = Quality { footprint, ..Quality::default() };
+        let against = (TileOptions::default(), Baseline::Plain);
+        let name = format!("disks with an image: {}, {footprint:?}", DISKS[2]);
+        frames.push(frame(engine, (&name, &scene), SIZE, quality, against, rounds)?);
     }
     Ok(frames)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
-    let engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
+    let mut engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
     let device = engine.host().device_name();
     println!("{device}, {rounds} rounds\n\n## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
     println!("{}", markdown(&disk_frames(&engine, rounds)?));
+    pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
+    println!("{}", markdown(&image_frames(&engine, rounds)?));
     if std::env::args().any(|argument| argument == "disks") {
         return Ok(());
     }
@@ -107,7 +131,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let against = (TileOptions::default(), Baseline::Practice);
     let mut frames = vec![];
     for name in ["demo", "room", "sweep"] {
-        frames.push(frame(&engine, (name, &scene(name)?), SIZE, against, rounds)?);
+        frames.push(frame(&engine, (name, &scene(name)?), SIZE, Quality::default(), against, rounds)?);
     }
     let [width, height] = FLOOR_SIZE;
     println!("{}\n## A floor under lamps, {width} x {height}\n", markdown(&frames));
@@ -122,7 +146,14 @@ fn main() -> Result<(), Box<dyn Error>> {
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
                 let name = format!("{material}, {count} lamps, {negligible} negligible");
-                frames.push(frame(&engine, (&name, &scene), FLOOR_SIZE, against, rounds)?);
+                frames.push(frame(
+                    &engine,
+                    (&name, &scene),
+                    FLOOR_SIZE,
+                    Quality::default(),
+                    against,
+                    rounds,
+                )?);
             }
             let ten = frames[first].milliseconds[2].median;
             for (count, frame) in LAMPS.iter().zip(&frames[first..]) {

@@ -82,7 +82,7 @@ mod tests {
         // No filtered read is left without images, and one texel read more comes with the fourth image
         let count = |name: &str| table.find(name).unwrap_or_else(|| panic!("{name} was not counted"));
         for count in &table.counts {
-            let textured = Effects::from_bits_retain(count.effects).contains(Effects::TEXTURED);
+            let textured = Effects::from_bits_retain(count.effects).intersects(Effects::IMAGES);
             assert_eq!(count.samples > 0, textured, "{}", count.name);
         }
         assert_eq!(count("specular_input").fetches, count("plain").fetches + 1);

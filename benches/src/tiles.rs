@@ -25,6 +25,8 @@ pub enum Baseline {
     Practice,
     /// The shade kernel specialised by hand for shapes that are wholly above every pixel's horizons.
     Bare,
+    /// The shade kernel over the same shapes without the images that they show.
+    Plain,
 }
 
 impl Baseline {
@@ -33,6 +35,7 @@ impl Baseline {
         match self {
             Self::Practice => "practice",
             Self::Bare => "bare",
+            Self::Plain => "no image",
         }
     }
 
@@ -46,6 +49,10 @@ impl Baseline {
             Self::Bare => {
                 let quality = Quality { horizon: Horizon::Bare, ..options.quality };
                 (&SHADE, shade_specialization(ShadeOptions { quality, ..options }))
+            }
+            Self::Plain => {
+                let effects = options.effects - Effects::TEXTURED_ELLIPSE;
+                (&SHADE, shade_specialization(ShadeOptions { effects, ..options }))
             }
         }
     }
@@ -79,11 +86,10 @@ pub fn measure(
     host: &Host,
     name: &str,
     renderer: &mut SceneRenderer<'_>,
-    (effects, lights): (Effects, usize),
+    (options, lights): (ShadeOptions, usize),
     (tiles, baseline): (TileOptions, Baseline),
     rounds: usize,
 ) -> Result<TiledFrame, EngineError> {
-    let options = ShadeOptions { effects, ..ShadeOptions::all() };
     let view = renderer.tiled(options, tiles)?;
     let (kernel, specialization) = baseline.kernel(options);
     let exact = shade_specialization(options);

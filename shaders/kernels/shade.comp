@@ -74,7 +74,7 @@ void main() {
                 index++;
             } while (index < constants.light_count);
         }
-        if ((EFFECTS & SHAPE_EFFECTS) != 0u
+        if ((EFFECTS & EFFECTS_OF_SHAPES) != 0u
             && constants.shape_count != 0u) {
             uint index = 0u;
             do {

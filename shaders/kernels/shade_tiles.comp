@@ -73,7 +73,7 @@ PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
             index++;
         } while (index < total);
     }
-    if ((EFFECTS & SHAPE_EFFECTS) != 0u
+    if ((EFFECTS & EFFECTS_OF_SHAPES) != 0u
         && constants.shape_count != 0u) {
         quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
         uint index = 0u;

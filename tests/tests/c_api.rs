@@ -107,6 +107,23 @@ fn pack(
     unsafe { arealight_pass_pack_lights(pass, light, 1, [0.0; 3].as_ptr(), arrays) }
 }
 
+/// A sphere.
+fn moon() -> ArealightShape {
+    ArealightShape {
+        name: c"moon".as_ptr(),
+        kind: AREALIGHT_SHAPE_SPHERE,
+        ends: 0,
+        center: [0.0; 3],
+        axis_u: [0.0; 3],
+        axis_v: [0.0; 3],
+        radius: 1.0,
+        radiance: [1.0; 3],
+        two_sided: 0,
+        textured: 0,
+        texture_layer: 0,
+    }
+}
+
 #[test]
 fn lights_that_cannot_be_shaded_are_named() {
     use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight, ErrorTooSmall};
@@ -170,17 +187,7 @@ fn lights_that_cannot_be_shaded_are_named() {
 
     // Shapes likewise
     let mut size = 0;
-    let sphere = ArealightShape {
-        name: c"moon".as_ptr(),
-        kind: AREALIGHT_SHAPE_SPHERE,
-        ends: 0,
-        center: [0.0; 3],
-        axis_u: [0.0; 3],
-        axis_v: [0.0; 3],
-        radius: 1.0,
-        radiance: [1.0; 3],
-        two_sided: 0,
-    };
+    let sphere = moon();
     let round = library.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
     let mut pack_shape = |pass, shape: &ArealightShape, size: &mut u64| {
         let to = if *size > 0 { lights.as_mut_ptr().cast() } else { null_mut() };
@@ -201,6 +208,8 @@ fn lights_that_cannot_be_shaded_are_named() {
             "light 'shapes[0]': radius: -1",
         ),
         (ArealightShape { two_sided: 2, ..sphere }, ErrorArgument, "shapes[0].two_sided: 2"),
+        (ArealightShape { textured: 2, ..sphere }, ErrorArgument, "shapes[0].textured: 2"),
+        (ArealightShape { textured: 1, ..sphere }, ErrorLight, "light 'moon': texture: only ellipses"),
     ] {
         refused(pack_shape(round, &wrong, &mut size), result, words);
     }

@@ -383,7 +383,7 @@ fn the_reference_s_structures_have_the_same_offsets() {
 
 #[test]
 fn shapes_have_the_same_offsets() {
-    let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, ends, axis_v, flags);
+    let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, detail, axis_v, flags);
     for kernel in [&kernels::SHADE, &kernels::EVAL_SHAPES, &kernels::REFERENCE] {
         assert_offsets(&module(kernel), "ArealightGpuShape", &shape);
     }

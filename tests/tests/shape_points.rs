@@ -21,7 +21,12 @@ const TRUTH: &str = include_str!("../data/reference/truth.json");
 fn cases() -> Vec<(ShapeCase, bool)> {
     let cases = read_cases(CASES).expect("the reference reads");
     let diffuse = |material: &CaseMaterial| matches!(material, CaseMaterial::Diffuse { .. });
-    cases.iter().filter_map(|case| Some((case.supported_shape().ok()?, diffuse(&case.material)))).collect()
+    cases
+        .iter()
+        .filter_map(|case| {
+            Some((case.supported_shape(|path| Err(path.to_owned())).ok()?, diffuse(&case.material)))
+        })
+        .collect()
 }
 
 fn known() -> HashMap<String, [f64; 3]> {
@@ -75,7 +80,7 @@ fn compare_with_oracle(cases: &[(ShapeCase, bool)], found: &[Vec3], quality: Qua
     let mut comparison = Comparison::new(format!("shapes, {quality:?}"));
     let mut twin = 0;
     for ((case, diffuse), found) in cases.iter().zip(found) {
-        let ShapeCase { name, surface, normal, view, light } = case;
+        let ShapeCase { name, surface, normal, view, light, .. } = case;
         let by = |alpha: f64| {
             let surface = arealight::Surface { alpha: surface.alpha * alpha, ..*surface };
             shape_ltc_on(quality, &table, &surface, *normal, *view, light)

@@ -56,8 +56,11 @@
 // Some light has several faces: a mesh.
 #define AREALIGHT_EFFECT_MESH 2048
 
+// Some disk or ellipse shows an image: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+#define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
+
 // Every effect: right for any lights, at the highest cost.
-#define AREALIGHT_EFFECTS_ALL 3967
+#define AREALIGHT_EFFECTS_ALL 8063
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
@@ -328,7 +331,7 @@ typedef struct ArealightPackedLights {
     uint32_t unused;
 } ArealightPackedLights;
 
-// A disk, sphere or tube of constant radiance, in world positions.
+// A disk, sphere or tube of constant radiance, or a disk that shows an image, in world positions.
 typedef struct ArealightShape {
     // For messages, UTF-8; may be null.
     const char *name;
@@ -348,6 +351,11 @@ typedef struct ArealightShape {
     float radiance[3];
     // 1: the back of an ellipse, or the inside of a sphere, emits too.
     uint32_t two_sided;
+    // 1: an ellipse shows `texture_layer` of the light textures. Seen from the front, its rows run along `axis_u` and its top is where
+    // `axis_v` points to; the parallelogram of both touches its edges.
+    uint32_t textured;
+    // Read only with `textured`.
+    uint32_t texture_layer;
 } ArealightShape;
 
 // What a pass is specialised for. All zero is the exact rung without an effect.
@@ -431,7 +439,7 @@ typedef struct ArealightResources {
     // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    // describes. May be 0 without AREALIGHT_EFFECT_TEXTURED.
+    // describes. May be 0 without AREALIGHT_EFFECT_TEXTURED and AREALIGHT_EFFECT_TEXTURED_ELLIPSE.
     struct ArealightImage light_textures;
     // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     struct ArealightImage radiance;
@@ -791,7 +799,7 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, hole_vertex_counts) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightLight, face_vertex_counts) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightLight, face_count) == 68);
-AREALIGHT_ASSERT(sizeof(ArealightShape) == 112);
+AREALIGHT_ASSERT(sizeof(ArealightShape) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightShape, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightShape, kind) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightShape, ends) == 12);
@@ -801,6 +809,8 @@ AREALIGHT_ASSERT(offsetof(ArealightShape, axis_v) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightShape, radius) == 88);
 AREALIGHT_ASSERT(offsetof(ArealightShape, radiance) == 96);
 AREALIGHT_ASSERT(offsetof(ArealightShape, two_sided) == 108);
+AREALIGHT_ASSERT(offsetof(ArealightShape, textured) == 112);
+AREALIGHT_ASSERT(offsetof(ArealightShape, texture_layer) == 116);
 AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices) == 8);

@@ -220,7 +220,7 @@ unsafe fn read_shape(index: usize, shape: &ArealightShape) -> Result<ShapeLight,
         name: unsafe { read_name(shape.name, format!("shapes[{index}]")) },
         radiance: Vec3::from_array(shape.radiance),
         two_sided: read_flag(shape.two_sided, &field("two_sided"))?,
-        texture: None,
+        texture: read_flag(shape.textured, &field("textured"))?.then_some(shape.texture_layer),
         shape: kind,
     })
 }

@@ -208,7 +208,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             _ => sampled(resources.position),
         };
         let light_textures = match resources.light_textures {
-            image if effects.contains(Effects::TEXTURED) || image.view != 0 => filtered(image),
+            image if effects.intersects(Effects::IMAGES) || image.view != 0 => filtered(image),
             _ => in_place_of_textures,
         };
         let resources = ShadeResources {
@@ -344,6 +344,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_SPHERE, Effects::SPHERE),
             (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
             (c::AREALIGHT_EFFECT_MESH, Effects::MESH),
+            (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
             (c::AREALIGHT_EFFECTS_ALL, Effects::all()),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");

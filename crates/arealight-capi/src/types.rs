@@ -27,8 +27,10 @@ pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
 pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
 /// Some light has several faces: a mesh.
 pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
+/// Some disk or ellipse shows an image: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 /// Every effect: right for any lights, at the highest cost.
-pub const AREALIGHT_EFFECTS_ALL: u32 = 3967;
+pub const AREALIGHT_EFFECTS_ALL: u32 = 8063;
 
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
@@ -283,7 +285,7 @@ pub struct ArealightLight {
     pub face_count: u32,
 }
 
-/// A disk, sphere or tube of constant radiance, in world positions.
+/// A disk, sphere or tube of constant radiance, or a disk that shows an image, in world positions.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightShape {
@@ -305,6 +307,11 @@ pub struct ArealightShape {
     pub radiance: [f32; 3],
     /// 1: the back of an ellipse, or the inside of a sphere, emits too.
     pub two_sided: u32,
+    /// 1: an ellipse shows `texture_layer` of the light textures. Seen from the front, its rows run along `axis_u` and its top is where
+    /// `axis_v` points to; the parallelogram of both touches its edges.
+    pub textured: u32,
+    /// Read only with `textured`.
+    pub texture_layer: u32,
 }
 
 /// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
@@ -370,7 +377,7 @@ pub struct ArealightResources {
     /// AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     pub specular: ArealightImage,
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    /// describes. May be 0 without AREALIGHT_EFFECT_TEXTURED.
+    /// describes. May be 0 without AREALIGHT_EFFECT_TEXTURED and AREALIGHT_EFFECT_TEXTURED_ELLIPSE.
     pub light_textures: ArealightImage,
     /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     pub radiance: ArealightImage,

@@ -115,6 +115,9 @@ pub enum CaseShape {
         axis_u: DVec3,
         /// Half axis, perpendicular to the first.
         axis_v: DVec3,
+        /// Path beside the file of cases of an image that the radiance is multiplied with: as
+        /// [`ShapeLight::texture`](arealight::ShapeLight::texture) says.
+        texture: Option<String>,
     },
     /// A sphere that emits outwards.
     Sphere {
@@ -185,8 +188,10 @@ pub struct ShapeCase {
     pub normal: DVec3,
     /// Direction to the viewer, not zero, of any length.
     pub view: DVec3,
-    /// The light, relative to the shading point.
+    /// The light, relative to the shading point; the layer of its image is 0.
     pub light: ShapeLight,
+    /// The image that it shows.
+    pub image: Option<Arc<Texture>>,
 }
 
 /// A case is well-formed, but asks for what is not there yet.
@@ -268,6 +273,7 @@ fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
             center: fields.vector("center")?,
             axis_u: fields.direction("axis_u")?,
             axis_v: fields.direction("axis_v")?,
+            texture: fields.optional("texture", Fields::text)?.map(str::to_owned),
         },
         "sphere" => CaseShape::Sphere { center: fields.vector("center")?, radius: fields.length("radius")? },
         "cylinder" => CaseShape::Cylinder {
@@ -368,15 +374,18 @@ impl Case {
         })
     }
 
-    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder.
+    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as it is there.
     ///
     /// # Errors
     /// [`Unsupported`] with the reason, in words.
-    pub fn supported_shape(&self) -> Result<ShapeCase, Unsupported> {
+    pub fn supported_shape(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<ShapeCase, Unsupported> {
         self.check_fields()?;
         let shape = match self.light.shape {
             CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
-            CaseShape::Disk { center, axis_u, axis_v } => {
+            CaseShape::Disk { center, axis_u, axis_v, .. } => {
                 Shape::Ellipse { center: center - self.position, axis_u, axis_v }
             }
             CaseShape::Sphere { center, radius } => Shape::Sphere { center: center - self.position, radius },
@@ -387,11 +396,18 @@ impl Case {
                 Shape::Tube { p0, p1, radius, ends }
             }
         };
+        let image = match &self.light.shape {
+            CaseShape::Disk { texture: Some(path), .. } => {
+                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
+                Some(load(path).map_err(reason)?)
+            }
+            _ => None,
+        };
         let light = ShapeLight {
             name: self.name.clone(),
             radiance: self.light.radiance.as_vec3(),
             two_sided: self.light.two_sided,
-            texture: None,
+            texture: image.as_ref().map(|_| 0),
             shape,
         };
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
@@ -401,6 +417,7 @@ impl Case {
             normal: self.normal,
             view: self.view,
             light,
+            image,
         })
     }
 

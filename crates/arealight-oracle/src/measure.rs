@@ -20,7 +20,10 @@ impl Family {
     /// The family of a case.
     pub fn of(case: &Case) -> Self {
         let shape = case.light.shape.name();
-        let textured = matches!(&case.light.shape, CaseShape::Polygon { texture: Some(_), .. });
+        let textured = matches!(
+            &case.light.shape,
+            CaseShape::Polygon { texture: Some(_), .. } | CaseShape::Disk { texture: Some(_), .. }
+        );
         let material = match &case.material {
             CaseMaterial::Diffuse { .. } => "diffuse",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {

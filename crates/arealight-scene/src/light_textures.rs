@@ -106,7 +106,7 @@ pub(crate) struct TexturedLight {
     pub owner: Owner,
     /// Index into [`Scene::textures`].
     pub texture: u32,
-    /// Of its vertices, in the texture's coordinates; of a shape those of its box: the first and the last texel's outer corner.
+    /// Of its vertices, in the texture's coordinates; of a shape those of its box's corners, the first texel's first.
     pub uvs: Vec<DVec2>,
 }
 
@@ -248,10 +248,11 @@ impl Layers {
             }
             Owner::Shape(index) => {
                 // A shape shows the whole of a layer, upright
-                if rectangle.uvs.first() != Some(&rectangle.low) {
+                let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
+                let upright = |first: &DVec2| (*first - low).abs().cmplt(size * 0.5).all();
+                if !rectangle.uvs.first().is_some_and(upright) {
                     return Err("its texture is mirrored");
                 }
-                let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
                 let new = SceneLightTexture { texture: rectangle.texture, low, size };
                 scene.shapes[index].texture = Some(self.layer(rectangle.key(), new)?);
             }

@@ -96,12 +96,12 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
 }
 
 /// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture coordinates of the image's box around
-/// it: its first and its last corner. Or why there is none.
+/// it: its corners, the first one first. Or why there is none.
 fn upright(
     shape: &Shape,
     instance: &Instance,
     tolerance: UvTolerance,
-) -> Result<(Shape, [DVec2; 2]), String> {
+) -> Result<(Shape, [DVec2; 4]), String> {
     let Shape::Ellipse { center, axis_u, axis_v } = *shape else { return Err("it is no disk".into()) };
     // One map for the whole mesh: that of its largest triangle
     let corners = |triangle: &[u32; 3]| triangle.map(|index| instance.positions[index as usize]);
@@ -136,7 +136,8 @@ fn upright(
         axis_u: axis_u * turn.x + axis_v * turn.y,
         axis_v: axis_v * turn.x - axis_u * turn.y,
     };
-    Ok((turned, [middle - reach, middle + reach]))
+    let corner = |x: f64, y: f64| middle + reach * DVec2::new(x, y);
+    Ok((turned, [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]))
 }
 
 /// How much u may rise along the axis of v, over what v does: less than a texel of the largest image.

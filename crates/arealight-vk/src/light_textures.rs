@@ -199,6 +199,14 @@ impl LightTextures {
         lights.iter().try_for_each(|light| light.check_texture_layer(self.layers)).map_err(Error::from)
     }
 
+    /// As [`LightTextures::check_lights`], of lights that are no polygons.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] names the first one whose layer is not there.
+    pub fn check_shapes(&self, shapes: &[arealight::ShapeLight]) -> Result<(), Error> {
+        shapes.iter().try_for_each(|shape| shape.check_texture_layer(self.layers)).map_err(Error::from)
+    }
+
     /// How many layers there are.
     pub fn layers(&self) -> u32 {
         self.layers

@@ -36,7 +36,7 @@ pub struct ShadeResources {
     /// Where the glossy lobe's goes with [`RadianceImages::Apart`]: another image of that format. Else it is not used.
     pub glossy: Option<Resource>,
     /// The lights' textures ([`crate::LightTextures`]); the host sees to it that every light's layer is there. Read only with
-    /// [`arealight::Effects::TEXTURED`]: without it any 2D array image, the table's for instance.
+    /// [`arealight::Effects::IMAGES`]: without it any 2D array image, the table's for instance.
     pub light_textures: Resource,
     /// What [`ShadePass::pack_shapes`] gave. Read only with [`arealight::Effects::SHAPES`]: without them any buffer of 64 bytes
     /// or more.

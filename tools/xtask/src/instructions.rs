@@ -144,10 +144,13 @@ fn plans(root: &Path) -> Result<Vec<Plan>, TaskError> {
     plans.push(plan("all".to_owned(), all, &[])?);
     let one_point = numbers("FORM_FACTOR").into_iter().find(|(name, _)| name == "one_point");
     let one_point = one_point.ok_or_else(|| missing(LIBRARY, "AREALIGHT_FORM_FACTOR_ONE_POINT"))?.1;
+    let ellipse = bit("ellipse")?;
     for (name, bit) in &effects {
         // That of far lights matters with its rung alone
         let rungs: &[_] = if name == "far" { &[("FORM_FACTOR", one_point)] } else { &[] };
-        plans.push(plan(name.clone(), both_lobes ^ bit, rungs)?);
+        // And that of images on ellipses, with ellipses
+        let others = if name == "textured_ellipse" { both_lobes | ellipse } else { both_lobes };
+        plans.push(plan(name.clone(), others ^ bit, rungs)?);
     }
     for constant in ["FORM_FACTOR", "HORIZON", "FRESNEL", "LOBES", "FOOTPRINT"] {
         for (name, value) in numbers(constant) {

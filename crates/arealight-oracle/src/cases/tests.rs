@@ -84,7 +84,9 @@ fn every_light_and_lobe_is_read_and_what_is_not_there_yet_has_a_reason() {
 
 #[test]
 fn other_lights_become_shapes_relative_to_the_point() {
-    let shape = |light: &str| read_one(&case(GGX, light)).unwrap().supported_shape();
+    let white = Arc::new(Texture::from_fn(1, 1, |_, _| DVec3::ONE));
+    let load = |path: &str| if path == "white.exr" { Ok(white.clone()) } else { Err("no such file".into()) };
+    let shape = |light: &str| read_one(&case(GGX, light)).unwrap().supported_shape(load);
     let shape_reason = |light: &str| shape(light).unwrap_err().to_string();
     let disk =
         shape(r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#).unwrap();
@@ -104,6 +106,15 @@ fn other_lights_become_shapes_relative_to_the_point() {
     assert_eq!((ends(""), ends(r#", "caps": true"#)), (TubeEnds::Open, TubeEnds::Flat));
     // It emits outwards
     assert_eq!(ends(r#", "two_sided": true"#), TubeEnds::Open);
+    // A disk may show an image
+    let showing = |file: &str| {
+        let axes = r#""center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#;
+        format!(r#""type": "disk", {axes}, "texture": "{file}""#)
+    };
+    let shown = shape(&showing("white.exr")).unwrap();
+    assert_eq!((shown.light.texture, shown.image), (Some(0), Some(white.clone())));
+    assert_eq!((disk.light.texture, disk.image), (None, None));
+    assert_eq!(shape_reason(&showing("red.exr")), "light.texture: red.exr: no such file");
     // What is wrong
     assert_eq!(shape_reason(QUAD), "the light is a polygon");
     let flat = r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [2, 0, 0]"#;

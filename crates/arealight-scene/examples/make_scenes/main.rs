@@ -1,5 +1,6 @@
 //! Writes the scenes of `scenes/`: `cargo run -p arealight-scene --example make_scenes [FOLDER]`.
 
+mod clock;
 mod demo;
 mod lamps;
 mod room;
@@ -21,6 +22,7 @@ fn main() -> std::io::Result<()> {
         ("demo.glb", demo::glb()),
         ("screen.glb", screen::glb()),
         ("shapes.glb", lamps::glb()),
+        ("clock.glb", clock::glb()),
     ];
     for (name, bytes) in scenes {
         let path = folder.join(name);

@@ -35,7 +35,7 @@ pub fn glb() -> Vec<u8> {
 }
 
 /// A dark metal floor whose roughness rises from the left to the right, without steps and slowly at first.
-fn ground(writer: &mut Writer) {
+pub fn ground(writer: &mut Writer) {
     let ramp = RgbImage::from_fn(64, 1, |x, _| {
         let share = (f64::from(x) + 0.5) / 64.0;
         let roughness = ROUGHNESS[0] + (ROUGHNESS[1] - ROUGHNESS[0]) * share * share;
@@ -86,7 +86,7 @@ fn lamp(writer: &mut Writer) {
 }
 
 /// A texture that does not repeat.
-fn texture(writer: &mut Writer, name: &str, image: &RgbImage) -> usize {
+pub fn texture(writer: &mut Writer, name: &str, image: &RgbImage) -> usize {
     let mut png = std::io::Cursor::new(Vec::new());
     image.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
     let texture = writer.texture(name, png.get_ref());

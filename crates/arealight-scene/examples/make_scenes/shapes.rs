@@ -31,13 +31,23 @@ impl Shape {
     }
 
     /// The shape, in the plane z = 0, with an image that fills its box, upright.
-    pub fn with_image(mut self) -> Self {
-        let range = |axis: usize| {
-            let along = || self.positions.iter().map(|p| p[axis]);
+    pub fn with_image(self) -> Self {
+        self.with_image_along(1, 1.0)
+    }
+
+    /// The shape, in the plane y = 0, with an image that fills its box; seen from above, its top is at negative z.
+    pub fn with_image_from_above(self) -> Self {
+        self.with_image_along(2, -1.0)
+    }
+
+    /// The rows run along x; the top is where `axis` times `sign` is largest.
+    fn with_image_along(mut self, axis: usize, sign: f32) -> Self {
+        let range = |axis: usize, sign: f32| {
+            let along = || self.positions.iter().map(|p| sign * p[axis]);
             (along().fold(f32::MAX, f32::min), along().fold(f32::MIN, f32::max))
         };
-        let ((left, right), (bottom, top)) = (range(0), range(1));
-        let uv = |[x, y, _]: &[f32; 3]| [(x - left) / (right - left), (top - y) / (top - bottom)];
+        let ((left, right), (bottom, top)) = (range(0, 1.0), range(axis, sign));
+        let uv = |p: &[f32; 3]| [(p[0] - left) / (right - left), (top - sign * p[axis]) / (top - bottom)];
         self.uvs = self.positions.iter().map(uv).collect();
         self
     }

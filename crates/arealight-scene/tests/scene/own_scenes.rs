@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{demo, lamps, room, screen, sweep, test_card};
+use crate::{clock, demo, lamps, room, screen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -35,6 +35,7 @@ fn the_files_are_what_the_program_makes() {
         ("demo.glb", demo::glb()),
         ("screen.glb", screen::glb()),
         ("shapes.glb", lamps::glb()),
+        ("clock.glb", clock::glb()),
     ];
     for (name, bytes) in scenes {
         let file = std::fs::read(path(name)).unwrap();
@@ -88,7 +89,7 @@ fn the_demo_shows_what_there_is() {
     let scene = load("demo.glb");
     assert_eq!(
         scene.effects(),
-        Effects::all() - Effects::FAR - Effects::TEXTURED - Effects::SHAPES - Effects::MESH,
+        Effects::all() - Effects::FAR - Effects::IMAGES - Effects::SHAPES - Effects::MESH,
         "screen.glb has textures"
     );
     let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
@@ -109,7 +110,7 @@ fn the_demo_shows_what_there_is() {
 #[test]
 fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let scene = load("screen.glb");
-    let others = Effects::FAR | Effects::SPECULAR_INPUT | Effects::SHAPES | Effects::MESH;
+    let others = Effects::FAR | Effects::SPECULAR_INPUT | Effects::OF_SHAPES | Effects::MESH;
     assert_eq!(scene.effects(), Effects::all() - others);
     let layer = |name: &str| {
         let light = scene.lights.iter().find(|light| light.name == name).unwrap();
@@ -136,6 +137,29 @@ fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     assert!(ends.iter().zip(screen::ROUGHNESS).all(|(a, b)| (a - b).abs() < 0.016), "{ends:?}");
     // Both sides of the sign show it
     assert!(scene.lights.iter().any(|light| light.two_sided && light.texture.is_some()));
+}
+
+#[test]
+fn the_clock_is_a_disk_that_shows_its_face_upright() {
+    let scene = load("clock.glb");
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    assert_eq!(
+        scene.effects(),
+        lobes | Effects::TWO_SIDED | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE,
+        "no polygon shows anything"
+    );
+    let [clock] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+    assert_eq!((clock.texture, clock.two_sided), (Some(0), true));
+    let arealight::Shape::Ellipse { axis_u, axis_v, .. } = clock.shape else { panic!("{clock:?}") };
+    // From the camera, its rows run to the right and its top is up
+    let camera = scene.camera(None, 16.0 / 9.0).unwrap();
+    let right = camera.forward.cross(DVec3::Y).normalize_or_zero();
+    assert!(axis_u.dot(right) > 0.9 * clock::RADIUS && axis_v.y > 0.9 * clock::RADIUS, "{clock:?}");
+    let source = scene.light_texture_source(0).unwrap();
+    assert_eq!([source.width, source.height], [clock::SIDE; 2]);
+    assert!(
+        (source.part.low.abs().max_element() < 1e-4) && (source.part.size - 1.0).abs().max_element() < 1e-4
+    );
 }
 
 #[test]

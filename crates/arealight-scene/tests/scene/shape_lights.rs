@@ -1,11 +1,12 @@
 //! Disks, spheres and tubes: of `EXT_lights_area`, and emissive meshes that stand for them.
 
-use crate::shapes::{floor, sphere};
+use crate::shapes::{disk, floor, sphere};
 use crate::writer::Writer;
 use crate::{emitter_with, load, warnings};
 use arealight::{Effects, Shape, TubeEnds};
 use arealight_scene::{Scene, required_effects};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
+use image::{Rgb, RgbImage};
 use serde_json::{Value, json};
 
 #[test]
@@ -128,4 +129,70 @@ fn words_that_do_not_hold_leave_the_mesh_as_it_is() {
     let longer = json!({ "scale": [1, 2, 1] });
     let said = json!({ "shape": "cylinder", "radius": 1, "height": 1 });
     assert_eq!(emitter(&said, longer, false).shapes.len(), 1);
+}
+
+/// A disk of radius 1 whose uv is this function of its place in x and z.
+fn disk_showing(uv: impl Fn(f32, f32) -> [f32; 2], node: Value) -> Scene {
+    let mut node = node;
+    node["extras"] = json!({ "arealight": { "shape": "disk", "radius": 1 } });
+    let mut shape = disk(1.0, 24);
+    shape.uvs = shape.positions.iter().map(|[x, _, z]| uv(*x, *z)).collect();
+    let mut writer = Writer::new();
+    let picture = RgbImage::from_fn(16, 8, |x, y| Rgb([x as u8 * 9, y as u8 * 20, 200]));
+    let texture = crate::screen::texture(&mut writer, "picture", &picture);
+    let material = writer.emitter_of_image("glow", [3.0, 2.0, 1.0], texture, false);
+    writer.object("disk", &shape, material, node);
+    load(writer)
+}
+
+#[test]
+fn disks_show_what_their_meshes_show() {
+    // A quarter of the image, which is turned by 30 degrees; the node stretches it
+    let (sin, cos) = (30_f32).to_radians().sin_cos();
+    let uv = |x: f32, z: f32| [0.25 + 0.25 * (cos * x + sin * z), 0.75 + 0.25 * (cos * z - sin * x)];
+    let scene = disk_showing(uv, json!({ "scale": [2, 1, 1] }));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+    assert_eq!((light.texture, light.radiance), (Some(0), Vec3::new(3.0, 2.0, 1.0)));
+    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
+    // What is at the ends of the axes is at the middles of the box's edges
+    let (sin, cos) = (f64::from(sin), f64::from(cos));
+    let near = |a: DVec3, b: DVec3| (a - b).length() < 1e-4;
+    assert!(near(axis_u, DVec3::new(2.0 * cos, 0.0, sin)), "{axis_u}");
+    assert!(near(axis_v, DVec3::new(2.0 * sin, 0.0, -cos)), "{axis_v}");
+    assert!(near(center, DVec3::ZERO) && axis_u.cross(axis_v).y > 0.0);
+    let layer = scene.light_textures[0];
+    assert!((layer.low - DVec2::new(0.0, 0.5)).length() < 1e-4, "{layer:?}");
+    assert!((layer.size - DVec2::splat(0.5)).length() < 1e-4, "{layer:?}");
+    assert!(scene.effects().contains(Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE));
+}
+
+#[test]
+fn what_a_disk_cannot_show_its_mesh_does() {
+    let place = |x: f32, z: f32| [0.5 + 0.5 * x, 0.5 + 0.5 * z];
+    for (uv, text) in [
+        (Box::new(|x: f32, z: f32| [0.5 - 0.5 * x, 0.5 + 0.5 * z]) as Box<dyn Fn(f32, f32) -> _>, "mirrored"),
+        (Box::new(|x, z| [0.5 + 0.3 * x + 0.2 * z, 0.5 + 0.5 * z]), "sheared"),
+        (Box::new(|x, z| [0.5 + 0.5 * x * x, 0.5 + 0.5 * z]), "not laid flat"),
+        (Box::new(|_, _| [0.5, 0.5]), "a line"),
+    ] {
+        let scene = disk_showing(uv, json!({}));
+        assert!(scene.shapes.is_empty() && !scene.lights.is_empty(), "{text}");
+        let warnings = warnings(&scene);
+        assert!(
+            warnings[0].contains("the mesh's own polygons shine") && warnings[0].contains(text),
+            "{warnings:?}"
+        );
+    }
+    // The twin
+    assert_eq!(disk_showing(place, json!({})).shapes.len(), 1);
+    // Spheres have one colour
+    let said = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
+    let mut writer = Writer::new();
+    let texture = crate::screen::texture(&mut writer, "picture", &RgbImage::new(2, 2));
+    let material = writer.emitter_of_image("glow", [3.0, 2.0, 1.0], texture, false);
+    writer.object("ball", &sphere(1.0, 8, 4), material, json!({ "extras": said }));
+    let scene = load(writer);
+    assert_eq!(scene.shapes[0].texture, None);
+    assert!(warnings(&scene)[0].contains("only disks show images"));
 }

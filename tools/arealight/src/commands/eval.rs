@@ -10,7 +10,9 @@ use arealight_oracle::answers::{Answer, read_answers, write_answers};
 use arealight_oracle::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::measure::{Measure, UnknownTruth, measure};
-use arealight_oracle::shading::{Truth, ltc_on, shape_ltc_on, shape_truth, truth};
+use arealight_oracle::shading::{
+    RelativeLight, Truth, ltc_on, shape_ltc_on, shape_truth, textured_ellipse, truth,
+};
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use indicatif::ParallelProgressIterator;
@@ -175,7 +177,7 @@ fn supported(
     if matches!(case.light.shape, CaseShape::Polygon { .. }) {
         return case.supported(load).map(Supported::Polygon).map_err(|error| error.to_string());
     }
-    case.supported_shape().map(Supported::Shape).map_err(|error| error.to_string())
+    case.supported_shape(load).map(Supported::Shape).map_err(|error| error.to_string())
 }
 
 /// One answer a case, in their order: the radiance, or why there is none.
@@ -209,8 +211,12 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
                 Answer::new(name, ltc_on(quality, &table, surface, *normal, *view, light))
             });
             let shapes = answer_in_parallel(&shapes, |case| {
-                let ShapeCase { name, surface, normal, view, light } = case;
-                Answer::new(name, shape_ltc_on(quality, &table, surface, *normal, *view, light))
+                let ShapeCase { name, surface, normal, view, light, .. } = case;
+                let radiance = match textured(case) {
+                    Some(light) => ltc_on(quality, &table, surface, *normal, *view, &light),
+                    None => shape_ltc_on(quality, &table, surface, *normal, *view, light),
+                };
+                Answer::new(name, radiance)
             });
             (polygons, shapes)
         }
@@ -221,8 +227,12 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
                 answer_by_cubature(name, truth(surface, *normal, *view, light, &settings))
             });
             let shapes = answer_in_parallel(&shapes, |case| {
-                let ShapeCase { name, surface, normal, view, light } = case;
-                answer_by_cubature(name, shape_truth(surface, *normal, *view, light, &settings))
+                let ShapeCase { name, surface, normal, view, light, .. } = case;
+                let found = match textured(case) {
+                    Some(light) => truth(surface, *normal, *view, &light, &settings),
+                    None => shape_truth(surface, *normal, *view, light, &settings),
+                };
+                answer_by_cubature(name, found)
             });
             (polygons, shapes)
         }
@@ -238,6 +248,11 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
         answer.unwrap_or_else(|| Answer::none(&case.name, "no answer was given"))
     };
     Ok(cases.iter().zip(&sorted).map(answer).collect())
+}
+
+/// The light of a case that shows an image, as the polygon that stands for it.
+fn textured(case: &ShapeCase) -> Option<RelativeLight> {
+    textured_ellipse(&case.light, Arc::clone(case.image.as_ref()?))
 }
 
 /// Above this share of the radiance a cubature's error estimate makes it no truth. It is reached only where

@@ -91,7 +91,7 @@ impl Arguments {
         FrameLoad {
             lights: (scene.lights.len() + scene.shapes.len()) as u32,
             megapixels: pixels * 1e-6,
-            textured: scene.effects().contains(Effects::TEXTURED),
+            textured: scene.effects().intersects(Effects::IMAGES),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
 use arealight::{LightTexture, PolygonLight, Quality};
-use arealight_engine::EvalPoint;
+use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::SupportedCase;
 use arealight_oracle::texture::Texture;
@@ -30,7 +30,7 @@ pub fn answer(
         Vec::new()
     } else {
         let engine = engine.get()?;
-        arealight_benches::pictures::load(engine, &images.layers).map_err(|error| failure(error, input))?;
+        images.load(engine).map_err(|error| failure(error, input))?;
         engine.eval(&shaded, quality).map_err(|error| failure(error, input))?
     };
     // Put the reasons in between
@@ -69,17 +69,22 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
 
 /// The images that lights show, a layer each.
 #[derive(Default)]
-struct Images {
+pub struct Images {
     layers: Vec<Arc<Texture>>,
 }
 
 impl Images {
     /// The layer of an image.
-    fn layer(&mut self, image: &Arc<Texture>) -> u32 {
+    pub fn layer(&mut self, image: &Arc<Texture>) -> u32 {
         let known = self.layers.iter().position(|layer| Arc::ptr_eq(layer, image));
         known.unwrap_or_else(|| {
             self.layers.push(Arc::clone(image));
             self.layers.len() - 1
         }) as u32
+    }
+
+    /// Loads them, in place of those there were.
+    pub fn load(&self, engine: &mut Engine) -> Result<(), EngineError> {
+        arealight_benches::pictures::load(engine, &self.layers)
     }
 }

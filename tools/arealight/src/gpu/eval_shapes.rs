@@ -1,8 +1,9 @@
 //! Reference cases of disks, spheres and cylinders on the GPU.
 
+use super::eval::Images;
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::Quality;
+use arealight::{Quality, ShapeLight};
 use arealight_engine::ShapePoint;
 use arealight_oracle::answers::Answer;
 use arealight_oracle::cases::ShapeCase;
@@ -20,19 +21,23 @@ pub fn answer(
     if cases.is_empty() {
         return Ok(Vec::new());
     }
-    let points: Vec<ShapePoint> = cases.iter().map(point).collect();
-    let radiance = engine.get()?.eval_shapes(&points, quality).map_err(|error| failure(error, input))?;
+    let mut images = Images::default();
+    let points: Vec<ShapePoint> = cases.iter().map(|case| point(case, &mut images)).collect();
+    let engine = engine.get()?;
+    images.load(engine).map_err(|error| failure(error, input))?;
+    let radiance = engine.eval_shapes(&points, quality).map_err(|error| failure(error, input))?;
     let answers = cases.iter().zip(radiance);
     Ok(answers.map(|(case, radiance)| Answer::new(&case.name, radiance.as_dvec3())).collect())
 }
 
 /// A case's light is relative to its shading point already.
-fn point(case: &ShapeCase) -> ShapePoint {
+fn point(case: &ShapeCase, images: &mut Images) -> ShapePoint {
+    let texture = case.image.as_ref().map(|image| images.layer(image));
     ShapePoint {
         surface: case.surface,
         position: DVec3::ZERO,
         normal: case.normal,
         view: case.view,
-        light: case.light.clone(),
+        light: ShapeLight { texture, ..case.light.clone() },
     }
 }
