@@ -27,6 +27,8 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #define GLOSSY_BINDING 10
 #define TILE_LISTS_BINDING 11
 #define TILE_LISTS_ACCESS readonly
+// The lights are the frame's, or the tile's, which is the group's
+#define AREALIGHT_UNIFORM_LIGHTS 1
 #include "table_image.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"
