@@ -3,6 +3,7 @@
 # Goes on after a step that fails, ends with a summary, and fails if any step did.
 #
 # With AREALIGHT_REQUIRE_GPU=1 (as in CI) a test without a Vulkan device fails. Otherwise it is skipped and listed.
+# With AREALIGHT_ASSISTED=all every GPU test runs under GPU-assisted validation too, not only those that are not batteries.
 set -uo pipefail
 
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
@@ -51,13 +52,16 @@ run_tests() {
 }
 
 # Runs the GPU tests again with the shaders instrumented: an access out of bounds is found. (The tests above run
-# under core and synchronisation validation, which cannot be had together with this.) What runs for a minute without a
-# device is left out.
+# under core and synchronisation validation, which cannot be had together with this.) The batteries, tests of numbers, are left
+# out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too.
+batteries='bits|effects|footprints|guard|properties|shading|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
 run_assisted() {
+    local left_out="binary(/^($batteries)\$/)"
+    if [[ "${AREALIGHT_ASSISTED:-}" == all ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
         AREALIGHT_VALIDATION=gpu-assisted cargo nextest run --workspace --locked \
-            -E '(package(arealight-tests) or package(arealight-examples)) - test(the_guard_outlives_the_optimiser)'
+            -E "(package(arealight-tests) or package(arealight-examples)) - $left_out"
     else
         AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked -- \
             --skip the_guard_outlives_the_optimiser
