@@ -4,11 +4,13 @@ use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::table::{LobeHorizon, mirror_frame};
 use arealight::{Effects, LightTable, PolygonLight, Quality, Shape, ShapeLight, TileClass, TubeEnds};
 use arealight_engine::{SceneRenderer, TileCounts};
+use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};
 use arealight_tests::TestEngine;
 use arealight_vk::{Error, TiledShade};
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use std::path::Path;
+use std::sync::Arc;
 
 /// No multiple of a tile's side.
 const SIZE: [u32; 2] = [61, 37];
@@ -211,6 +213,34 @@ fn shapes_that_are_above_are_not_clipped_and_those_that_no_pixel_sees_cost_no_ti
     assert!(below.count(TileClass::Empty) > above.count(TileClass::Empty), "{:?}", below.counts);
     // The twin: pictures of other heights differ
     assert!(!is_same(&Pictures { tiled: below.tiled, ..above }));
+}
+
+#[test]
+fn images_of_disks_are_looked_up_by_tiles_too() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    let textures = [Texture::gradient(128, 128), Texture::from_fn(128, 128, |_, _| DVec3::ONE)].map(Arc::new);
+    arealight_benches::pictures::load(&mut engine, &textures).unwrap();
+    let shade = |layer| {
+        let mut scene = shape_scene(1.0);
+        scene.shapes.retain(|shape| matches!(shape.shape, Shape::Ellipse { .. }));
+        scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(layer));
+        let effects = Effects::DIFFUSE | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
+        pictures(&engine, &scene, &[], effects, TileOptions::default())
+    };
+    let found = shade(0);
+    assert!(
+        found.count(TileClass::QuadsAbove) > 0 && found.count(TileClass::Quads) > 0,
+        "{:?}",
+        found.counts
+    );
+    // Both forms round where the light comes from, which may move a lookup by 1/256 of what texels differ by: 1/128
+    let is_same = |found: &Pictures| {
+        let pixels = found.plain.iter().zip(&found.tiled);
+        pixels.into_iter().all(|(a, b)| (*a - *b).abs().max_element() <= 1e-4 * a.max_element() + 1e-6)
+    };
+    assert!(is_same(&found));
+    // The twin: without the image they are seen to differ
+    assert!(!is_same(&Pictures { tiled: shade(1).tiled, ..found }));
 }
 
 /// Lamps over the floor of the sweep, some bright and most dim.
