@@ -1,6 +1,6 @@
-//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses, and what images on them cost; and a floor under 10 to 1,000 lamps of which
-//! those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with `-- disks` the disks alone. Prints
-//! Markdown tables.
+//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses, and what images on them cost; and a floor
+//! under 10 to 1,000 lamps of which those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with
+//! `-- disks` the disks alone. Prints Markdown tables.
 
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, Quality};

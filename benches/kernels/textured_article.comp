@@ -27,7 +27,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 
 vec3 article_lobe(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen, ArealightPolygonLight light,
                   ArealightArcs walked, ArealightQuad quad, ArealightQuality quality) {
-    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, walked, quad, light, EFFECTS, quality);
+    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, walked, quad, EFFECTS, quality);
     ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
     // The foot of the perpendicular: the plane met along its normal
     ArealightSeenPoint foot = arealight_seen_point(image, image.normal);

@@ -137,14 +137,20 @@ fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
 }
 
+/// The middles of as many squares, side by side, as cover one of `side` metres about the origin in x and z, row by row; and their side.
+fn grid(count: usize, side: f64) -> (f64, impl Iterator<Item = DVec3>) {
+    let columns = (count as f64).sqrt().ceil() as usize;
+    let step = side / columns as f64;
+    let place = move |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
+    (step, (0..count).map(move |index| DVec3::new(place(index % columns), 0.0, place(index / columns))))
+}
+
 /// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so high as half of what
 /// is between them.
 pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
-    let columns = (count as f64).sqrt().ceil() as usize;
-    let step = side / columns as f64;
-    let lamp = |index: usize| {
-        let place = |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
-        let at = center + DVec3::new(place(index % columns), 0.5 * step, place(index / columns));
+    let (step, places) = grid(count, side);
+    let lamp = |(index, place): (usize, DVec3)| {
+        let at = center + place.with_y(0.5 * step);
         let half = 0.1 * step;
         // Its front is down
         let corner = |x: f64, z: f64| at + DVec3::new(x * half, 0.0, z * half);
@@ -155,16 +161,14 @@ pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
             ..PolygonLight::default()
         }
     };
-    (0..count).map(lamp).collect()
+    places.enumerate().map(lamp).collect()
 }
 
 /// Disks that face down to `center` from `height` above it, side by side as many as a square of `side` holds.
 pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLight> {
-    let columns = (count as f64).sqrt().ceil() as usize;
-    let step = side / columns as f64;
-    let disk = |index: usize| {
-        let place = |at: usize| (at as f64 + 0.5) * step - 0.5 * side;
-        let center = center + DVec3::new(place(index % columns), height, place(index / columns));
+    let (step, places) = grid(count, side);
+    let disk = |(index, place): (usize, DVec3)| {
+        let center = center + place.with_y(height);
         let radius = 0.4 * step;
         // x cross z is down
         let shape = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
@@ -176,7 +180,7 @@ pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLi
             shape,
         }
     };
-    (0..count).map(disk).collect()
+    places.enumerate().map(disk).collect()
 }
 
 /// Frames as a Markdown table, all of them held against the same.

@@ -71,7 +71,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Lights {
 const float MARGIN = 1e-5;
 
 const bool HAS_DIFFUSE = (EFFECTS & AREALIGHT_EFFECT_DIFFUSE) != 0u;
-const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
+const bool HAS_SHAPES = (EFFECTS & ANY_SHAPE) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & AREALIGHT_EFFECT_GLOSSY) != 0u;
 // Whether the horizon of the glossy lobe can be known: the table's cells say nothing of the formula's.
 const bool HAS_HORIZON = HAS_GLOSSY && LOBES != AREALIGHT_LOBES_FORMULA;

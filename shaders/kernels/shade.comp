@@ -76,8 +76,7 @@ void main() {
                 index++;
             } while (index < constants.light_count);
         }
-        if ((EFFECTS & EFFECTS_OF_SHAPES) != 0u
-            && constants.shape_count != 0u) {
+        if ((EFFECTS & ANY_SHAPE) != 0u && constants.shape_count != 0u) {
             uint index = 0u;
             do {
                 ArealightShape shape = load_shape(index, SHAPE_ANY);

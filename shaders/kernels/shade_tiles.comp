@@ -75,8 +75,7 @@ PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
             index++;
         } while (index < total);
     }
-    if ((EFFECTS & EFFECTS_OF_SHAPES) != 0u
-        && constants.shape_count != 0u) {
+    if ((EFFECTS & ANY_SHAPE) != 0u && constants.shape_count != 0u) {
         quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
         uint index = 0u;
         do {

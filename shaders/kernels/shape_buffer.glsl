@@ -18,7 +18,7 @@ struct ArealightGpuShape {
 };
 
 // Some light is a shape: Effects::SHAPES in Rust.
-const uint EFFECTS_OF_SHAPES = AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE;
+const uint ANY_SHAPE = AREALIGHT_EFFECT_ELLIPSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE;
 
 const uint SHAPE_TWO_SIDED = 1u;
 // Each shape is what its record says

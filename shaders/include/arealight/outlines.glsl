@@ -7,9 +7,9 @@
 // Walks around outlines of any number of vertices: in the cosine spaces of all lobes at once, four vertices a pass. Reading a
 // vertex and going round a loop cost more than an edge's arithmetic, so both are shared.
 
-// Whether all invocations of a group shade with the same lights in the same order. A host that says so is promised nothing
-// but time: loops then end where they know that they have to, not a pass later, which counts on devices that run masked
-// passes. Where it is not so, such a device (lavapipe, Mesa 22.3) takes what the last pass computed for all of a group.
+// Whether all invocations of a group shade with the same lights in the same order. Where a host says so, loops end with their
+// last pass; else they begin one more to find that there is none, which takes its time on devices that run masked passes. It must
+// hold: where it does not, such a device (lavapipe, Mesa 22.3) takes what the last pass computed for all of a group.
 #ifndef AREALIGHT_UNIFORM_LIGHTS
 #define AREALIGHT_UNIFORM_LIGHTS 0
 #endif
@@ -55,7 +55,8 @@ ArealightLobeViews arealight_lobe_views(ArealightShadingPoint point, ArealightSe
     return views;
 }
 
-// Begins a walk at the outline's last vertex, an offset from the light's center.
+// Begins a walk at the outline's last vertex, an offset from the light's center. Where the surface's horizon does not clip by
+// itself, `walk` and `last` are all of the state.
 ArealightSurfaceWalk arealight_outline_begin(ArealightLobeView view, vec3 last, ArealightQuality quality) {
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         return arealight_surface_walk_begin(view.transform * last, arealight_vertex_height(view, last));

@@ -52,8 +52,9 @@ bool arealight_is_one_point(ArealightLobeView view, ArealightSeenLight seen, Are
 }
 
 // The arcs around a polygon light in a lobe's cosine space: `walked` with AREALIGHT_EFFECT_POLYGON, around `quad` without.
-ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen, ArealightArcs walked,
-                                  ArealightQuad quad, ArealightPolygonLight light, uint effects, ArealightQuality quality) {
+ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen,
+                                  ArealightPolygonLight light, ArealightArcs walked, ArealightQuad quad, uint effects,
+                                  ArealightQuality quality) {
     if (arealight_is_one_point(view, seen, light, effects, quality)) {
         return arealight_one_point(view.center, seen.facing * lobe.space.determinant);
     }
@@ -156,7 +157,7 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, ArealightLobeView view, Arealigh
         return lobe.albedo * arealight_lobe_parts(view, lobe.gain, image, light, seen, quad, effects, quality);
     }
 #endif
-    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, walked, quad, light, effects, quality);
+    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, walked, quad, effects, quality);
     vec3 color = vec3(min(arealight_form_factor(arcs, light.two_sided) * lobe.gain, 1.0));
 #if AREALIGHT_LIGHT_TEXTURES
     if (textured) {
