@@ -7,7 +7,7 @@ use crate::ladder::Spread;
 use crate::ladder::methods::{LOBES, SHADE_YARDSTICK, Yardstick};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
-use arealight::kernels::{Kernel, SHADE};
+use arealight::kernels::Kernel;
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
 use arealight::{Effects, Horizon, PolygonLight, Quality, Shape, ShapeLight, TileClass};
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
@@ -41,6 +41,7 @@ impl Baseline {
 
     /// Its kernel, and that kernel's specialisation.
     fn kernel(self, options: ShadeOptions) -> (&'static Kernel, Vec<(u32, u32)>) {
+        let shade = options.reads.shade();
         match self {
             Self::Practice => {
                 let practice = Yardstick::Practice as u32;
@@ -48,11 +49,11 @@ impl Baseline {
             }
             Self::Bare => {
                 let quality = Quality { horizon: Horizon::Bare, ..options.quality };
-                (&SHADE, shade_specialization(ShadeOptions { quality, ..options }))
+                (shade, shade_specialization(ShadeOptions { quality, ..options }))
             }
             Self::Plain => {
                 let effects = options.effects - Effects::TEXTURED_ELLIPSE;
-                (&SHADE, shade_specialization(ShadeOptions { effects, ..options }))
+                (shade, shade_specialization(ShadeOptions { effects, ..options }))
             }
         }
     }
@@ -78,7 +79,8 @@ pub struct TiledFrame {
     pub error: [f64; 2],
 }
 
-/// Shades a frame by each method in `rounds` rounds, after one that warms up.
+/// Shades a frame by each method in `rounds` rounds, after one that warms up. `options` says how lights are read by all but the
+/// practice, which reads them by item.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -97,7 +99,7 @@ pub fn measure(
     for round in 0..=rounds {
         let took = [
             clocked(host, || renderer.shade_by(kernel, &specialization))?,
-            clocked(host, || renderer.shade_by(&SHADE, &exact))?,
+            clocked(host, || renderer.shade_by(options.reads.shade(), &exact))?,
             clocked(host, || renderer.shade_tiled(&view))?,
         ];
         if round > 0 {
@@ -105,7 +107,7 @@ pub fn measure(
         }
     }
     let by_tiles = renderer.radiance()?;
-    renderer.shade_by(&SHADE, &exact)?;
+    renderer.shade_by(options.reads.shade(), &exact)?;
     let without = renderer.radiance()?;
     // On a software device seconds are of all its processors
     let processors = if is_software(host) { crate::ladder::frame::processors() } else { 1.0 };

@@ -5,16 +5,14 @@
 // the binding after it) and LIGHT_TEXTURES_BINDING.
 
 #include "light_textures.glsl"
+#include "light_records.glsl"
 #define AREALIGHT_LIGHT_MESHES 1
+#define AREALIGHT_FOUR_VERTICES READ_TOGETHER
 #include "arealight/polygon_light.glsl"
-#include "buffers.glsl"
 
 // What a convex quad without an image never calls for: Effects::BEYOND_QUADS in Rust.
 const uint BEYOND_QUADS = AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_MESH;
 
-layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
-    ArealightGpuLight lights[];
-};
 layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVertices {
     vec4 light_vertices[];
 };
@@ -23,12 +21,20 @@ vec3 arealight_bridge_vertex(uint index) {
     return light_vertices[index].xyz;
 }
 
+#if READ_TOGETHER
+mat4x3 arealight_bridge_four_vertices(uint first, uint last) {
+    vec3 vertex = light_vertices[min(first + row_to_read(4u), last)].xyz;
+    return mat4x3(subgroupShuffle(vertex, 0u), subgroupShuffle(vertex, 1u), subgroupShuffle(vertex, 2u),
+                  subgroupShuffle(vertex, 3u));
+}
+#endif
+
 uint arealight_bridge_face_size(uint index) {
     return uint(light_vertices[index].w);
 }
 
 ArealightPolygonLight load_light(uint index) {
-    ArealightGpuLight record = lights[index];
+    ArealightGpuLight record = light_record(index);
     ArealightImage image = ArealightImage(record.texture_layer, record.texture_corner, record.texture_axis_u,
                                           record.texture_axis_v, record.texture_low, record.texture_size);
     return ArealightPolygonLight(record.radiance, record.first_vertex, record.vertex_count, record.center,

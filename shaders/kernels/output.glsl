@@ -37,7 +37,7 @@ vec4 output_texel(vec3 radiance, bool hit) {
     if ((OUTPUT & OUTPUT_HALF) != 0) {
         radiance = round_to_half(min(radiance, vec3(LARGEST_HALF)));
     }
-    return vec4(radiance, hit ? 1.0 : 0.0);
+    return hit ? vec4(radiance, 1.0) : vec4(0.0);
 }
 
 // Stores what a pixel reflects; `hit`: it has a surface.

@@ -13,6 +13,9 @@ const uint CLASS_QUADS = 2u;
 const uint CLASS_ABOVE = 3u;
 const uint CLASS_ANY = 4u;
 
+// In the place of a class: all tiles of a frame, none of which was classified.
+const uint TILE_NOT_CLASSIFIED = 5u;
+
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
 // - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles;

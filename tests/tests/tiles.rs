@@ -74,6 +74,11 @@ fn pictures(
     })
 }
 
+/// Every frame is classified, however few lights it has.
+fn every_frame() -> TileOptions {
+    TileOptions { least_quads: 0, ..TileOptions::default() }
+}
+
 impl Pictures {
     fn count(&self, class: TileClass) -> u32 {
         self.counts.classes.iter().find(|(found, _)| *found == class).expect("every class is counted").1
@@ -101,7 +106,7 @@ impl Pictures {
 fn quads_give_the_same_picture_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
-    let found = pictures(&engine, &scene, &scene.lights, scene.effects(), TileOptions::default());
+    let found = pictures(&engine, &scene, &scene.lights, scene.effects(), every_frame());
     assert_eq!(found.plain, found.tiled);
     assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
     assert_eq!(found.all_tiles(), 8 * 5, "{:?}", found.counts);
@@ -114,11 +119,21 @@ fn quads_give_the_same_picture_to_the_bit() {
 }
 
 #[test]
+fn few_quads_are_not_classified_and_give_the_same_picture_to_the_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let scene = scene("sweep.glb");
+    let found = pictures(&engine, &scene, &scene.lights, scene.effects(), TileOptions::default());
+    assert_eq!(found.plain, found.tiled);
+    assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
+    assert!(!found.counts.is_classified(), "{:?}", found.counts);
+}
+
+#[test]
 fn a_room_of_any_lights_differs_by_rounding_whether_its_lists_hold_them_or_not() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("room.glb");
     // Some tiles have more lights
-    let tiles = TileOptions { capacity: 5, ..TileOptions::default() };
+    let tiles = TileOptions { capacity: 5, ..every_frame() };
     let found = pictures(&engine, &scene, &scene.lights, scene.effects(), tiles);
     assert_eq!(found.different(&scene.lights), 0, "{:?}", found.counts);
     assert!(found.count(TileClass::Any) > 0, "{:?}", found.counts);
@@ -159,11 +174,11 @@ fn hard_lights_and_none_differ_by_rounding() {
     let scene = scene("sweep.glb");
     let lights = hard_lights(scene.bounds.center());
     let effects = scene.effects() | Effects::TWO_SIDED;
-    let found = pictures(&engine, &scene, &lights, effects, TileOptions::default());
+    let found = pictures(&engine, &scene, &lights, effects, every_frame());
     assert_eq!(found.different(&lights), 0, "{:?}", found.counts);
     assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
     // Without lights nothing is left but the surfaces' marks
-    let none = pictures(&engine, &scene, &[], Effects::DIFFUSE, TileOptions::default());
+    let none = pictures(&engine, &scene, &[], Effects::DIFFUSE, every_frame());
     assert_eq!(none.plain, none.tiled);
     assert_eq!(none.count(TileClass::Empty), none.all_tiles());
 }
@@ -194,7 +209,7 @@ fn shapes_that_are_above_are_not_clipped_and_those_that_no_pixel_sees_cost_no_ti
     let Some(engine) = TestEngine::new() else { return };
     let shade = |height: f64| {
         let scene = shape_scene(height);
-        pictures(&engine, &scene, &[], Effects::DIFFUSE | Effects::SHAPES, TileOptions::default())
+        pictures(&engine, &scene, &[], Effects::DIFFUSE | Effects::SHAPES, every_frame())
     };
     // Both forms of a disk round by a few 2^-24 of it
     let bound = |plain: &Vec4| 4e-7 * plain.max_element() + 1e-6;
@@ -225,7 +240,7 @@ fn images_of_disks_are_looked_up_by_tiles_too() {
         scene.shapes.retain(|shape| matches!(shape.shape, Shape::Ellipse { .. }));
         scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(layer));
         let effects = Effects::DIFFUSE | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
-        pictures(&engine, &scene, &[], effects, TileOptions::default())
+        pictures(&engine, &scene, &[], effects, every_frame())
     };
     let found = shade(0);
     assert!(
@@ -273,7 +288,7 @@ fn what_is_left_out_is_less_than_was_said() {
             .map(|(all, kept)| (all - kept - 1e-5 * all - 1e-6).max(0.0) / kept.max(1e-9))
             .fold(0.0, f64::max)
     };
-    let tiles = TileOptions { negligible: 0.05, ..TileOptions::default() };
+    let tiles = TileOptions { negligible: 0.05, ..every_frame() };
     let found = pictures(&engine, &scene, &lights, scene.effects(), tiles);
     assert!(lost(&found.plain, &found.tiled) <= 0.05, "{}", lost(&found.plain, &found.tiled));
     let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * lights.len() as u64;
@@ -292,9 +307,9 @@ fn options_out_of_range_are_refused() {
         let Error::InvalidArgument { field, .. } = error else { panic!("{error}") };
         field
     };
-    assert_eq!(refused(TileOptions { capacity: 0, negligible: 0.0 }), "capacity");
+    assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }), "capacity");
     for negligible in [1.0, -0.1, f32::NAN] {
-        assert_eq!(refused(TileOptions { negligible, ..TileOptions::default() }), "negligible");
+        assert_eq!(refused(TileOptions { negligible, ..every_frame() }), "negligible");
     }
 }
 

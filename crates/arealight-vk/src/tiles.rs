@@ -21,7 +21,8 @@ pub struct TileResources {
 }
 
 /// The shade pass by tiles: a dispatch that classifies tiles, then an indirect one for each class of them. The picture is that
-/// of [`ShadePass`], but for lights that are left out, by [`TileOptions`].
+/// of [`ShadePass`], but for lights that are left out, by [`TileOptions`]. Frames of few quads are shaded without
+/// ([`TileOptions::least_quads`]); then no class has a tile.
 ///
 /// As in [`ShadePass`], pipelines have what the lights of a frame call for, and are made when they are first needed.
 #[derive(Debug)]
@@ -37,7 +38,21 @@ pub struct TiledShade {
 struct Checked {
     constants: TileConstants,
     variant: ShadeVariant,
-    groups: [u32; 3],
+    /// How many tiles there are in each direction.
+    tiles: [u32; 2],
+    is_classified: bool,
+}
+
+impl Checked {
+    /// Groups of the classification, or of the shading of all tiles.
+    fn groups(&self) -> [u32; 3] {
+        let [columns, rows] = self.tiles;
+        if self.is_classified {
+            CLASSIFY.groups_for([columns.saturating_mul(rows), 1, 1])
+        } else {
+            [columns, rows, 1]
+        }
+    }
 }
 
 impl TiledShade {
@@ -65,10 +80,13 @@ impl TiledShade {
         }
         // SAFETY: the same contract.
         unsafe {
+            let shade = ShadePass::new(context, options)?;
+            let reads = shade.options().reads;
+            let (classify, classes) = (reads.classify(), reads.shade_tiles());
             Ok(Self {
-                shade: ShadePass::new(context, options)?,
-                classify: Pipelines::new(context, &CLASSIFY, CLASSIFY.words())?,
-                classes: Pipelines::new(context, &SHADE_TILES, SHADE_TILES.words_for(options.format))?,
+                shade,
+                classify: Pipelines::new(context, classify, classify.words())?,
+                classes: Pipelines::new(context, classes, classes.words_for(options.format))?,
                 tiles,
                 horizon_cells: table_size.max(2) - 1,
             })
@@ -147,10 +165,13 @@ impl TiledShade {
     /// # Errors
     /// As [`ShadePass::prepare`].
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        self.prepare_variant(self.checked(frame)?.variant)
+        self.prepare_checked(&self.checked(frame)?)
     }
 
-    fn prepare_variant(&self, variant: ShadeVariant) -> Result<(), Error> {
+    fn prepare_checked(&self, &Checked { variant, is_classified, .. }: &Checked) -> Result<(), Error> {
+        if !is_classified {
+            return self.classes.with(self.all_tiles_constants(variant), |_| ());
+        }
         self.classify.with(self.classify_constants(variant), |_| ())?;
         for class in self.called_for(variant) {
             self.classes
@@ -178,15 +199,15 @@ impl TiledShade {
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
         // Check everything, and make what is missing, before anything is recorded
-        let Checked { constants, variant, groups } = self.checked(frame)?;
+        let checked = self.checked(frame)?;
         let Resource::StorageBuffer { buffer, offset, .. } = tiles.tile_lists else {
             let message = "is no buffer".to_owned();
             return Err(Error::InvalidArgument { field: "tile_lists", message });
         };
-        let bytes = bytemuck::bytes_of(&constants);
+        let (bytes, groups) = (bytemuck::bytes_of(&checked.constants), checked.groups());
         self.classify.layouts().check(sets[0], bytes, groups)?;
-        self.classes.layouts().check(sets[1], bytes, [1; 3])?;
-        self.prepare_variant(variant)?;
+        self.classes.layouts().check(sets[1], bytes, groups)?;
+        self.prepare_checked(&checked)?;
 
         let names = &self.classify.layouts().context().names;
         // SAFETY: the same contract.
@@ -194,7 +215,12 @@ impl TiledShade {
         // SAFETY: the same contract; the buffer holds a record a class, whose indirect dispatch the classify kernel writes.
         unsafe {
             self.record_reset(command_buffer, buffer, offset);
-            self.classify.with(self.classify_constants(variant), |pass| {
+            if !checked.is_classified {
+                return self.classes.with(self.all_tiles_constants(checked.variant), |pass| {
+                    pass.record_checked(command_buffer, sets[1], bytes, groups);
+                });
+            }
+            self.classify.with(self.classify_constants(checked.variant), |pass| {
                 pass.record_checked(command_buffer, sets[0], bytes, groups);
             })?;
             self.record_barrier(
@@ -205,9 +231,10 @@ impl TiledShade {
                     vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDIRECT_COMMAND_READ,
                 ),
             );
-            for class in self.called_for(variant) {
+            for class in self.called_for(checked.variant) {
                 let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;
-                let specialization = plan::shade_tiles_specialization(self.shade.options(), variant, class);
+                let specialization =
+                    plan::shade_tiles_specialization(self.shade.options(), checked.variant, class);
                 self.classes.with(specialization, |pass| {
                     pass.record_indirect(command_buffer, sets[1], bytes, (buffer, place));
                 })?;
@@ -219,6 +246,7 @@ impl TiledShade {
     /// What [`TiledShade::record`] refuses, and what it records.
     fn checked(&self, frame: &ShadeFrame) -> Result<Checked, Error> {
         let (constants, variant) = self.shade.checked(frame)?;
+        let is_classified = self.tiles.classifies(&constants);
         let ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count } = constants;
         // Where the pass has nothing beyond quads, all lights are
         let quad_count = if variant.effects.intersects(arealight::Effects::BEYOND_QUADS) {
@@ -237,8 +265,11 @@ impl TiledShade {
             quad_count,
             negligible: self.tiles.negligible,
         };
-        let [columns, rows] = tile_counts(frame.size);
-        Ok(Checked { constants, variant, groups: CLASSIFY.groups_for([columns.saturating_mul(rows), 1, 1]) })
+        Ok(Checked { constants, variant, tiles: tile_counts(frame.size), is_classified })
+    }
+
+    fn all_tiles_constants(&self, variant: ShadeVariant) -> Vec<(u32, u32)> {
+        plan::shade_all_tiles_specialization(self.shade.options(), variant)
     }
 
     fn classify_constants(&self, variant: ShadeVariant) -> Vec<(u32, u32)> {

@@ -252,6 +252,16 @@ pub static SHADE: Kernel = Kernel {
     ],
 };
 
+/// As [`SHADE`], where the items of a subgroup read lights together: [`LightReads::Together`](crate::plan::LightReads).
+pub static SHADE_TOGETHER: Kernel = Kernel {
+    name: "shade_together",
+    spirv: include_bytes!("../spirv/shade_together.spv"),
+    local_size: SHADE.local_size,
+    push_constant_size: SHADE.push_constant_size,
+    bindings: SHADE.bindings,
+    constants: SHADE.constants,
+};
+
 /// Sorts the tiles of a G-buffer into classes; an item a tile. Push constants: [`crate::gpu::TileConstants`].
 pub static CLASSIFY: Kernel = Kernel {
     name: "classify",
@@ -282,6 +292,16 @@ pub static CLASSIFY: Kernel = Kernel {
         constant::LAYOUT,
         constant::CULL,
     ],
+};
+
+/// As [`CLASSIFY`], where the items of a subgroup read lights together.
+pub static CLASSIFY_TOGETHER: Kernel = Kernel {
+    name: "classify_together",
+    spirv: include_bytes!("../spirv/classify_together.spv"),
+    local_size: CLASSIFY.local_size,
+    push_constant_size: CLASSIFY.push_constant_size,
+    bindings: CLASSIFY.bindings,
+    constants: CLASSIFY.constants,
 };
 
 /// As [`SHADE`], of the tiles of one class; a group a tile, dispatched indirectly. Push constants:
@@ -317,6 +337,16 @@ pub static SHADE_TILES: Kernel = Kernel {
         constant::CLASS,
         constant::LAYOUT,
     ],
+};
+
+/// As [`SHADE_TILES`], where the items of a subgroup read lights together.
+pub static SHADE_TILES_TOGETHER: Kernel = Kernel {
+    name: "shade_tiles_together",
+    spirv: include_bytes!("../spirv/shade_tiles_together.spv"),
+    local_size: SHADE_TILES.local_size,
+    push_constant_size: SHADE_TILES.push_constant_size,
+    bindings: SHADE_TILES.bindings,
+    constants: SHADE_TILES.constants,
 };
 
 /// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
@@ -460,10 +490,13 @@ pub static VISIBILITY: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 9] = [
+pub static ALL: [&Kernel; 12] = [
     &SHADE,
+    &SHADE_TOGETHER,
     &CLASSIFY,
+    &CLASSIFY_TOGETHER,
     &SHADE_TILES,
+    &SHADE_TILES_TOGETHER,
     &EVAL,
     &EVAL_SHAPES,
     &REFERENCE,

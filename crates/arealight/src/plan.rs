@@ -4,7 +4,7 @@
 use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality, ShapeKind, TileClass};
+use crate::{Effects, Quality, ShapeKind, TileClass, tiles};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -73,6 +73,38 @@ pub enum RadianceFormat {
     Rgba16Float = 4,
 }
 
+/// How the items of a shading kernel read lights, which are the same for all of them. The picture is the same, to the bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum LightReads {
+    /// What suits the device, which the recorder knows: together on processors that can, else by item. A plan without the
+    /// recorder takes it for that too.
+    #[default]
+    Auto,
+    /// Each item reads all. GPUs see that it is the same for all of them, and read it once.
+    ByItem,
+    /// Each item of a subgroup reads a row of 16 bytes, and takes the others from its neighbours: a quarter of the time less on
+    /// devices that read buffers item by item (lavapipe). For devices whose compute stage has subgroups of eight items or
+    /// more, with votes and shuffles.
+    Together,
+}
+
+impl LightReads {
+    /// The kernel of the shade pass.
+    pub fn shade(self) -> &'static Kernel {
+        if self == Self::Together { &kernels::SHADE_TOGETHER } else { &kernels::SHADE }
+    }
+
+    /// The kernel that classifies tiles.
+    pub fn classify(self) -> &'static Kernel {
+        if self == Self::Together { &kernels::CLASSIFY_TOGETHER } else { &kernels::CLASSIFY }
+    }
+
+    /// The kernel that shades tiles.
+    pub fn shade_tiles(self) -> &'static Kernel {
+        if self == Self::Together { &kernels::SHADE_TILES_TOGETHER } else { &kernels::SHADE_TILES }
+    }
+}
+
 /// Everything that a shade pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
@@ -90,6 +122,8 @@ pub struct ShadeOptions {
     pub images: RadianceImages,
     /// Their format.
     pub format: RadianceFormat,
+    /// How lights are read.
+    pub reads: LightReads,
 }
 
 impl ShadeOptions {
@@ -103,6 +137,7 @@ impl ShadeOptions {
             output: Output::default(),
             images: RadianceImages::default(),
             format: RadianceFormat::default(),
+            reads: LightReads::default(),
         }
     }
 
@@ -162,10 +197,11 @@ pub struct Dispatch {
 /// The shade pass over a G-buffer of `width` × `height` pixels. Its module is that of
 /// [`Kernel::words_for`] with [`ShadeOptions::format`].
 pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
+    let kernel = options.reads.shade();
     Dispatch {
-        kernel: &kernels::SHADE,
+        kernel,
         specialization: shade_specialization(options),
-        groups: kernels::SHADE.groups_for([width, height, 1]),
+        groups: kernel.groups_for([width, height, 1]),
     }
 }
 
@@ -196,12 +232,23 @@ pub struct TileOptions {
     /// The part of what a tile's lights send to the viewer from any of its pixels, in the sum of the channels, that those which
     /// are left out may make up together, in [0, 1). With 0, lights that send anything stay.
     pub negligible: f32,
+    /// Frames of fewer lights than this, all of them convex quads without an image, are not classified: that would take longer
+    /// than it could save (docs/tiles.md). With 0 every frame is.
+    pub least_quads: u32,
+}
+
+impl TileOptions {
+    /// Whether the tiles of a frame are classified that has as many lights, quads first, and shapes as `constants` says.
+    pub fn classifies(self, constants: &ShadeConstants) -> bool {
+        let &ShadeConstants { light_count, quad_count, shape_count, .. } = constants;
+        light_count >= self.least_quads || quad_count < light_count || shape_count > 0
+    }
 }
 
 impl Default for TileOptions {
-    /// 128 lights, of which none is negligible.
+    /// 128 lights, of which none is negligible; frames of four quads and more are classified.
     fn default() -> Self {
-        Self { capacity: 128, negligible: 0.0 }
+        Self { capacity: 128, negligible: 0.0, least_quads: 4 }
     }
 }
 
@@ -231,6 +278,13 @@ pub fn shade_tiles_specialization(
     let mut values =
         shade_specialization(ShadeOptions { effects: class.effects(variant.effects), ..options });
     values.push((kernels::constant::CLASS, class as u32));
+    values
+}
+
+/// As [`shade_tiles_specialization`], for frames that are not classified: a group for each tile of the frame, with all lights.
+pub fn shade_all_tiles_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
+    let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
+    values.push((kernels::constant::CLASS, tiles::NOT_CLASSIFIED));
     values
 }
 
@@ -362,5 +416,35 @@ mod tests {
         assert_eq!(texture_load(size, &constants).groups, [4, 32, 1]);
         let (second, constants) = texture_blur(size, 1, 2..5);
         assert_eq!((second.groups, constants.first_layer), ([1, 4, 3], 2));
+    }
+
+    #[test]
+    fn frames_of_few_quads_and_nothing_else_are_not_classified() {
+        let counts = |light_count, quad_count, shape_count| ShadeConstants {
+            light_count,
+            shape_count,
+            quad_count,
+            ..ShadeConstants::zeroed()
+        };
+        let tiles = TileOptions::default();
+        assert!(!tiles.classifies(&counts(0, 0, 0)) && !tiles.classifies(&counts(3, 3, 0)));
+        assert!(tiles.classifies(&counts(4, 4, 0)));
+        assert!(tiles.classifies(&counts(1, 0, 0)), "an outline");
+        assert!(tiles.classifies(&counts(1, 1, 1)), "a shape");
+        assert!(TileOptions { least_quads: 0, ..tiles }.classifies(&counts(0, 0, 0)));
+    }
+
+    #[test]
+    fn kernels_that_read_together_take_the_place_of_those_that_read_by_item() {
+        for (by_item, together) in [
+            (LightReads::Auto.shade(), LightReads::Together.shade()),
+            (LightReads::ByItem.classify(), LightReads::Together.classify()),
+            (LightReads::ByItem.shade_tiles(), LightReads::Together.shade_tiles()),
+        ] {
+            assert_eq!(format!("{}_together", by_item.name), together.name);
+            assert_eq!((by_item.bindings, by_item.constants), (together.bindings, together.constants));
+        }
+        let dispatch = shade(ShadeOptions { reads: LightReads::Together, ..ShadeOptions::all() }, 9, 8);
+        assert_eq!((dispatch.kernel, dispatch.groups), (&kernels::SHADE_TOGETHER, [2, 1, 1]));
     }
 }

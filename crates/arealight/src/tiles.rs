@@ -78,6 +78,9 @@ impl std::fmt::Display for TileClass {
     }
 }
 
+/// In the place of a class: the kernel shades all tiles of a frame, none of which was classified.
+pub const NOT_CLASSIFIED: u32 = TileClass::ALL.len() as u32;
+
 /// How many tiles an image of `size` pixels has in each direction.
 pub fn tile_counts(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| side.div_ceil(SIDE))

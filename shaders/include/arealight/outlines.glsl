@@ -125,10 +125,7 @@ ArealightLobeArcs arealight_walk_outline(ArealightLobeViews views, uint first, u
         if (AREALIGHT_LIGHTS_DIFFER && index > last) {
             break;
         }
-        ArealightQuad part = ArealightQuad(arealight_bridge_vertex(min(index, last)),
-                                           arealight_bridge_vertex(min(index + 1u, last)),
-                                           arealight_bridge_vertex(min(index + 2u, last)),
-                                           arealight_bridge_vertex(min(index + 3u, last)));
+        ArealightQuad part = arealight_four_vertices(index, last);
         if (has_glossy) {
             arealight_outline_pass(glossy, views.glossy, part, quality);
         }

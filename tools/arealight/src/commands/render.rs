@@ -350,7 +350,11 @@ impl Summary<'_> {
         if let Some(tiles) = &outcome.tiles {
             let classes: Vec<_> =
                 tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
-            lines.push(format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_a_tile()));
+            lines.push(if tiles.is_classified() {
+                format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_a_tile())
+            } else {
+                "tiles    not classified: that would take longer than so few quads do".to_owned()
+            });
         }
         if let Some(rung) = outcome.picked {
             let expected = rung.milliseconds(arguments.load(scene));

@@ -32,6 +32,11 @@ pub struct TileCounts {
 }
 
 impl TileCounts {
+    /// Whether tiles were classified: [`TileOptions::least_quads`] says which frames' are.
+    pub fn is_classified(&self) -> bool {
+        self.classes.iter().any(|(_, count)| *count > 0)
+    }
+
     /// How many lights a tile had in the mean.
     pub fn lights_a_tile(&self) -> f64 {
         let tiles: u32 = self.classes.iter().map(|(_, count)| count).sum();

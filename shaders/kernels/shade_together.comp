@@ -1,0 +1,10 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_KHR_shader_subgroup_shuffle : require
+
+// As shade.comp, where the items of a subgroup read lights together.
+
+#define READ_TOGETHER 1
+#include "shade_main.glsl"

@@ -1,0 +1,99 @@
+//! Lights that the items of a subgroup read together, held against those that each item reads: the same picture to the bit.
+
+use arealight::plan::{LightReads, Output, ShadeOptions, TileOptions, shade_specialization};
+use arealight::{Effects, Footprint, Horizon, Quality};
+use arealight_engine::SceneRenderer;
+use arealight_oracle::texture::Texture;
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use glam::{Vec3, Vec4};
+use std::path::Path;
+use std::sync::Arc;
+
+/// No multiple of a group's side.
+const SIZE: [u32; 2] = [61, 37];
+
+/// A scene of ours, and how it is shaded.
+struct Frame<'a> {
+    engine: &'a TestEngine,
+    scene: Scene,
+    quality: Quality,
+}
+
+impl<'a> Frame<'a> {
+    fn new(engine: &'a TestEngine, name: &str, quality: Quality) -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("glb");
+        Self { engine, scene: Scene::load(path).expect("our own scenes load"), quality }
+    }
+
+    /// The bits of the picture, without tiles or with.
+    fn shade(&self, reads: LightReads, by_tiles: bool) -> Vec<[u32; 4]> {
+        let Self { engine, scene, quality } = self;
+        let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
+        let buffers = SceneBuffers::new(scene, camera.position).unwrap();
+        let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+        // Items part where one point is enough for some
+        let far = if quality.one_point { Effects::FAR } else { Effects::empty() };
+        let effects = scene.effects() | far;
+        let options =
+            ShadeOptions { effects, quality: *quality, reads, output: Output::Add, ..ShadeOptions::all() };
+        let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
+        let mut renderer = renderer.with_shapes(&scene.shapes).unwrap();
+        if by_tiles {
+            let every = TileOptions { least_quads: 0, ..TileOptions::default() };
+            let view = renderer.tiled(options, every).unwrap();
+            renderer.shade_tiled(&view).unwrap();
+        } else {
+            renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
+        }
+        let bits = |texel: Vec4| texel.to_array().map(f32::to_bits);
+        renderer.radiance().unwrap().into_iter().map(bits).collect()
+    }
+
+    /// Holds what is read together against what is read by item, and against lights that are moved.
+    fn is_same_to_the_bit(mut self) {
+        let differ = |a: &[[u32; 4]], b: &[[u32; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
+        let by_item = self.shade(LightReads::ByItem, false);
+        let together = self.shade(LightReads::Together, false);
+        assert_eq!(differ(&by_item, &together), 0);
+        // The twin: lights that are a little elsewhere, or a little brighter, are seen
+        self.scene
+            .lights
+            .iter_mut()
+            .flat_map(|light| &mut light.vertices)
+            .for_each(|vertex| vertex.x += 1e-3);
+        self.scene.shapes.iter_mut().for_each(|shape| shape.radiance *= 1.001);
+        let moved = self.shade(LightReads::Together, false);
+        assert!(differ(&by_item, &moved) > 100, "the twin is the same");
+    }
+}
+
+#[test]
+fn outlines_and_quads_are_read_together() {
+    let Some(engine) = TestEngine::new() else { return };
+    Frame::new(&engine, "demo", Quality::default()).is_same_to_the_bit();
+    // And by tiles by item, which other tests shade together
+    let room = Frame::new(&engine, "room", Quality::default());
+    assert_eq!(room.shade(LightReads::ByItem, true), room.shade(LightReads::Together, true));
+    room.is_same_to_the_bit();
+}
+
+#[test]
+fn far_lights_and_shapes_are_read_together() {
+    let Some(engine) = TestEngine::new() else { return };
+    let quality = Quality { one_point: true, horizon: Horizon::Both, ..Quality::default() };
+    Frame::new(&engine, "sweep", quality).is_same_to_the_bit();
+    let quality = Quality { one_point: true, ..Quality::default() };
+    Frame::new(&engine, "demo", quality).is_same_to_the_bit();
+    Frame::new(&engine, "shapes", Quality::default()).is_same_to_the_bit();
+}
+
+#[test]
+fn images_on_lights_are_read_together() {
+    let Some(mut engine) = TestEngine::new() else { return };
+    let textures = [0, 1, 2, 3].map(|seed| Arc::new(Texture::noise(64, 64, seed)));
+    arealight_benches::pictures::load(&mut engine, &textures).unwrap();
+    Frame::new(&engine, "clock", Quality::default()).is_same_to_the_bit();
+    let quality = Quality { footprint: Footprint::SplitTwo, ..Quality::default() };
+    Frame::new(&engine, "screen", quality).is_same_to_the_bit();
+}
