@@ -1,6 +1,6 @@
 //! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses, and what images on them cost; and a floor
 //! under 10 to 1,000 lamps of which those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with
-//! `-- disks` the disks alone. Prints Markdown tables.
+//! `-- scenes`, `-- disks` or `-- lamps` these alone. Prints Markdown tables.
 
 use arealight::plan::{LightReads, ShadeOptions, TileOptions};
 use arealight::{Footprint, Quality};
@@ -117,26 +117,22 @@ fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
     Ok(frames)
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
-    let mut engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
-    let device = engine.host().device_name();
-    println!("{device}, {rounds} rounds\n\n## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
-    println!("{}", markdown(&disk_frames(&engine, rounds)?));
-    pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
-    println!("{}", markdown(&image_frames(&engine, rounds)?));
-    if std::env::args().any(|argument| argument == "disks") {
-        return Ok(());
-    }
-    println!("## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
+/// Frames of our scenes.
+fn scene_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let against = (TileOptions::default(), Baseline::Practice);
     let mut frames = vec![];
     for name in ["demo", "room", "sweep"] {
-        frames.push(frame(&engine, (name, &scene(name)?), SIZE, Quality::default(), against, rounds)?);
+        frames.push(frame(engine, (name, &scene(name)?), SIZE, Quality::default(), against, rounds)?);
     }
-    let [width, height] = FLOOR_SIZE;
-    println!("{}\n## A floor under lamps, {width} x {height}\n", markdown(&frames));
+    // What is classified all the same, though it has a single quad
+    let every = (TileOptions { least_quads: 0, ..TileOptions::default() }, Baseline::Practice);
+    let name = "sweep, classified";
+    frames.push(frame(engine, (name, &scene("sweep")?), SIZE, Quality::default(), every, rounds)?);
+    Ok(frames)
+}
 
+/// Frames of floors under lamps, and a word of how time grows with their number.
+fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, String), Box<dyn Error>> {
     let (mut frames, mut growth) = (vec![], String::new());
     for (material, roughness) in FLOORS {
         for negligible in NEGLIGIBLE {
@@ -148,14 +144,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
                 let name = format!("{material}, {count} lamps, {negligible} negligible");
-                frames.push(frame(
-                    &engine,
-                    (&name, &scene),
-                    FLOOR_SIZE,
-                    Quality::default(),
-                    against,
-                    rounds,
-                )?);
+                frames.push(frame(engine, (&name, &scene), FLOOR_SIZE, Quality::default(), against, rounds)?);
             }
             let ten = frames[first].milliseconds[2].median;
             for (count, frame) in LAMPS.iter().zip(&frames[first..]) {
@@ -168,6 +157,30 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    println!("{}\n{growth}", markdown(&frames));
+    Ok((frames, growth))
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
+    let mut engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
+    let device = engine.host().device_name();
+    println!("{device}, {rounds} rounds\n");
+    let named = |part: &str| std::env::args().any(|argument| argument == part);
+    let wanted = |part: &str| named(part) || !(named("scenes") || named("disks") || named("lamps"));
+    if wanted("scenes") {
+        println!("## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
+        println!("{}", markdown(&scene_frames(&engine, rounds)?));
+    }
+    if wanted("lamps") {
+        println!("## A floor under lamps, {} x {}\n", FLOOR_SIZE[0], FLOOR_SIZE[1]);
+        let (frames, growth) = lamp_frames(&engine, rounds)?;
+        println!("{}\n{growth}", markdown(&frames));
+    }
+    if wanted("disks") {
+        println!("## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
+        println!("{}", markdown(&disk_frames(&engine, rounds)?));
+        pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
+        println!("{}", markdown(&image_frames(&engine, rounds)?));
+    }
     Ok(())
 }

@@ -7,7 +7,7 @@
 use crate::cost::quantile;
 use crate::textures::clocked;
 use arealight::kernels::{Kernel, SHADE};
-use arealight::plan::{Output, ShadeOptions, shade_specialization};
+use arealight::plan::{LightReads, Output, ShadeOptions, shade_specialization};
 use arealight::{Effects, Quality};
 use arealight_engine::{EngineError, SceneRenderer};
 use arealight_host::Host;
@@ -70,14 +70,21 @@ struct Run {
 impl Run {
     /// Seconds of one frame.
     fn once(&self, host: &Host, renderer: &mut SceneRenderer<'_>) -> Result<f64, EngineError> {
+        // The kernel that was stripped reads lights by item: so do all
+        let options = |effects, quality| ShadeOptions {
+            effects,
+            quality,
+            output: Output::Add,
+            reads: LightReads::ByItem,
+            ..ShadeOptions::all()
+        };
         clocked(host, || match self.method {
             Method::Stripped { diffuse_only } => {
                 renderer.shade_by(&SHADE_STRIPPED, &[(DIFFUSE_ONLY, u32::from(diffuse_only))])
             }
-            Method::Pass { effects, quality } => renderer.shade(effects, quality),
+            Method::Pass { effects, quality } => renderer.shade_as(options(effects, quality)),
             Method::Kernel { effects, quality } => {
-                let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
-                renderer.shade_by(&SHADE, &shade_specialization(options))
+                renderer.shade_by(&SHADE, &shade_specialization(options(effects, quality)))
             }
         })
     }

@@ -290,7 +290,7 @@ float negligible_reach(TileBounds bounds) {
 }
 
 // Writes the list of the lights that a tile needs. The cheapest class that shades it.
-uint write_record(TileBounds bounds, uint tile) {
+uint write_record(TileBounds bounds, uvec2 tile) {
     uint first = tile_record(tile);
     uint quads = 0u;
     uint total = 0u;
@@ -330,10 +330,10 @@ uint write_record(TileBounds bounds, uint tile) {
 }
 
 // Adds the tile to the list of a class, and a group to the class's dispatch.
-void append(uint tile, uint tile_class) {
+void append(uvec2 tile, uint tile_class) {
     uint dispatch = tile_class * TILE_CLASS_WORDS;
     uint place = atomicAdd(tile_lists[dispatch + 3u], 1u);
-    tile_lists[class_list(tile_class) + place] = tile;
+    tile_lists[class_list(tile_class) + place] = pack_tile(tile);
     atomicMax(tile_lists[dispatch], min(place + 1u, TILE_ROW));
     if (place % TILE_ROW == 0u) {
         atomicAdd(tile_lists[dispatch + 1u], 1u);
@@ -341,15 +341,16 @@ void append(uint tile, uint tile_class) {
 }
 
 void main() {
-    uint tile = gl_GlobalInvocationID.x;
+    uint item = gl_GlobalInvocationID.x;
     uvec2 counts = tile_counts();
-    bool is_tile = tile < counts.x * counts.y;
+    bool is_tile = item < counts.x * counts.y;
     if (!any_together(is_tile)) {
         return;
     }
 
     // Find out what the tile's pixels are
-    TileBounds bounds = tile_bounds(tile_corner(tile));
+    uvec2 tile = uvec2(item % counts.x, item / counts.x);
+    TileBounds bounds = tile_bounds(ivec2(tile) * TILE_SIDE);
 
     // Write down its lights
     uint tile_class = CLASS_EMPTY;

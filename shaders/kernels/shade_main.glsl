@@ -45,6 +45,7 @@ layout(push_constant, std430) uniform ShadeConstants {
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(radiance_image);
+    // Items go on, though they have no pixel or no surface, where others of their subgroup need them to read
     bool is_inside = all(lessThan(pixel, size));
     if (!any_together(is_inside)) {
         return;

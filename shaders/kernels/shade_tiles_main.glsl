@@ -1,9 +1,8 @@
 #ifndef SHADE_TILES_MAIN_GLSL
 #define SHADE_TILES_MAIN_GLSL
 
-// Shades the tiles of one class, that the kernel classify found, with the lights of their lists; or all tiles of a frame that was
-// not classified, with all lights. A group a tile. Radiance
-// is that of the kernel shade, light by light and arc by arc.
+// Shades the tiles of one class, that the kernel classify found, with the lights of their lists; or all tiles of a frame that
+// was not classified, with all lights. A group a tile. Radiance is that of the kernel shade, light by light and arc by arc.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -38,11 +37,12 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #include "position.glsl"
 
 // Whether the tiles' lights may be other than convex quads without an image.
-const bool HAS_OTHERS = CLASS == CLASS_ABOVE || CLASS == CLASS_ANY || CLASS == TILE_NOT_CLASSIFIED;
+const bool HAS_OTHERS = (EFFECTS & BEYOND_QUADS) != 0u
+                     && (CLASS == CLASS_ABOVE || CLASS == CLASS_ANY || CLASS == TILE_NOT_CLASSIFIED);
 // Whether no light has to be clipped.
 const bool IS_ABOVE = CLASS == CLASS_QUADS_ABOVE || CLASS == CLASS_ABOVE;
 
-PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
+PixelRadiance shade(ivec2 pixel, uvec2 tile, vec3 position) {
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
     ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
@@ -91,15 +91,15 @@ PixelRadiance shade(ivec2 pixel, uint tile, vec3 position) {
 
 void main() {
     // Find the group's tile
-    uint tile = gl_WorkGroupID.y * tile_counts().x + gl_WorkGroupID.x;
+    uvec2 tile = gl_WorkGroupID.xy;
     if (CLASS != TILE_NOT_CLASSIFIED) {
         uint place = gl_WorkGroupID.y * TILE_ROW + gl_WorkGroupID.x;
         if (place >= tile_lists[CLASS * TILE_CLASS_WORDS + 3u]) {
             return;
         }
-        tile = tile_lists[class_list(CLASS) + place];
+        tile = unpack_tile(tile_lists[class_list(CLASS) + place]);
     }
-    ivec2 pixel = tile_corner(tile) + ivec2(gl_LocalInvocationID.xy);
+    ivec2 pixel = ivec2(tile) * TILE_SIDE + ivec2(gl_LocalInvocationID.xy);
     ivec2 size = ivec2(constants.size);
     bool is_inside = all(lessThan(pixel, size));
     if (!any_together(is_inside)) {

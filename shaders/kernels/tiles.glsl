@@ -18,7 +18,8 @@ const uint TILE_NOT_CLASSIFIED = 5u;
 
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
-// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles;
+// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each. Not a number,
+//   of which each item would have to find column and row: devices that divide integers one by one take as long for that as for a light;
 // - for each tile a record: how many of its lights are quads, how many there are in all (or TILE_ALL_LIGHTS twice, for those
 //   of the buffer), and their indices in the order of the buffer, in as many words as the capacity says.
 const uint TILE_CLASS_WORDS = 4u;
@@ -56,14 +57,16 @@ uint class_list(uint tile_class) {
 }
 
 // Where a tile's record is.
-uint tile_record(uint tile) {
-    return class_list(CLASS_ANY + 1u) + tile * (TILE_RECORD_HEADER + constants.capacity);
+uint tile_record(uvec2 tile) {
+    return class_list(CLASS_ANY + 1u) + (tile.y * tile_counts().x + tile.x) * (TILE_RECORD_HEADER + constants.capacity);
 }
 
-// The corner of a tile in pixels.
-ivec2 tile_corner(uint tile) {
-    uint columns = tile_counts().x;
-    return ivec2(tile % columns, tile / columns) * TILE_SIDE;
+// A tile's column and row in a word, and out of it.
+uint pack_tile(uvec2 tile) {
+    return tile.y << 16 | tile.x;
+}
+uvec2 unpack_tile(uint tile) {
+    return uvec2(tile & 0xffffu, tile >> 16);
 }
 
 #endif

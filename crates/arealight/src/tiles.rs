@@ -86,6 +86,11 @@ pub fn tile_counts(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| side.div_ceil(SIDE))
 }
 
+/// Column and row of a tile, as the lists hold it.
+pub fn unpack(tile: u32) -> [u32; 2] {
+    [tile & 0xffff, tile >> 16]
+}
+
 /// Words before the classes' lists of tiles.
 pub const FIRST_LIST: u32 = (TileClass::ALL.len() * size_of::<GpuTileClass>() / 4) as u32;
 

@@ -123,8 +123,16 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] names a light that calls for more than `effects`, or says why the device fails.
     pub fn shade(&mut self, effects: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
+        self.shade_as(ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() })
+    }
+
+    /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of ours, and radiance is
+    /// added to one.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::shade`].
+    pub fn shade_as(&mut self, options: ShadeOptions) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
         let pass = self.engine.shade_pass(options)?;
         pass.check_lights(self.lights)?;
         pass.check_shapes(self.shapes)?;

@@ -66,7 +66,8 @@ impl TiledView {
         for (place, found) in found.iter().enumerate().skip(TileClass::QuadsAbove as usize) {
             let list = &words[tiles::FIRST_LIST as usize + place * tile_count..][..found.tile_count as usize];
             for &tile in list {
-                let total = words[first_record + tile as usize * record + 1];
+                let [column, row] = tiles::unpack(tile);
+                let total = words[first_record + (row * columns + column) as usize * record + 1];
                 lights += if total == u32::MAX { light_count as u64 } else { total.into() };
             }
         }
