@@ -51,7 +51,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Holds what is read together against what is read by item, and against lights that are moved.
-    fn is_same_to_the_bit(mut self) {
+    fn check_to_the_bit(mut self) {
         let differ = |a: &[[u32; 4]], b: &[[u32; 4]]| a.iter().zip(b).filter(|(a, b)| a != b).count();
         let by_item = self.shade(LightReads::ByItem, false);
         let together = self.shade(LightReads::Together, false);
@@ -71,21 +71,21 @@ impl<'a> Frame<'a> {
 #[test]
 fn outlines_and_quads_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
-    Frame::new(&engine, "demo", Quality::default()).is_same_to_the_bit();
+    Frame::new(&engine, "demo", Quality::default()).check_to_the_bit();
     // And by tiles by item, which other tests shade together
     let room = Frame::new(&engine, "room", Quality::default());
     assert_eq!(room.shade(LightReads::ByItem, true), room.shade(LightReads::Together, true));
-    room.is_same_to_the_bit();
+    room.check_to_the_bit();
 }
 
 #[test]
 fn far_lights_and_shapes_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
     let quality = Quality { one_point: true, horizon: Horizon::Both, ..Quality::default() };
-    Frame::new(&engine, "sweep", quality).is_same_to_the_bit();
+    Frame::new(&engine, "sweep", quality).check_to_the_bit();
     let quality = Quality { one_point: true, ..Quality::default() };
-    Frame::new(&engine, "demo", quality).is_same_to_the_bit();
-    Frame::new(&engine, "shapes", Quality::default()).is_same_to_the_bit();
+    Frame::new(&engine, "demo", quality).check_to_the_bit();
+    Frame::new(&engine, "shapes", Quality::default()).check_to_the_bit();
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn images_on_lights_are_read_together() {
     let Some(mut engine) = TestEngine::new() else { return };
     let textures = [0, 1, 2, 3].map(|seed| Arc::new(Texture::noise(64, 64, seed)));
     arealight_benches::pictures::load(&mut engine, &textures).unwrap();
-    Frame::new(&engine, "clock", Quality::default()).is_same_to_the_bit();
+    Frame::new(&engine, "clock", Quality::default()).check_to_the_bit();
     let quality = Quality { footprint: Footprint::SplitTwo, ..Quality::default() };
-    Frame::new(&engine, "screen", quality).is_same_to_the_bit();
+    Frame::new(&engine, "screen", quality).check_to_the_bit();
 }
