@@ -13,7 +13,7 @@ use ash::vk;
 /// `ash::Instance::load_with` and `ash::Device::load_with`, re-exported here as [`crate::ash`].
 #[derive(Clone)]
 pub struct HostDevice<'a> {
-    /// The instance that `physical_device` comes from.
+    /// The instance that `physical_device` comes from, made for Vulkan 1.1 or later.
     pub instance: &'a ash::Instance,
     /// The physical device that `device` was made from.
     pub physical_device: vk::PhysicalDevice,
@@ -50,13 +50,15 @@ pub(crate) enum Together {
 }
 
 impl Together {
+    fn check(self, needed_by: &'static str) -> Result<(), Error> {
+        let feature = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
+        if self == Self::No { Err(Error::MissingFeature { feature, needed_by }) } else { Ok(()) }
+    }
+
     fn resolve(self, reads: LightReads) -> Result<LightReads, Error> {
         match (reads, self) {
-            (LightReads::Together, Self::No) => Err(Error::MissingFeature {
-                feature: "subgroups of eight items or more, with votes and shuffles, in compute shaders",
-                needed_by: "LightReads::Together",
-            }),
-            (LightReads::Together, _) | (LightReads::Auto, Self::Should) => Ok(LightReads::Together),
+            (LightReads::Together, _) => self.check("LightReads::Together").map(|()| reads),
+            (LightReads::Auto, Self::Should) => Ok(LightReads::Together),
             (LightReads::ByItem | LightReads::Auto, _) => Ok(LightReads::ByItem),
         }
     }
@@ -132,6 +134,11 @@ impl Context {
     /// [`Error::MissingFeature`] where they are to read together, which the device cannot.
     pub fn light_reads(&self, reads: LightReads) -> Result<LightReads, Error> {
         self.reads_together.resolve(reads)
+    }
+
+    /// Refuses a kernel that uses subgroups where the device has none that will do.
+    pub(crate) fn check_subgroups(&self, needed_by: &'static str) -> Result<(), Error> {
+        self.reads_together.check(needed_by)
     }
 
     /// The device's function table.

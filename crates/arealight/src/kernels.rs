@@ -82,6 +82,16 @@ impl Kernel {
         self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
     }
 
+    /// Whether it needs subgroups of eight items or more, with votes and shuffles, in compute shaders: [`crate::plan::LightReads`].
+    pub fn uses_subgroups(&self) -> bool {
+        const HEADER: usize = 5;
+        // OpCapability GroupNonUniformShuffle, in two words (the SPIR-V specification, 3.31 and 3.42.5)
+        const SHUFFLE: [u32; 2] = [0x0002_0011, 65];
+        let words = self.words();
+        let mut capabilities = words[HEADER..].chunks_exact(2).take_while(|pair| pair[0] == SHUFFLE[0]);
+        capabilities.any(|pair| pair == SHUFFLE)
+    }
+
     /// As [`Kernel::words`], with images of this format where the module stores to rgba32f: a word a type, so that one
     /// module serves both.
     pub fn words_for(&self, format: RadianceFormat) -> Vec<u32> {
@@ -514,6 +524,13 @@ mod tests {
         for kernel in ALL {
             assert_eq!(kernel.spirv.len() % 4, 0, "{}", kernel.name);
             assert_eq!(kernel.words()[0], 0x0723_0203, "{}: SPIR-V's magic number", kernel.name);
+        }
+    }
+
+    #[test]
+    fn only_the_kernels_that_read_together_use_subgroups() {
+        for kernel in ALL {
+            assert_eq!(kernel.uses_subgroups(), kernel.name.ends_with("_together"), "{}", kernel.name);
         }
     }
 
