@@ -105,7 +105,11 @@ void main() {
     if (!any_together(is_inside)) {
         return;
     }
-    pixel = min(pixel, size - 1);
+    if (IS_TOGETHER) {
+        pixel = min(pixel, size - 1);
+    } else {
+        is_inside = true;
+    }
 
     vec3 position;
     bool hit = load_position(pixel, size, position) && is_inside;

@@ -18,8 +18,8 @@ const uint TILE_NOT_CLASSIFIED = 5u;
 
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
-// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each. Not a number,
-//   of which each item would have to find column and row: devices that divide integers one by one take as long for that as for a light;
+// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each, since
+//   devices that divide integers one by one would take as long to find them in a number as a light takes;
 // - for each tile a record: how many of its lights are quads, how many there are in all (or TILE_ALL_LIGHTS twice, for those
 //   of the buffer), and their indices in the order of the buffer, in as many words as the capacity says.
 const uint TILE_CLASS_WORDS = 4u;

@@ -30,7 +30,13 @@ ArealightArcs arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, Ar
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
 ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
     uint last = clamp(light.vertex_count, 1u, 4u) - 1u;
+#if AREALIGHT_FOUR_VERTICES
     return arealight_four_vertices(light.first_vertex, light.first_vertex + last);
+#else
+    return ArealightQuad(arealight_bridge_vertex(light.first_vertex), arealight_bridge_vertex(light.first_vertex + 1u),
+                         arealight_bridge_vertex(light.first_vertex + min(2u, last)),
+                         arealight_bridge_vertex(light.first_vertex + last));
+#endif
 }
 
 // Whether one point stands for a light.
