@@ -17,12 +17,8 @@ use std::fmt::Write as _;
 /// The shade kernel, stripped by hand to diffuse and glossy lobes of one-sided quads without images, or to the
 /// diffuse lobe; on the first rungs, positions from an image, adding.
 pub static SHADE_STRIPPED: Kernel = Kernel {
-    name: "shade_stripped",
-    spirv: include_bytes!("../spirv/shade_stripped.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: SHADE.push_constant_size,
-    bindings: SHADE.bindings,
     constants: &[DIFFUSE_ONLY],
+    ..SHADE.like("shade_stripped", include_bytes!("../spirv/shade_stripped.spv"))
 };
 
 const DIFFUSE_ONLY: u32 = 0;

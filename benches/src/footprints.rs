@@ -21,14 +21,8 @@ use serde::Serialize;
 use std::sync::Arc;
 
 /// The eval kernel with the lookup of Heitz et al. 2016.
-pub static TEXTURED_ARTICLE: Kernel = Kernel {
-    name: "textured_article",
-    spirv: include_bytes!("../spirv/textured_article.spv"),
-    local_size: EVAL.local_size,
-    push_constant_size: EVAL.push_constant_size,
-    bindings: EVAL.bindings,
-    constants: EVAL.constants,
-};
+pub static TEXTURED_ARTICLE: Kernel =
+    EVAL.like("textured_article", include_bytes!("../spirv/textured_article.spv"));
 
 /// A way to look up a light's texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -6,12 +6,8 @@ use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality
 
 /// The shade kernel as others write it.
 pub static SHADE_YARDSTICK: Kernel = Kernel {
-    name: "shade_yardstick",
-    spirv: include_bytes!("../../spirv/shade_yardstick.spv"),
-    local_size: SHADE.local_size,
-    push_constant_size: SHADE.push_constant_size,
-    bindings: SHADE.bindings,
     constants: &[0, 1],
+    ..SHADE.like("shade_yardstick", include_bytes!("../../spirv/shade_yardstick.spv"))
 };
 
 /// Whose form factor a yardstick has.

@@ -4,6 +4,7 @@ use crate::debug_names::DebugNames;
 use crate::error::{Error, VulkanCall};
 use crate::light_textures::{FORMAT, USAGE};
 use crate::written_sets::WrittenSets;
+use arealight::kernels::SUBGROUPS;
 use arealight::plan::LightReads;
 use ash::vk;
 
@@ -51,8 +52,7 @@ pub(crate) enum Together {
 
 impl Together {
     fn check(self, needed_by: &'static str) -> Result<(), Error> {
-        let feature = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
-        if self == Self::No { Err(Error::MissingFeature { feature, needed_by }) } else { Ok(()) }
+        if self == Self::No { Err(Error::MissingFeature { feature: SUBGROUPS, needed_by }) } else { Ok(()) }
     }
 
     fn resolve(self, reads: LightReads) -> Result<LightReads, Error> {

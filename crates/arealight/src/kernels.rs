@@ -54,6 +54,9 @@ impl Binding {
     }
 }
 
+/// What a device needs for kernels that read lights together, in words.
+pub const SUBGROUPS: &str = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
+
 /// A compute kernel.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kernel {
@@ -77,19 +80,35 @@ impl Kernel {
         [0, 1, 2].map(|i| items[i].div_ceil(self.local_size[i]))
     }
 
-    /// The SPIR-V as words, in the machine's byte order.
-    pub fn words(&self) -> Vec<u32> {
-        self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+    /// A kernel of another module, that is bound and specialised as this one is.
+    #[must_use]
+    pub const fn like(&self, name: &'static str, spirv: &'static [u8]) -> Self {
+        let Self { local_size, push_constant_size, bindings, constants, .. } = *self;
+        Self { name, spirv, local_size, push_constant_size, bindings, constants }
     }
 
-    /// Whether it needs subgroups of eight items or more, with votes and shuffles, in compute shaders: [`crate::plan::LightReads`].
+    /// The SPIR-V as words, in the machine's byte order.
+    pub fn words(&self) -> Vec<u32> {
+        self.each_word().collect()
+    }
+
+    fn each_word(&self) -> impl Iterator<Item = u32> {
+        self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+    }
+
+    /// Whether it needs [`SUBGROUPS`]: [`crate::plan::LightReads`].
     pub fn uses_subgroups(&self) -> bool {
         const HEADER: usize = 5;
-        // OpCapability GroupNonUniformShuffle, in two words (the SPIR-V specification, 3.31 and 3.42.5)
-        const SHUFFLE: [u32; 2] = [0x0002_0011, 65];
-        let words = self.words();
-        let mut capabilities = words[HEADER..].chunks_exact(2).take_while(|pair| pair[0] == SHUFFLE[0]);
-        capabilities.any(|pair| pair == SHUFFLE)
+        // OpCapability, in two words, and GroupNonUniformShuffle (the SPIR-V specification, 3.42.5 and 3.31)
+        const CAPABILITY: u32 = 0x0002_0011;
+        const SHUFFLE: u32 = 65;
+        let mut words = self.each_word().skip(HEADER);
+        while words.next() == Some(CAPABILITY) {
+            if words.next() == Some(SHUFFLE) {
+                return true;
+            }
+        }
+        false
     }
 
     /// As [`Kernel::words`], with images of this format where the module stores to rgba32f: a word a type, so that one
@@ -127,39 +146,7 @@ pub fn store_to(format: RadianceFormat, words: &mut [u32]) {
     }
 }
 
-/// Ids of the specialisation constants, the same in every kernel.
-pub mod constant {
-    /// [`crate::Effects`] as bits.
-    pub const EFFECTS: u32 = 0;
-    /// [`crate::Quality::form_factor_bits`].
-    pub const FORM_FACTOR: u32 = 1;
-    /// [`crate::plan::PositionSource`].
-    pub const POSITION_SOURCE: u32 = 2;
-    /// [`crate::plan::ShadeOptions::output_bits`].
-    pub const OUTPUT: u32 = 3;
-    /// [`crate::Horizon`].
-    pub const HORIZON: u32 = 4;
-    /// [`crate::Fresnel`].
-    pub const FRESNEL: u32 = 5;
-    /// [`crate::Lobes`].
-    pub const LOBES: u32 = 6;
-    /// [`crate::Footprint`].
-    pub const FOOTPRINT: u32 = 7;
-    /// Taps to a side of a level's kernel that are summed, from [`crate::pyramid::LevelKernel::radius`] on.
-    pub const RADIUS: u32 = 8;
-    /// [`crate::gpu::TextureLoadConstants::called_for`].
-    pub const CALLED_FOR: u32 = 9;
-    /// [`crate::ShapeKind`].
-    pub const SHAPE: u32 = 10;
-    /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
-    pub const QUADS: u32 = 11;
-    /// [`crate::TileClass`].
-    pub const CLASS: u32 = 12;
-    /// [`crate::plan::GBufferLayout`].
-    pub const LAYOUT: u32 = 13;
-    /// 1 where [`crate::plan::TileOptions::negligible`] is not zero.
-    pub const CULL: u32 = 14;
-}
+pub mod constant;
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
     Binding { name, kind, access: Access::Read, content }
@@ -263,14 +250,8 @@ pub static SHADE: Kernel = Kernel {
 };
 
 /// As [`SHADE`], where the items of a subgroup read lights together: [`LightReads::Together`](crate::plan::LightReads).
-pub static SHADE_TOGETHER: Kernel = Kernel {
-    name: "shade_together",
-    spirv: include_bytes!("../spirv/shade_together.spv"),
-    local_size: SHADE.local_size,
-    push_constant_size: SHADE.push_constant_size,
-    bindings: SHADE.bindings,
-    constants: SHADE.constants,
-};
+pub static SHADE_TOGETHER: Kernel =
+    SHADE.like("shade_together", include_bytes!("../spirv/shade_together.spv"));
 
 /// Sorts the tiles of a G-buffer into classes; an item a tile. Push constants: [`crate::gpu::TileConstants`].
 pub static CLASSIFY: Kernel = Kernel {
@@ -305,14 +286,8 @@ pub static CLASSIFY: Kernel = Kernel {
 };
 
 /// As [`CLASSIFY`], where the items of a subgroup read lights together.
-pub static CLASSIFY_TOGETHER: Kernel = Kernel {
-    name: "classify_together",
-    spirv: include_bytes!("../spirv/classify_together.spv"),
-    local_size: CLASSIFY.local_size,
-    push_constant_size: CLASSIFY.push_constant_size,
-    bindings: CLASSIFY.bindings,
-    constants: CLASSIFY.constants,
-};
+pub static CLASSIFY_TOGETHER: Kernel =
+    CLASSIFY.like("classify_together", include_bytes!("../spirv/classify_together.spv"));
 
 /// As [`SHADE`], of the tiles of one class; a group a tile, dispatched indirectly. Push constants:
 /// [`crate::gpu::TileConstants`].
@@ -350,14 +325,8 @@ pub static SHADE_TILES: Kernel = Kernel {
 };
 
 /// As [`SHADE_TILES`], where the items of a subgroup read lights together.
-pub static SHADE_TILES_TOGETHER: Kernel = Kernel {
-    name: "shade_tiles_together",
-    spirv: include_bytes!("../spirv/shade_tiles_together.spv"),
-    local_size: SHADE_TILES.local_size,
-    push_constant_size: SHADE_TILES.push_constant_size,
-    bindings: SHADE_TILES.bindings,
-    constants: SHADE_TILES.constants,
-};
+pub static SHADE_TILES_TOGETHER: Kernel =
+    SHADE_TILES.like("shade_tiles_together", include_bytes!("../spirv/shade_tiles_together.spv"));
 
 /// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
 pub static EVAL: Kernel = Kernel {

@@ -367,14 +367,12 @@ mod tests {
     use crate::TexturePart;
     use bytemuck::Zeroable as _;
 
+    fn counts(light_count: u32, quad_count: u32, shape_count: u32) -> ShadeConstants {
+        ShadeConstants { light_count, shape_count, quad_count, ..ShadeConstants::zeroed() }
+    }
+
     #[test]
     fn a_pipeline_has_what_the_lights_of_a_frame_call_for() {
-        let counts = |light_count, quad_count, shape_count| ShadeConstants {
-            light_count,
-            shape_count,
-            quad_count,
-            ..ShadeConstants::zeroed()
-        };
         let all = Effects::all();
         let of_lights = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
         let variant = |unused, counts| {
@@ -420,12 +418,6 @@ mod tests {
 
     #[test]
     fn frames_of_few_quads_and_nothing_else_are_not_classified() {
-        let counts = |light_count, quad_count, shape_count| ShadeConstants {
-            light_count,
-            shape_count,
-            quad_count,
-            ..ShadeConstants::zeroed()
-        };
         let tiles = TileOptions::default();
         assert!(!tiles.classifies(&counts(0, 0, 0)) && !tiles.classifies(&counts(3, 3, 0)));
         assert!(tiles.classifies(&counts(4, 4, 0)));

@@ -102,10 +102,9 @@ fn memory() -> Value {
 fn of_kernel(kernel: &Kernel) -> Value {
     let bindings = kernel.bindings.iter().zip(0u32..).map(|(one, number)| binding(one, number));
     let constants = kernel.constants.iter().map(|id| (constant_name(*id).to_owned(), json!(id)));
-    let subgroups = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
     json!({
         "spirv": format!("spirv/{}.spv", kernel.name),
-        "needs": if kernel.uses_subgroups() { vec![subgroups] } else { vec![] },
+        "needs": if kernel.uses_subgroups() { vec![kernels::SUBGROUPS] } else { vec![] },
         "local_size": kernel.local_size,
         "push_constant_bytes": kernel.push_constant_size,
         "bindings": bindings.collect::<Vec<_>>(),

@@ -1,0 +1,32 @@
+//! Ids of the specialisation constants, the same in every kernel.
+
+/// [`crate::Effects`] as bits.
+pub const EFFECTS: u32 = 0;
+/// [`crate::Quality::form_factor_bits`].
+pub const FORM_FACTOR: u32 = 1;
+/// [`crate::plan::PositionSource`].
+pub const POSITION_SOURCE: u32 = 2;
+/// [`crate::plan::ShadeOptions::output_bits`].
+pub const OUTPUT: u32 = 3;
+/// [`crate::Horizon`].
+pub const HORIZON: u32 = 4;
+/// [`crate::Fresnel`].
+pub const FRESNEL: u32 = 5;
+/// [`crate::Lobes`].
+pub const LOBES: u32 = 6;
+/// [`crate::Footprint`].
+pub const FOOTPRINT: u32 = 7;
+/// Taps to a side of a level's kernel that are summed, from [`crate::pyramid::LevelKernel::radius`] on.
+pub const RADIUS: u32 = 8;
+/// [`crate::gpu::TextureLoadConstants::called_for`].
+pub const CALLED_FOR: u32 = 9;
+/// [`crate::ShapeKind`].
+pub const SHAPE: u32 = 10;
+/// 0 where no polygon light of a frame is a convex quad without an image, else 1.
+pub const QUADS: u32 = 11;
+/// [`crate::TileClass`].
+pub const CLASS: u32 = 12;
+/// [`crate::plan::GBufferLayout`].
+pub const LAYOUT: u32 = 13;
+/// 1 where [`crate::plan::TileOptions::negligible`] is not zero.
+pub const CULL: u32 = 14;
