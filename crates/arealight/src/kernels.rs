@@ -3,56 +3,10 @@
 
 use crate::plan::RadianceFormat;
 
-/// What a binding holds. All are in descriptor set 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BindingKind {
-    /// A sampled image, read by texel; no sampler.
-    SampledImage,
-    /// A sampled image with a sampler that is part of the layout: trilinear, clamped to the edge, normalised
-    /// coordinates.
-    FilteredImage,
-    /// A storage image.
-    StorageImage,
-    /// A storage buffer.
-    StorageBuffer,
-}
+pub use binding::{Access, Binding, BindingKind};
 
-impl BindingKind {
-    /// Every kind.
-    pub const ALL: [Self; 4] =
-        [Self::SampledImage, Self::FilteredImage, Self::StorageImage, Self::StorageBuffer];
-}
-
-/// What a kernel does to a binding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Access {
-    /// Reads only.
-    Read,
-    /// Writes only.
-    Write,
-    /// Reads and writes.
-    ReadWrite,
-}
-
-/// A binding of descriptor set 0; its number is its place in [`Kernel::bindings`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Binding {
-    /// Its name in the GLSL.
-    pub name: &'static str,
-    /// What it holds.
-    pub kind: BindingKind,
-    /// What is done to it.
-    pub access: Access,
-    /// Content, encoding and smallest sufficient format.
-    pub content: &'static str,
-}
-
-impl Binding {
-    /// A storage buffer.
-    pub const fn storage_buffer(name: &'static str, access: Access, content: &'static str) -> Self {
-        Self { name, kind: BindingKind::StorageBuffer, access, content }
-    }
-}
+mod binding;
+pub mod constant;
 
 /// What a device needs for kernels that read lights together, in words.
 pub const SUBGROUPS: &str = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
@@ -145,8 +99,6 @@ pub fn store_to(format: RadianceFormat, words: &mut [u32]) {
         at += length;
     }
 }
-
-pub mod constant;
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
     Binding { name, kind, access: Access::Read, content }
@@ -244,7 +196,7 @@ pub static SHADE: Kernel = Kernel {
         constant::FRESNEL,
         constant::LOBES,
         constant::FOOTPRINT,
-        constant::QUADS,
+        constant::HAS_QUADS,
         constant::LAYOUT,
     ],
 };

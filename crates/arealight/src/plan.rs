@@ -220,7 +220,7 @@ pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
 /// As [`shade_specialization`], of what is left for the lights of a frame.
 pub fn shade_variant_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
     let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
-    values.push((kernels::constant::QUADS, u32::from(variant.quads)));
+    values.push((kernels::constant::HAS_QUADS, u32::from(variant.quads)));
     values
 }
 

@@ -12,7 +12,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-const KERNEL: &str = "shaders/kernels/shade_main.glsl";
+const KERNEL: &str = "shaders/kernels/shade_resources.glsl";
 const MODULE: &str = "crates/arealight/spirv/shade.spv";
 const LIBRARY: &str = "shaders/include/arealight/effects.glsl";
 const TABLE: &str = "benches/src/instructions.json";

@@ -23,7 +23,7 @@ pub const CALLED_FOR: u32 = 9;
 /// [`crate::ShapeKind`].
 pub const SHAPE: u32 = 10;
 /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
-pub const QUADS: u32 = 11;
+pub const HAS_QUADS: u32 = 11;
 /// [`crate::TileClass`].
 pub const CLASS: u32 = 12;
 /// [`crate::plan::GBufferLayout`].

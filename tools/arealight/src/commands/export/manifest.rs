@@ -147,7 +147,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::RADIUS, "RADIUS"),
         (constant::CALLED_FOR, "CALLED_FOR"),
         (constant::SHAPE, "SHAPE"),
-        (constant::QUADS, "QUADS"),
+        (constant::HAS_QUADS, "HAS_QUADS"),
         (constant::CLASS, "CLASS"),
         (constant::LAYOUT, "LAYOUT"),
         (constant::CULL, "CULL"),
