@@ -13,15 +13,18 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
     ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
     ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
     ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+    int of_polygons = IS_ABOVE ? AREALIGHT_HORIZON_ABOVE : HORIZON;
+    int of_shapes = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
+    ArealightQuality polygon_quality = ArealightQuality(FORM_FACTOR, of_polygons, FRESNEL, LOBES, FOOTPRINT);
+    ArealightQuality shape_quality = ArealightQuality(FORM_FACTOR, of_shapes, FRESNEL, LOBES, FOOTPRINT);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
 
     // Every loop ends with its condition: devices that run masked passes have none to run then
-    quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_ABOVE : HORIZON;
     if (HAS_QUADS && list.quad_count != 0u) {
         uint place = 0u;
         do {
             ArealightPolygonLight light = load_light(light_at(list, place));
-            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS & ~BEYOND_QUADS, quality));
+            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS & ~BEYOND_QUADS, polygon_quality));
             place++;
         } while (place < list.quad_count);
     }
@@ -29,16 +32,15 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
         uint place = list.quad_count;
         do {
             ArealightPolygonLight light = load_light(light_at(list, place));
-            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, quality));
+            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, polygon_quality));
             place++;
         } while (place < list.light_count);
     }
     if ((EFFECTS & ANY_SHAPE) != 0u && constants.shape_count != 0u) {
-        quality.horizon = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
         uint index = 0u;
         do {
             ArealightShape shape = load_shape(index, SHAPE_ANY);
-            add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, quality));
+            add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, shape_quality));
             index++;
         } while (index < constants.shape_count);
     }

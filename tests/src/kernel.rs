@@ -34,6 +34,19 @@ pub static UNGUARDED: Kernel = Kernel {
     constants: &[],
 };
 
+/// What can happen to a branch by a specialisation constant; ten numbers a number.
+pub static BRANCHES: Kernel = Kernel {
+    name: "branches",
+    spirv: include_bytes!("../spirv/branches.spv"),
+    local_size: [8, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        Binding::storage_buffer("arguments", Access::Read, "uint a call"),
+        Binding::storage_buffer("results", Access::Write, "uint[10] a call"),
+    ],
+    constants: &[0, 1, 2],
+};
+
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]

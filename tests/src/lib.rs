@@ -62,6 +62,15 @@ impl TestEngine {
         Some(Self { engine, host })
     }
 
+    /// As [`TestEngine::new`], with modules handed to the driver as they are.
+    ///
+    /// # Panics
+    /// As [`TestEngine::new`].
+    pub fn with_whole_modules() -> Option<Self> {
+        let Self { engine, host } = Self::new()?;
+        Some(Self { engine: engine.with_whole_modules(), host })
+    }
+
     /// The validated host.
     pub fn test_host(&self) -> &TestHost {
         &self.host

@@ -35,6 +35,8 @@ pub struct Context {
     pub(crate) light_texture_limits: Option<ImageLimits>,
     /// [`LightReads::Together`] where the device can, and whether it is to without being asked.
     pub(crate) reads_together: Together,
+    /// Whether drivers get modules as they are, not as [`crate::prune`] leaves them.
+    pub(crate) whole_modules: bool,
     pub(crate) names: DebugNames,
     pub(crate) written_sets: WrittenSets,
 }
@@ -112,9 +114,18 @@ impl Context {
             },
             light_texture_limits: light_texture_limits(host)?,
             reads_together: reads_together(host),
+            whole_modules: false,
             names: DebugNames::default(),
             written_sets: WrittenSets::default(),
         })
+    }
+
+    /// Hands modules to the driver as they are, without [`prune`](crate::prune()): for a debugger of shaders, or to compare. On Mesa
+    /// a pipeline then takes from 8 to 150 times as long to make.
+    #[must_use = "the context is returned"]
+    pub fn with_whole_modules(mut self) -> Self {
+        self.whole_modules = true;
+        self
     }
 
     /// Has what is made from the context named (`arealight shade`) and what is recorded labelled, for debuggers and the

@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::layouts::Layouts;
+use crate::prune::prune;
 use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
 use std::sync::Arc;
@@ -264,8 +265,9 @@ fn make_pipeline(
     specialization: &[(u32, u32)],
 ) -> Result<vk::Pipeline, Error> {
     let device = &layouts.context().device;
-    let info = vk::ShaderModuleCreateInfo::default().code(words);
-    // SAFETY: the device is valid; the code is SPIR-V that a test validates.
+    let pruned = (!layouts.context().whole_modules).then(|| prune(words, specialization));
+    let info = vk::ShaderModuleCreateInfo::default().code(pruned.as_deref().unwrap_or(words));
+    // SAFETY: the device is valid; the code is SPIR-V that a test validates, also pruned.
     let module = unsafe { device.create_shader_module(&info, None) }.call("vkCreateShaderModule")?;
 
     let data: Vec<u32> = specialization.iter().map(|&(_, value)| value).collect();

@@ -65,4 +65,10 @@ struct ArealightQuality {
     int footprint;   // one of AREALIGHT_FOOTPRINT_*
 };
 
+// The quality of the Lambert lobe: the surface's horizon is that of its cosine space.
+ArealightQuality arealight_diffuse_quality(ArealightQuality quality) {
+    int horizon = quality.horizon == AREALIGHT_HORIZON_BOTH ? AREALIGHT_HORIZON_COSINE : quality.horizon;
+    return ArealightQuality(quality.form_factor, horizon, quality.fresnel, quality.lobes, quality.footprint);
+}
+
 #endif

@@ -39,14 +39,6 @@ bool arealight_has_schlick(uint effects, ArealightQuality quality) {
     return (effects & AREALIGHT_EFFECT_GLOSSY) != 0u && quality.fresnel == AREALIGHT_FRESNEL_SPLIT;
 }
 
-// The quality of the Lambert lobe: the surface's horizon is that of its cosine space.
-ArealightQuality arealight_diffuse_quality(ArealightQuality quality) {
-    if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
-        quality.horizon = AREALIGHT_HORIZON_COSINE;
-    }
-    return quality;
-}
-
 ArealightLobeViews arealight_lobe_views(ArealightShadingPoint point, ArealightSeenLight seen, int rung) {
     ArealightLobeViews views;
     views.glossy = arealight_lobe_view(point.glossy.space, point.normal, seen, rung);

@@ -194,11 +194,8 @@ ArealightReflected arealight_shape_reflected(ArealightShadingPoint point, Areali
         }
     }
     if ((effects & AREALIGHT_EFFECT_DIFFUSE) != 0u) {
-        // The surface's horizon is that of the Lambert lobe's cosine space
-        if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
-            quality.horizon = AREALIGHT_HORIZON_COSINE;
-        }
-        reflected.diffuse = arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, effects, quality);
+        reflected.diffuse = arealight_lobe_shape(point.diffuse, point.normal, seen, shape, true, effects,
+                                                 arealight_diffuse_quality(quality));
     }
     return reflected;
 }

@@ -126,6 +126,13 @@ impl Engine {
         Ok(Self { table, light_table, lobe_horizons, textures: None, shade_passes, passes })
     }
 
+    /// With modules handed to the driver as they are: [`Context::with_whole_modules`]. Before anything is shaded.
+    #[must_use = "the engine is returned"]
+    pub fn with_whole_modules(mut self) -> Self {
+        self.passes = self.passes.with_whole_modules();
+        self
+    }
+
     /// The device.
     pub fn host(&self) -> &Host {
         self.passes.host()

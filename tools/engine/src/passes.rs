@@ -18,8 +18,7 @@ type Specialized = (&'static str, Vec<(u32, u32)>);
 /// A pipeline that its users share.
 pub type SharedPass = Rc<Kept<ComputePass>>;
 
-/// A host, with the recorder's context on it to make passes from. Pipelines are made on demand and kept: a software driver
-/// takes a second for one.
+/// A host, with the recorder's context on it to make passes from. Pipelines are made on demand and kept.
 pub struct Passes {
     // Go before the device
     made: RefCell<HashMap<Specialized, SharedPass>>,
@@ -42,6 +41,12 @@ impl Passes {
         // SAFETY: The handles belong together and are kept alive by `host`, which this drops last.
         let context = unsafe { Context::new(&handles) }?;
         Ok(Self { made: RefCell::default(), context, host })
+    }
+
+    /// With modules as they are: [`Context::with_whole_modules`]. Before any pass is made.
+    pub(crate) fn with_whole_modules(mut self) -> Self {
+        self.context = self.context.with_whole_modules();
+        self
     }
 
     /// The device.

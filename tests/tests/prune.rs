@@ -1,0 +1,238 @@
+//! Modules without what specialisation constants rule out, held against whole ones.
+
+use arealight::kernels::{self, Kernel, constant};
+use arealight::plan::{LightReads, ShadeOptions, shade_specialization};
+use arealight::{Effects, Footprint, Fresnel, Horizon, Quality, TileClass};
+use arealight_engine::SceneRenderer;
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use arealight_tests::kernel::BRANCHES;
+use arealight_vk::prune;
+use glam::{Vec3, Vec4};
+use std::collections::BTreeSet;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What branches.comp is to write for a number.
+fn branches(x: u32, flags: u32, rung: i32, switch: bool) -> [u32; 10] {
+    let by_flags = |x: u32, flags: u32| {
+        x + if flags & 1 != 0 { 10 } else { 0 } + if flags & 2 != 0 && x > 2 { 100 } else { 0 }
+    };
+    let changed = if x > 3 { flags ^ 1 } else { flags };
+    let by_changed = if changed & 1 != 0 { x + 1 } else { x + 1000 };
+    let mut by_loop = 0;
+    for i in 0..x {
+        if rung == 1 && i == 2 {
+            break;
+        }
+        if rung != 2 {
+            by_loop += i + 1;
+        }
+    }
+    loop {
+        by_loop += 7;
+        if flags & 2 != 0 || !(rung == 3 && by_loop < 100) {
+            break;
+        }
+    }
+    let replaced = if rung == 2 { 1 } else { rung };
+    let by_choice = |flags: u32| if replaced == 1 { by_flags(x, flags) } else { x + 20_000 };
+    let element = if x & 1 == 0 { x } else { flags };
+    let by_switch = match (rung, x) {
+        (0, _) => x + 1,
+        (1, 4..) => x + 2,
+        (1, _) => x + 14,
+        _ => x + 8,
+    };
+    let is_set = if switch { flags & 1 != 0 } else { rung > 1 };
+    let nested = match (switch, rung) {
+        (true, _) => x + 50,
+        (false, 3) => x + 60,
+        (false, _) => x + 70,
+    };
+    [
+        by_flags(x, flags),
+        by_flags(x, flags ^ 1) + by_changed,
+        x * if flags & 1 != 0 { 3 } else { 5 },
+        by_loop,
+        by_choice(flags),
+        by_choice(flags | 1),
+        by_flags(x, if x.is_multiple_of(2) { 0 } else { flags }),
+        by_flags(x, if x > 4 { 2 } else { 1 }) + by_flags(x, element),
+        by_switch,
+        if is_set { nested } else { x + 7 },
+    ]
+}
+
+#[test]
+fn branches_that_stay_are_those_that_are_taken() {
+    let (Some(pruning), Some(whole)) = (TestEngine::new(), TestEngine::with_whole_modules()) else { return };
+    let arguments: Vec<u32> = (0..8).collect();
+    let run = |engine: &TestEngine, specialization: &[(u32, u32)]| -> Vec<[u32; 10]> {
+        let buffer = engine.host().storage_buffer("arguments", &arguments).unwrap();
+        let inputs = [arealight_vk::Resource::buffer(buffer.handle())];
+        engine.dispatch(&BRANCHES, specialization, &inputs, arguments.len())
+    };
+    let mut different = BTreeSet::new();
+    for (flags, rung, switch) in
+        (0..4).flat_map(|flags| (0..4).flat_map(move |rung| [(flags, rung, false), (flags, rung, true)]))
+    {
+        let specialization = [(0, flags), (1, rung), (2, u32::from(switch))];
+        let expected: Vec<_> =
+            arguments.iter().map(|x| branches(*x, flags, rung.cast_signed(), switch)).collect();
+        assert_eq!(run(&pruning, &specialization), expected, "{specialization:?}");
+        assert_eq!(run(&whole, &specialization), expected, "whole, {specialization:?}");
+        assert!(prune(&BRANCHES.words(), &specialization).len() < BRANCHES.words().len());
+        different.insert(expected);
+    }
+    // The twin: specialisations are told from each other (by no case are flags by themselves told from rungs by themselves)
+    assert!(different.len() >= 28, "{}", different.len());
+}
+
+/// The specialisations that are looked at: each effect by itself and all, each rung, and each class of tiles.
+fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
+    let shade = |effects: Effects, quality: Quality| {
+        let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
+        shade_specialization(options)
+    };
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    let plain = Quality::default();
+    let mut all = vec![shade(Effects::empty(), plain), shade(lobes, plain), shade(Effects::all(), plain)];
+    all.extend(Effects::all().iter().map(|effect| shade(lobes | effect, plain)));
+    for quality in [
+        Quality { horizon: Horizon::Both, ..plain },
+        Quality { horizon: Horizon::Bare, ..plain },
+        Quality { fresnel: Fresnel::Split, ..plain },
+        Quality { footprint: Footprint::SplitFour, ..plain },
+        Quality { one_point: true, ..plain },
+    ] {
+        all.push(shade(Effects::all(), quality));
+    }
+    for class in TileClass::ALL {
+        all.push([shade(lobes, plain), vec![(constant::CLASS, class as u32)]].concat());
+    }
+    let has = |(id, _): &(u32, u32)| kernel.constants.contains(id);
+    let mut kept: Vec<Vec<_>> =
+        all.into_iter().map(|pairs| pairs.into_iter().filter(has).collect()).collect();
+    kept.push(Vec::new());
+    kept.sort();
+    kept.dedup();
+    kept
+}
+
+/// What `spirv-val` says against a module; none where it is valid, or where the tool is missing and none is required.
+fn fault(module: &[u32]) -> Option<String> {
+    let mut tool = match Command::new("spirv-val")
+        .args(["--target-env", "vulkan1.1", "-"])
+        .stdin(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+    {
+        Ok(tool) => tool,
+        Err(error) => {
+            let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
+            assert!(!required, "AREALIGHT_REQUIRE_GPU=1, and spirv-val: {error}: run tools/setup.sh test");
+            println!("skipped: no spirv-val ({error})");
+            return None;
+        }
+    };
+    let bytes: Vec<u8> = module.iter().flat_map(|word| word.to_le_bytes()).collect();
+    tool.stdin.take().expect("a pipe").write_all(&bytes).expect("spirv-val reads");
+    let output = tool.wait_with_output().expect("spirv-val ends");
+    (!output.status.success()).then(|| String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn every_kernel_stays_valid_however_it_is_specialised() {
+    for kernel in kernels::ALL {
+        let whole = kernel.words();
+        for specialization in specializations(kernel) {
+            let pruned = prune(&whole, &specialization);
+            assert_eq!(fault(&pruned), None, "{}, {specialization:?}", kernel.name);
+            assert!(pruned.len() <= whole.len());
+        }
+    }
+    // The twin: what is not valid is seen
+    let mut broken = prune(&kernels::TEXTURE_BLUR.words(), &[]);
+    broken.pop();
+    if Command::new("spirv-val").arg("--version").output().is_ok() {
+        assert!(fault(&broken).is_some());
+    }
+}
+
+#[test]
+fn what_is_not_called_for_is_left_out() {
+    let words = kernels::SHADE.words();
+    let left = |effects: Effects| {
+        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        prune(&words, &shade_specialization(options)).len()
+    };
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    // A third of the module is left where all lights are quads (names and constants stay), and each effect adds to that
+    assert!(left(lobes) * 3 < words.len(), "{} of {}", left(lobes), words.len());
+    for effect in [Effects::POLYGON, Effects::TEXTURED, Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE] {
+        assert!(left(lobes | effect) > left(lobes) + 300, "{effect:?}");
+    }
+}
+
+/// The bits of a picture of one of our scenes.
+fn picture(engine: &TestEngine, name: &str, quality: Quality, reads: LightReads) -> Vec<[u32; 4]> {
+    const SIZE: [u32; 2] = [61, 37];
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("glb");
+    let scene = Scene::load(&path).expect("our own scenes load");
+    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
+    let buffers = SceneBuffers::new(&scene, camera.position).unwrap();
+    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let options = ShadeOptions { effects: scene.effects(), quality, reads, ..ShadeOptions::all() };
+    let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
+    let mut renderer = renderer.with_shapes(&scene.shapes).unwrap();
+    renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
+    let bits = |texel: Vec4| texel.to_array().map(f32::to_bits);
+    renderer.radiance().unwrap().into_iter().map(bits).collect()
+}
+
+#[test]
+fn pictures_are_the_same_to_the_bit() {
+    let (Some(pruning), Some(whole)) = (TestEngine::new(), TestEngine::with_whole_modules()) else { return };
+    let split = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..Quality::default() };
+    let cases = [("demo", Quality::default(), LightReads::Together), ("shapes", split, LightReads::ByItem)];
+    for (scene, quality, reads) in cases {
+        let pictures = [&pruning, &whole].map(|engine| picture(engine, scene, quality, reads));
+        assert!(pictures[0] == pictures[1], "{scene}");
+        // The twin: one rung lower is another picture
+        let lower = Quality { horizon: Horizon::Bare, ..quality };
+        assert!(pictures[0] != picture(&pruning, scene, lower, reads), "{scene}: the twin is the same");
+    }
+}
+
+#[test]
+fn what_is_not_understood_is_left_as_it_is() {
+    let words = BRANCHES.words();
+    let specialization = [(0, 0), (1, 0), (2, 0)];
+    assert!(prune(&words, &specialization) != words, "the twin: this is understood");
+
+    // Debug information that speaks of functions: an import in the place of GLSL.std.450, of as many words
+    let name = |text: &[u8; 12]| [0, 4, 8].map(|at| u32::from_le_bytes(text[at..at + 4].try_into().unwrap()));
+    let shade = kernels::SHADE.words();
+    let at = shade.windows(3).position(|window| window == name(b"GLSL.std.450")).expect("the import");
+    let mut foreign = shade.clone();
+    foreign[at..at + 3].copy_from_slice(&name(b"NonSemantic."));
+    assert!(prune(&foreign, &[]) == foreign);
+
+    // What is no module
+    for broken in [&[][..], &[0x0723_0203], &[1, 2, 3, 4, 5, 6, 7], &words[..4]] {
+        assert!(prune(broken, &specialization) == broken);
+    }
+    // And what is nearly one: no panic, whatever comes of it
+    for cut in 5..words.len() {
+        prune(&words[..cut], &specialization);
+    }
+    for place in 5..words.len() {
+        for change in [1, 0x1_0000, 0xffff] {
+            let mut changed = words.clone();
+            changed[place] ^= change;
+            prune(&changed, &specialization);
+        }
+    }
+}
