@@ -162,6 +162,18 @@ fn every_kernel_stays_valid_however_it_is_specialised() {
 }
 
 #[test]
+fn a_fragment_shader_that_includes_the_library_is_pruned_too() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/rust/spirv/forward.frag.spv");
+    let bytes = std::fs::read(file).expect("the example's shader");
+    let whole: Vec<u32> =
+        bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let pruned = prune(&whole, &[]);
+    assert_eq!(fault(&pruned), None);
+    // Its effects and its quality are constants: a third goes
+    assert!(pruned.len() * 4 < whole.len() * 3, "{} of {}", pruned.len(), whole.len());
+}
+
+#[test]
 fn what_is_not_called_for_is_left_out() {
     let words = kernels::SHADE.words();
     let left = |effects: Effects| {

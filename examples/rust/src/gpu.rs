@@ -217,6 +217,8 @@ impl<'a> Gpu<'a> {
     pub fn shader_module(&self, spirv: &[u8]) -> Result<vk::ShaderModule> {
         let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         let words: Vec<u32> = spirv.chunks_exact(4).map(word).collect();
+        // Without what the effects and the quality, constants of a shader that includes the library, rule out
+        let words = arealight_vk::prune(&words, &[]);
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
         // SAFETY: the device is alive, and the words outlive the call.
         Ok(unsafe { self.device.create_shader_module(&info, None) }?)
