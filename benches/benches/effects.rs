@@ -9,7 +9,7 @@ use arealight_scene::{Scene, SceneBuffers};
 use glam::Vec3;
 use std::path::Path;
 
-const ROUNDS: usize = 60;
+const ROUNDS: usize = 240;
 const SIZE: [u32; 2] = [320, 180];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -1,7 +1,10 @@
 //! Modules without what specialisation constants rule out, held against whole ones.
 
+use arealight::gpu::ShadeConstants;
 use arealight::kernels::{self, Kernel, constant};
-use arealight::plan::{LightReads, ShadeOptions, shade_specialization};
+use arealight::plan::{
+    LightReads, ShadeOptions, ShadeVariant, shade_specialization, shade_variant_specialization,
+};
 use arealight::{Effects, Footprint, Fresnel, Horizon, Quality, TileClass};
 use arealight_engine::SceneRenderer;
 use arealight_scene::{Scene, SceneBuffers};
@@ -186,6 +189,28 @@ fn what_is_not_called_for_is_left_out() {
     for effect in [Effects::POLYGON, Effects::TEXTURED, Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE] {
         assert!(left(lobes | effect) > left(lobes) + 300, "{effect:?}");
     }
+}
+
+#[test]
+fn what_no_light_of_a_frame_calls_for_leaves_the_pass_its_module_word_for_word() {
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    let words = kernels::SHADE_TOGETHER.words();
+    let quads =
+        ShadeConstants { light_count: 4, quad_count: 4, shape_count: 0, ..bytemuck::Zeroable::zeroed() };
+    let module = |pass: Effects, unused: Effects, constants: &ShadeConstants| {
+        let variant = ShadeVariant::new(pass, unused, constants);
+        let options = ShadeOptions { effects: pass, ..ShadeOptions::all() };
+        let specialization = shade_variant_specialization(options, variant);
+        (prune(&words, &specialization), specialization)
+    };
+    let bare = module(lobes, Effects::empty(), &quads);
+    for effect in Effects::all() - lobes {
+        assert!(module(lobes | effect, effect, &quads) == bare, "{effect:?}");
+        // The twin: a frame that calls for it has another
+        let all = ShadeConstants { light_count: 5, shape_count: 1, ..quads };
+        assert!(module(lobes | effect, Effects::empty(), &all) != bare, "{effect:?}");
+    }
+    assert!(module(Effects::all(), Effects::all() - lobes, &quads) == bare);
 }
 
 /// The bits of a picture of one of our scenes.

@@ -31,7 +31,7 @@ pub enum Access {
     ReadWrite,
 }
 
-/// A binding of descriptor set 0; its number is its place in [`Kernel::bindings`].
+/// A binding of descriptor set 0; its number is its place in [`Kernel::bindings`](super::Kernel::bindings).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Binding {
     /// Its name in the GLSL.
