@@ -133,7 +133,8 @@ pub fn effects(found: &Ladder) -> String {
     let used = found.effects.iter().filter_map(|effect| effect.used.as_ref());
     let spreads = found.effects.iter().map(|effect| &effect.on).chain(used);
     let most = spreads.map(|spread| spread.quartiles[1]).fold(1.5, f64::max) - 1.0;
-    let scale = (width - 130.0 - 160.0) / most;
+    // Names to the left, and what is said of the longest bar to its right
+    let scale = (width - 130.0 - 200.0) / most;
     let at = |ratio: f64| 130.0 + (ratio - 1.0).max(0.0) * scale;
     let mut drawing = Drawing::new(width, height, "What each effect adds to the time of the default rung");
     let step = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0].into_iter().find(|step| most / step <= 8.0).unwrap_or(10.0);
