@@ -126,6 +126,5 @@ pub fn shade_with_bridge() -> Vec<u32> {
         .output()
         .expect("glslc: tools/setup.sh test installs it");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let bytes = std::fs::read(module).expect("the module");
-    bytes.chunks_exact(4).map(|word| u32::from_le_bytes(word.try_into().expect("four bytes"))).collect()
+    crate::spirv::words(&std::fs::read(module).expect("the module"))
 }

@@ -4,6 +4,7 @@
 pub mod c_library;
 mod cases;
 mod compare;
+pub mod frame;
 pub mod kernel;
 pub mod lobe;
 pub mod one_pixel;
@@ -11,6 +12,7 @@ mod points;
 mod property;
 mod rungs;
 pub mod shapes;
+pub mod spirv;
 
 pub use cases::Cases;
 pub use compare::{Comparison, rounding};

@@ -7,8 +7,8 @@ use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Quality};
 use arealight_engine::SceneRenderer;
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::TestEngine;
-use glam::{Vec3, Vec4};
-use std::path::Path;
+use arealight_tests::frame::{bits, scene};
+use glam::Vec3;
 
 const SIZE: [u32; 2] = [64, 36];
 
@@ -46,15 +46,6 @@ impl<'a> View<'a> {
         renderer.shade_by(&SHADE, &shade_specialization(options)).unwrap();
         bits(&mut renderer)
     }
-}
-
-fn bits(renderer: &mut SceneRenderer<'_>) -> Vec<[u32; 4]> {
-    renderer.radiance().unwrap().into_iter().map(|texel: Vec4| texel.to_array().map(f32::to_bits)).collect()
-}
-
-fn scene(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-    Scene::load(path).expect("our own scenes load")
 }
 
 /// How many pixels differ in any bit, and the largest difference of a channel, over the brightest channel.

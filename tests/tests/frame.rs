@@ -7,19 +7,14 @@ use arealight_host::{Image, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::frame::scene;
 use arealight_tests::one_pixel::{OnePixel, lamp, options};
 use arealight_tests::{Comparison, TestEngine, rounding};
 use glam::camera::rh::proj::vulkan;
 use glam::{DVec3, Vec3, Vec4};
 use half::f16;
-use std::path::Path;
 
 const SIZE: [u32; 2] = [64, 40];
-
-fn scene(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-    Scene::load(path).expect("our own scenes load")
-}
 
 fn camera(scene: &Scene) -> Camera {
     scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera")

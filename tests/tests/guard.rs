@@ -4,14 +4,13 @@
 use arealight::kernels::{EVAL, Kernel, SHADE, constant};
 use arealight::{Effects, FormFactor, Fresnel, Horizon};
 use arealight_tests::kernel::UNGUARDED;
+use arealight_tests::spirv::{tool, words};
 use arealight_tests::{Cases, Path, Rung, TestEngine, glossy_surface, point};
 use arealight_vk::Resource;
 use glam::DVec3;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::Op;
 use std::collections::{HashMap, HashSet};
-use std::io::Write as _;
-use std::process::{Command, Stdio};
 
 /// float32's infinity: what is at or beyond it, as a whole number, is infinite, NaN or negative.
 const INFINITY: u32 = 0x7f80_0000;
@@ -122,27 +121,14 @@ fn guards(module: &Module) -> usize {
 /// A module as `spirv-opt` leaves it, its specialisation constants set; `None` where that tool is missing.
 fn optimised(kernel: &Kernel, specialization: &[(u32, u32)]) -> Option<Vec<u32>> {
     let defaults: Vec<String> = specialization.iter().map(|(id, value)| format!("{id}:{value}")).collect();
-    let set =
-        (!defaults.is_empty()).then(|| format!("--set-spec-const-default-value={}", defaults.join(" ")));
-    let tool = Command::new("spirv-opt")
-        .args(set)
-        .args(["--freeze-spec-const", "--fold-spec-const-op-composite", "-O", "-", "-o", "-"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn();
-    let mut tool = match tool {
-        Ok(tool) => tool,
-        Err(error) => {
-            let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
-            assert!(!required, "AREALIGHT_REQUIRE_GPU=1, and spirv-opt: {error}: run tools/setup.sh test");
-            println!("skipped: no spirv-opt ({error})");
-            return None;
-        }
-    };
-    tool.stdin.take().expect("a pipe").write_all(kernel.spirv).expect("spirv-opt reads");
-    let output = tool.wait_with_output().expect("spirv-opt ends");
+    let set = format!("--set-spec-const-default-value={}", defaults.join(" "));
+    let mut arguments = vec!["--freeze-spec-const", "--fold-spec-const-op-composite", "-O", "-", "-o", "-"];
+    if !defaults.is_empty() {
+        arguments.insert(0, &set);
+    }
+    let output = tool("spirv-opt", &arguments, kernel.spirv)?;
     assert!(output.status.success(), "{}: spirv-opt fails", kernel.name);
-    Some(output.stdout.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+    Some(words(&output.stdout))
 }
 
 #[test]

@@ -2,12 +2,10 @@
 
 use arealight::plan::{LightReads, Output, ShadeOptions, TileOptions, shade_specialization};
 use arealight::{Effects, Footprint, Horizon, Quality};
-use arealight_engine::SceneRenderer;
 use arealight_oracle::texture::Texture;
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_scene::Scene;
 use arealight_tests::TestEngine;
-use glam::{Vec3, Vec4};
-use std::path::Path;
+use arealight_tests::frame::{bits, scene, with_renderer};
 use std::sync::Arc;
 
 /// No multiple of a group's side.
@@ -22,32 +20,27 @@ struct Frame<'a> {
 
 impl<'a> Frame<'a> {
     fn new(engine: &'a TestEngine, name: &str, quality: Quality) -> Self {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("glb");
-        Self { engine, scene: Scene::load(path).expect("our own scenes load"), quality }
+        Self { engine, scene: scene(name), quality }
     }
 
     /// The bits of the picture, without tiles or with.
     fn shade(&self, reads: LightReads, by_tiles: bool) -> Vec<[u32; 4]> {
         let Self { engine, scene, quality } = self;
-        let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-        let buffers = SceneBuffers::new(scene, camera.position).unwrap();
-        let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
         // Items part where one point is enough for some
         let far = if quality.one_point { Effects::FAR } else { Effects::empty() };
         let effects = scene.effects() | far;
         let options =
             ShadeOptions { effects, quality: *quality, reads, output: Output::Add, ..ShadeOptions::all() };
-        let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
-        let mut renderer = renderer.with_shapes(&scene.shapes).unwrap();
-        if by_tiles {
-            let every = TileOptions { least_quads: 0, ..TileOptions::default() };
-            let view = renderer.tiled(options, every).unwrap();
-            renderer.shade_tiled(&view).unwrap();
-        } else {
-            renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
-        }
-        let bits = |texel: Vec4| texel.to_array().map(f32::to_bits);
-        renderer.radiance().unwrap().into_iter().map(bits).collect()
+        with_renderer(engine, scene, &scene.lights, SIZE, |renderer| {
+            if by_tiles {
+                let every = TileOptions { least_quads: 0, ..TileOptions::default() };
+                let view = renderer.tiled(options, every).unwrap();
+                renderer.shade_tiled(&view).unwrap();
+            } else {
+                renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
+            }
+            bits(renderer)
+        })
     }
 
     /// Holds what is read together against what is read by item. The picture.
@@ -65,7 +58,7 @@ fn differing(a: &[[u32; 4]], b: &[[u32; 4]]) -> usize {
 #[test]
 fn outlines_and_quads_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut frame = Frame::new(&engine, "demo", Quality::default());
+    let mut frame = Frame::new(&engine, "demo.glb", Quality::default());
     let picture = frame.check_to_the_bit(false);
     // The twin: lights that are a little elsewhere are seen
     frame.scene.lights.iter_mut().flat_map(|light| &mut light.vertices).for_each(|vertex| vertex.x += 1e-3);
@@ -76,20 +69,20 @@ fn outlines_and_quads_are_read_together() {
 fn lists_of_tiles_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
     let quality = Quality { one_point: true, ..Quality::default() };
-    Frame::new(&engine, "room", quality).check_to_the_bit(true);
+    Frame::new(&engine, "room.glb", quality).check_to_the_bit(true);
 }
 
 #[test]
 fn far_lights_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
     let quality = Quality { one_point: true, horizon: Horizon::Both, ..Quality::default() };
-    Frame::new(&engine, "sweep", quality).check_to_the_bit(false);
+    Frame::new(&engine, "sweep.glb", quality).check_to_the_bit(false);
 }
 
 #[test]
 fn shapes_are_read_together() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut frame = Frame::new(&engine, "shapes", Quality::default());
+    let mut frame = Frame::new(&engine, "shapes.glb", Quality::default());
     let picture = frame.check_to_the_bit(false);
     // The twin: shapes that are a little brighter are seen
     frame.scene.shapes.iter_mut().for_each(|shape| shape.radiance *= 1.001);
@@ -101,7 +94,7 @@ fn images_on_lights_are_read_together() {
     let Some(mut engine) = TestEngine::new() else { return };
     let textures = [0, 1, 2, 3].map(|seed| Arc::new(Texture::noise(64, 64, seed)));
     arealight_benches::pictures::load(&mut engine, &textures).unwrap();
-    Frame::new(&engine, "clock", Quality::default()).check_to_the_bit(false);
+    Frame::new(&engine, "clock.glb", Quality::default()).check_to_the_bit(false);
     let quality = Quality { footprint: Footprint::SplitTwo, ..Quality::default() };
-    Frame::new(&engine, "screen", quality).check_to_the_bit(false);
+    Frame::new(&engine, "screen.glb", quality).check_to_the_bit(false);
 }

@@ -4,7 +4,7 @@
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, Horizon, LightTable, PolygonLight, Quality, Shape, ShapeLight};
 use arealight_engine::{EvalPoint, SceneRenderer, ShapePoint};
-use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_scene::{Camera, SceneBuffers};
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{
     Cases, Comparison, Path, Random, Rung, TestEngine, glossy_surface, lambert_surface, point, rounding,
@@ -277,8 +277,7 @@ impl Frame<'_> {
 #[test]
 fn a_mesh_is_one_light_of_a_frame() {
     let Some(engine) = TestEngine::new() else { return };
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/sweep.glb");
-    let mut scene = Scene::load(path).expect("our own scene");
+    let mut scene = arealight_tests::frame::scene("sweep.glb");
     // The surfaces alone: the camera sees no light
     scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
     let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");

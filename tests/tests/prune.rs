@@ -6,16 +6,13 @@ use arealight::plan::{
     LightReads, ShadeOptions, ShadeVariant, shade_specialization, shade_variant_specialization,
 };
 use arealight::{Effects, Footprint, Fresnel, Horizon, Quality, TileClass};
-use arealight_engine::SceneRenderer;
-use arealight_scene::{Scene, SceneBuffers};
 use arealight_tests::TestEngine;
+use arealight_tests::frame::{bits, scene, with_renderer};
 use arealight_tests::kernel::BRANCHES;
+use arealight_tests::spirv::{tool, words};
 use arealight_vk::prune;
-use glam::{Vec3, Vec4};
 use std::collections::BTreeSet;
-use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// What branches.comp is to write for a number.
 fn branches(x: u32, flags: u32, rung: i32, switch: bool) -> [u32; 10] {
@@ -89,7 +86,7 @@ fn branches_that_stay_are_those_that_are_taken() {
         assert!(prune(&BRANCHES.words(), &specialization).len() < BRANCHES.words().len());
         different.insert(expected);
     }
-    // The twin: specialisations are told from each other (by no case are flags by themselves told from rungs by themselves)
+    // The twin: specialisations are told from each other
     assert!(different.len() >= 28, "{}", different.len());
 }
 
@@ -124,26 +121,18 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     kept
 }
 
-/// What `spirv-val` says against a module; none where it is valid, or where the tool is missing and none is required.
-fn fault(module: &[u32]) -> Option<String> {
-    let mut tool = match Command::new("spirv-val")
-        .args(["--target-env", "vulkan1.1", "-"])
-        .stdin(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-    {
-        Ok(tool) => tool,
-        Err(error) => {
-            let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
-            assert!(!required, "AREALIGHT_REQUIRE_GPU=1, and spirv-val: {error}: run tools/setup.sh test");
-            println!("skipped: no spirv-val ({error})");
-            return None;
-        }
-    };
+/// What `spirv-val` says against a module; none where the tool is missing.
+fn validated(module: &[u32]) -> Option<Result<(), String>> {
     let bytes: Vec<u8> = module.iter().flat_map(|word| word.to_le_bytes()).collect();
-    tool.stdin.take().expect("a pipe").write_all(&bytes).expect("spirv-val reads");
-    let output = tool.wait_with_output().expect("spirv-val ends");
-    (!output.status.success()).then(|| String::from_utf8_lossy(&output.stderr).into_owned())
+    let output = tool("spirv-val", &["--target-env", "vulkan1.1", "-"], &bytes)?;
+    let faults = || String::from_utf8_lossy(&output.stderr).into_owned();
+    Some(if output.status.success() { Ok(()) } else { Err(faults()) })
+}
+
+fn check_valid(module: &[u32], what: &str) {
+    if let Some(found) = validated(module) {
+        assert_eq!(found, Ok(()), "{what}");
+    }
 }
 
 #[test]
@@ -152,26 +141,24 @@ fn every_kernel_stays_valid_however_it_is_specialised() {
         let whole = kernel.words();
         for specialization in specializations(kernel) {
             let pruned = prune(&whole, &specialization);
-            assert_eq!(fault(&pruned), None, "{}, {specialization:?}", kernel.name);
+            check_valid(&pruned, &format!("{}, {specialization:?}", kernel.name));
             assert!(pruned.len() <= whole.len());
         }
     }
     // The twin: what is not valid is seen
     let mut broken = prune(&kernels::TEXTURE_BLUR.words(), &[]);
     broken.pop();
-    if Command::new("spirv-val").arg("--version").output().is_ok() {
-        assert!(fault(&broken).is_some());
+    if let Some(found) = validated(&broken) {
+        assert!(found.is_err());
     }
 }
 
 #[test]
 fn a_fragment_shader_that_includes_the_library_is_pruned_too() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/rust/spirv/forward.frag.spv");
-    let bytes = std::fs::read(file).expect("the example's shader");
-    let whole: Vec<u32> =
-        bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
+    let whole = words(&std::fs::read(file).expect("the example's shader"));
     let pruned = prune(&whole, &[]);
-    assert_eq!(fault(&pruned), None);
+    check_valid(&pruned, "the example's shader");
     // Its effects and its quality are constants: a third goes
     assert!(pruned.len() * 4 < whole.len() * 3, "{} of {}", pruned.len(), whole.len());
 }
@@ -215,25 +202,20 @@ fn what_no_light_of_a_frame_calls_for_leaves_the_pass_its_module_word_for_word()
 
 /// The bits of a picture of one of our scenes.
 fn picture(engine: &TestEngine, name: &str, quality: Quality, reads: LightReads) -> Vec<[u32; 4]> {
-    const SIZE: [u32; 2] = [61, 37];
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name).with_extension("glb");
-    let scene = Scene::load(&path).expect("our own scenes load");
-    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-    let buffers = SceneBuffers::new(&scene, camera.position).unwrap();
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
+    let scene = scene(name);
     let options = ShadeOptions { effects: scene.effects(), quality, reads, ..ShadeOptions::all() };
-    let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
-    let mut renderer = renderer.with_shapes(&scene.shapes).unwrap();
-    renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
-    let bits = |texel: Vec4| texel.to_array().map(f32::to_bits);
-    renderer.radiance().unwrap().into_iter().map(bits).collect()
+    with_renderer(engine, &scene, &scene.lights, [61, 37], |renderer| {
+        renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
+        bits(renderer)
+    })
 }
 
 #[test]
 fn pictures_are_the_same_to_the_bit() {
     let (Some(pruning), Some(whole)) = (TestEngine::new(), TestEngine::with_whole_modules()) else { return };
     let split = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..Quality::default() };
-    let cases = [("demo", Quality::default(), LightReads::Together), ("shapes", split, LightReads::ByItem)];
+    let cases =
+        [("demo.glb", Quality::default(), LightReads::Together), ("shapes.glb", split, LightReads::ByItem)];
     for (scene, quality, reads) in cases {
         let pictures = [&pruning, &whole].map(|engine| picture(engine, scene, quality, reads));
         assert!(pictures[0] == pictures[1], "{scene}");

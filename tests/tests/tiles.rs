@@ -5,11 +5,11 @@ use arealight::table::{LobeHorizon, mirror_frame};
 use arealight::{Effects, LightTable, PolygonLight, Quality, Shape, ShapeLight, TileClass, TubeEnds};
 use arealight_engine::{SceneRenderer, TileCounts};
 use arealight_oracle::texture::Texture;
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_scene::Scene;
 use arealight_tests::TestEngine;
+use arealight_tests::frame::{scene, with_renderer};
 use arealight_vk::{Error, TiledShade};
 use glam::{DMat3, DVec3, Vec3, Vec4};
-use std::path::Path;
 use std::sync::Arc;
 
 /// No multiple of a tile's side.
@@ -20,11 +20,6 @@ struct Pictures {
     plain: Vec<Vec4>,
     tiled: Vec<Vec4>,
     counts: TileCounts,
-}
-
-fn scene(name: &str) -> Scene {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
-    Scene::load(path).expect("our own scenes load")
 }
 
 fn black(scene: &Scene) -> Scene {
@@ -41,12 +36,7 @@ fn with_view<T>(
     lights: &[PolygonLight],
     act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
 ) -> T {
-    let scene = black(scene);
-    let camera = scene.camera(None, f64::from(SIZE[0]) / f64::from(SIZE[1])).expect("a camera");
-    let buffers = SceneBuffers::new(&scene, camera.position).unwrap();
-    let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-    let renderer = SceneRenderer::new(engine, &buffers, lights, constants, SIZE).unwrap();
-    act(&mut renderer.with_shapes(&scene.shapes).unwrap())
+    with_renderer(engine, &black(scene), lights, SIZE, act)
 }
 
 /// The picture without tiles.

@@ -139,7 +139,7 @@ impl Known {
         }
         let a = operand(0)?;
         match operation {
-            Op::LogicalNot => return Some(1 - a),
+            Op::LogicalNot => return Some(u32::from(a == 0)),
             Op::Not => return Some(!a),
             _ => {}
         }

@@ -88,7 +88,7 @@ impl Flow {
         // Each value that is known may close a branch, and each branch that is closed may make values known: in one round at
         // least one of either, or all is found
         let (live, edges) = Default::default();
-        let mut flow = Self { known, memory: parameters.clone(), live, edges, keeps_all: false };
+        let mut flow = Self { known, memory: HashMap::new(), live, edges, keeps_all: false };
         for _ in 0..=function.blocks.len() {
             flow.follow(function);
             flow.memory.clone_from(&parameters);
@@ -185,7 +185,6 @@ impl Flow {
             }
         };
         for instruction in self.live_instructions(function) {
-            let operands = || instruction.operands.iter().filter_map(Operand::id_ref_any);
             match (instruction.class.opcode, id(instruction, 0), id(instruction, 1)) {
                 (Op::Store, Some(pointer), Some(value)) => write(pointer, self.known.value(value)),
                 (Op::FunctionCall, ..) => {
@@ -196,7 +195,13 @@ impl Flow {
                 (Op::Load, ..) => {}
                 _ if uses.is_reading(instruction) => {}
                 // Whatever else is done with a pointer may be to write
-                _ => operands().for_each(|id| write(id, None)),
+                _ => {
+                    instruction
+                        .operands
+                        .iter()
+                        .filter_map(Operand::id_ref_any)
+                        .for_each(|id| write(id, None));
+                }
             }
         }
         let is_constant = |variable: &Word| uses.variables.contains(variable) && !changed.contains(variable);

@@ -1,0 +1,43 @@
+//! Our own scenes, and frames of them.
+
+use arealight::PolygonLight;
+use arealight_engine::{Engine, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use glam::{Vec3, Vec4};
+use std::path::Path;
+
+/// The scene in the file of that name in `scenes`.
+///
+/// # Panics
+/// Where there is none, or it does not load.
+pub fn scene(name: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+    Scene::load(path).expect("our own scenes load")
+}
+
+/// Hands on the view of a scene from its first camera, under `lights` and the scene's shapes.
+///
+/// # Panics
+/// Where the scene has no camera, or the device fails.
+pub fn with_renderer<T>(
+    engine: &Engine,
+    scene: &Scene,
+    lights: &[PolygonLight],
+    size: [u32; 2],
+    act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
+) -> T {
+    let camera = scene.camera(None, f64::from(size[0]) / f64::from(size[1])).expect("a camera");
+    let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
+    let constants = buffers.constants(&camera, size, Vec3::ZERO);
+    let renderer = SceneRenderer::new(engine, &buffers, lights, constants, size).expect("a renderer");
+    act(&mut renderer.with_shapes(&scene.shapes).expect("the shapes fit"))
+}
+
+/// The bits of the picture that was shaded.
+///
+/// # Panics
+/// Where the device fails.
+pub fn bits(renderer: &mut SceneRenderer<'_>) -> Vec<[u32; 4]> {
+    let texels = renderer.radiance().expect("the picture comes back");
+    texels.into_iter().map(|texel: Vec4| texel.to_array().map(f32::to_bits)).collect()
+}
