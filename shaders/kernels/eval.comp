@@ -17,18 +17,28 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define LIGHTS_BINDING 1
 #define CASES_BINDING 3
 #define LIGHT_TEXTURES_BINDING 5
+#include "effects.glsl"
 #include "table_image.glsl"
-#include "lights.glsl"
+#include "polygon_lights.glsl"
 #include "cases.glsl"
+
+const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
+
+vec3 radiance_of(ArealightPoint point, ArealightGpuLight record) {
+    if ((EFFECTS & EFFECT_MESH) != 0u && (record.flags & LIGHT_MESH) != 0u) {
+        return arealight_radiance(point, load_mesh(record));
+    }
+    if (HAS_POLYGONS) {
+        return arealight_radiance(point, load_polygon(record, (EFFECTS & EFFECT_TEXTURED) != 0u));
+    }
+    return arealight_radiance(point, load_quad(record));
+}
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= constants.case_count) {
         return;
     }
-    ArealightGpuCase given = cases[index];
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(case_surface(given), EFFECTS, quality);
-    vec3 radiance = arealight_polygon_radiance(point, load_light(given.light), EFFECTS, quality);
-    results[index] = vec4(radiance, 0.0);
+    ArealightPoint point = arealight_point(case_surface(cases[index]));
+    results[index] = vec4(radiance_of(point, lights[cases[index].light]), 0.0);
 }

@@ -18,19 +18,34 @@ layout(constant_id = 10) const int SHAPE = 3;
 #define SHAPES_BINDING 1
 #define CASES_BINDING 2
 #define LIGHT_TEXTURES_BINDING 4
+#include "effects.glsl"
+#undef AREALIGHT_QUADS
+#define AREALIGHT_QUADS 0
+#undef AREALIGHT_POLYGONS
+#undef AREALIGHT_MESHES
 #include "table_image.glsl"
-#include "light_textures.glsl"
-#include "shape_buffer.glsl"
+#include "round_lights.glsl"
 #include "cases.glsl"
+
+// Each shape is what its record says
+const int SHAPE_ANY = 3;
+
+vec3 radiance_of(ArealightPoint point, ArealightGpuShape record) {
+    uint kind = SHAPE == SHAPE_ANY ? record.kind : uint(SHAPE);
+    if (kind == SHAPE_TUBE) {
+        return arealight_radiance(point, load_tube(record));
+    }
+    if (kind == SHAPE_SPHERE) {
+        return arealight_radiance(point, load_sphere(record));
+    }
+    return arealight_radiance(point, load_disk(record, (EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u));
+}
 
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= constants.case_count) {
         return;
     }
-    ArealightGpuCase given = cases[index];
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(case_surface(given), EFFECTS, quality);
-    vec3 radiance = arealight_shape_radiance(point, load_shape(given.light, SHAPE), EFFECTS, quality);
-    results[index] = vec4(radiance, 0.0);
+    ArealightPoint point = arealight_point(case_surface(cases[index]));
+    results[index] = vec4(radiance_of(point, shapes[cases[index].light]), 0.0);
 }

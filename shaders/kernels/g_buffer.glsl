@@ -2,9 +2,8 @@
 #define G_BUFFER_GLSL
 
 // Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, and G_BUFFER_LAYOUT where it knows
-// other layouts than our own.
+// other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
 
-#include "arealight/effects.glsl"
 #include "arealight/surface.glsl"
 
 // How surfaces are stored: the same as arealight::plan::GBufferLayout, which says what each image holds.
@@ -31,7 +30,7 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
-ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera, uint effects) {
+ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     ArealightSurface surface = arealight_bridge_surface(pixel);
     surface.position = position;
     surface.view = camera - position;
@@ -54,11 +53,11 @@ vec3 from_octahedron(vec2 place) {
 }
 
 // The surface that a pixel sees from `camera`, at `position`.
-ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera, uint effects) {
+ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     vec4 normal = texelFetch(g_normal, pixel, 0);
     vec4 base_color = texelFetch(g_base_color, pixel, 0);
     vec4 specular = vec4(0.04, 0.04, 0.04, 1.0);
-    if (G_BUFFER_LAYOUT != G_BUFFER_AREALIGHT || (effects & AREALIGHT_EFFECT_SPECULAR_INPUT) != 0u) {
+    if (G_BUFFER_LAYOUT != G_BUFFER_AREALIGHT || HAS_SPECULAR_INPUT) {
         specular = texelFetch(g_specular, pixel, 0);
     }
     ArealightSurface surface;

@@ -1,45 +1,41 @@
 #ifndef LIGHT_RECORDS_GLSL
 #define LIGHT_RECORDS_GLSL
 
-// The records of polygon lights. The including kernel defines LIGHTS_BINDING.
+// The records of lights, which the CPU writes: crates/arealight/src/gpu.rs has the same, and a test compares the offsets.
 
-#include "buffers.glsl"
-#include "together.glsl"
-
-#if READ_TOGETHER
-
-layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
-    uvec4 lights[]; // eight rows a light
+struct ArealightGpuLight {
+    vec3 radiance;
+    uint first_vertex;
+    vec3 center;
+    float radius;
+    vec3 normal;
+    float area; // over the radius squared
+    uint vertex_count;
+    uint flags;
+    uint texture_layer;
+    uint reserved;
 };
 
-// The record of a light, which is the same for all of the subgroup.
-ArealightGpuLight light_record(uint index) {
-    uvec4 row = lights[index * 8u + row_to_read(8u)];
-    uvec4 place = subgroupShuffle(row, 1u);
-    uvec4 area = subgroupShuffle(row, 2u);
-    uvec4 kind = subgroupShuffle(row, 3u);
-    uvec4 corner = subgroupShuffle(row, 4u);
-    uvec4 axis_u = subgroupShuffle(row, 5u);
-    uvec4 axis_v = subgroupShuffle(row, 6u);
-    vec4 box = uintBitsToFloat(subgroupShuffle(row, 7u));
-    row = subgroupShuffle(row, 0u);
-    return ArealightGpuLight(uintBitsToFloat(row.xyz), row.w, uintBitsToFloat(place.xyz), uintBitsToFloat(place.w),
-                             uintBitsToFloat(area.xyz), area.w, kind.x, kind.y, kind.z, kind.w,
-                             uintBitsToFloat(corner.xyz), corner.w, uintBitsToFloat(axis_u.xyz), axis_u.w,
-                             uintBitsToFloat(axis_v.xyz), axis_v.w, box.xy, box.zw);
-}
+const uint LIGHT_TWO_SIDED = 1u;
+const uint LIGHT_FLAT = 2u; // its vertices lie in a plane, to 1e-4 of its size
+const uint LIGHT_MESH = 4u; // several faces
+const uint NO_LIGHT_TEXTURE = 0xffffffffu;
 
-#else
-
-layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
-    ArealightGpuLight lights[];
+struct ArealightGpuShape {
+    vec3 radiance;
+    uint kind;
+    vec3 center;
+    float radius;
+    vec3 axis_u;
+    uint detail; // of a tube its ends; of a disk the layer of its image
+    vec3 axis_v;
+    uint flags;
 };
 
-// The record of a light.
-ArealightGpuLight light_record(uint index) {
-    return lights[index];
-}
+const uint SHAPE_DISK = 0u;
+const uint SHAPE_SPHERE = 1u;
+const uint SHAPE_TUBE = 2u;
 
-#endif
+const uint SHAPE_TWO_SIDED = 1u;
 
 #endif

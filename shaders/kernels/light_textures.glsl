@@ -1,9 +1,7 @@
 #ifndef LIGHT_TEXTURES_GLSL
 #define LIGHT_TEXTURES_GLSL
 
-// The lights' textures as the library sees them. The including kernel defines LIGHT_TEXTURES_BINDING.
-
-#define AREALIGHT_LIGHT_TEXTURES 1
+// The lights' textures for the library. The including kernel defines LIGHT_TEXTURES_BINDING, and AREALIGHT_LIGHT_TEXTURES as 1.
 
 layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform sampler2DArray light_textures;
 

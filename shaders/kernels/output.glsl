@@ -4,7 +4,7 @@
 // The images that radiance goes to. The including kernel defines RADIANCE_BINDING, GLOSSY_BINDING and the constant OUTPUT:
 // bits, of which none overwrites one image of 32-bit floats.
 
-#include "arealight/shading_point.glsl"
+#include "arealight/light_kind.glsl"
 #include "half.glsl"
 
 // The same as ShadeOptions::output_bits in Rust (a test compares them).
@@ -25,9 +25,9 @@ struct PixelRadiance {
 void add_light(inout PixelRadiance sum, vec3 radiance, ArealightReflected reflected) {
     if ((OUTPUT & OUTPUT_APART) != 0) {
         sum.radiance += radiance * reflected.diffuse;
-        sum.glossy += radiance * reflected.glossy;
+        sum.glossy += radiance * reflected.specular;
     } else {
-        sum.radiance += radiance * (reflected.glossy + reflected.diffuse);
+        sum.radiance += radiance * (reflected.specular + reflected.diffuse);
     }
 }
 

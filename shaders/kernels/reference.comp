@@ -12,8 +12,15 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define G_BUFFER_BINDING 4
 #define LIGHT_TEXTURES_BINDING 9
 #define SHAPES_BINDING 10
+#define AREALIGHT_LIGHT_TEXTURES 1
+#define AREALIGHT_POLYGONS 1
+#define AREALIGHT_MESHES 1
+#define AREALIGHT_DISKS 1
+#define AREALIGHT_SPHERES 1
+#define AREALIGHT_TUBES 1
+const bool HAS_SPECULAR_INPUT = true;
 #include "arealight/ggx.glsl"
-#include "lights.glsl"
+#include "polygon_lights.glsl"
 #include "g_buffer.glsl"
 #include "random.glsl"
 #include "shape_sampling.glsl"
@@ -217,7 +224,7 @@ vec3 estimate_mesh_by_brdf(Lobes lobes, vec3 direction, float by_brdf, Arealight
 }
 
 // As both estimates above, of a shape.
-vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightShape shape, inout RandomState random) {
+vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShape shape, inout RandomState random) {
     vec3 sum = vec3(0.0);
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
@@ -240,7 +247,7 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
     float by_brdf = direction.z > 0.0 ? density(lobes, direction) : 0.0;
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < constants.light_count; index++) {
-        ArealightPolygonLight light = load_light(index);
+        ArealightPolygonLight light = load_polygon(lights[index], true);
         ArealightGpuLightSampling sampling = light_sampling[index];
         if (sampling.triangle_count == 0u) {
             continue;
@@ -253,7 +260,7 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
         }
     }
     for (uint index = 0u; index < constants.shape_count; index++) {
-        radiance += estimate_shape(lobes, direction, by_brdf, load_shape(index, SHAPE_ANY), random);
+        radiance += estimate_shape(lobes, direction, by_brdf, shapes[index], random);
     }
     return radiance;
 }
@@ -267,7 +274,7 @@ void main() {
     if (position.w == 0.0) {
         return;
     }
-    Lobes lobes = load_lobes(load_surface(pixel, position.xyz, constants.camera, AREALIGHT_EFFECT_SPECULAR_INPUT));
+    Lobes lobes = load_lobes(load_surface(pixel, position.xyz, constants.camera));
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

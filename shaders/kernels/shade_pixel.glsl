@@ -1,74 +1,72 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// How a pixel is shaded with a list of polygons, and all shapes. The including kernel has shade_resources.glsl, push constants with
-// camera and shape_count, a struct LightList with quad_count and light_count, and
-// - uint light_at(LightList list, uint place): a light of the list, of which the first quad_count are convex quads without an image;
-// - HAS_LIGHTS, HAS_QUADS, HAS_OTHERS: whether a pixel may have any light, such quads, other polygons;
-// - IS_ABOVE: whether no light has to be clipped.
+// Shades a pixel with a list of lights. The including kernel has shade_resources.glsl, push constants with camera and shape_count, a
+// struct LightList with quad_count and light_count, and
+// - uint light_at(LightList list, uint index): a light of the list, of which the first quad_count are convex quads without an image;
+// - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS: whether a pixel may have any light, such quads, other polygons and meshes.
 
 #include "position.glsl"
 
-PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
-    ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
-    int of_polygons = IS_ABOVE ? AREALIGHT_HORIZON_ABOVE : HORIZON;
-    int of_shapes = IS_ABOVE ? AREALIGHT_HORIZON_BARE : HORIZON;
-    ArealightQuality polygon_quality = ArealightQuality(FORM_FACTOR, of_polygons, FRESNEL, LOBES, FOOTPRINT);
-    ArealightQuality shape_quality = ArealightQuality(FORM_FACTOR, of_shapes, FRESNEL, LOBES, FOOTPRINT);
-    PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
+const bool HAS_TEXTURES = (EFFECTS & EFFECT_TEXTURED) != 0u;
+const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
+const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
+const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
+const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
+const bool HAS_TEXTURED_DISKS = (EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u;
 
-    // Every loop ends with its condition: devices that run masked passes have none to run then
-    if (HAS_QUADS && list.quad_count != 0u) {
-        uint place = 0u;
-        do {
-            ArealightPolygonLight light = load_light(light_at(list, place));
-            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS & ~BEYOND_QUADS, polygon_quality));
-            place++;
-        } while (place < list.quad_count);
+void shade_polygon(inout PixelRadiance sum, ArealightPoint point, ArealightGpuLight record) {
+    if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
+        add_light(sum, record.radiance, arealight_reflected(point, load_mesh(record)));
+    } else {
+        add_light(sum, record.radiance, arealight_reflected(point, load_polygon(record, HAS_TEXTURES)));
     }
-    if (HAS_OTHERS && list.quad_count < list.light_count) {
-        uint place = list.quad_count;
-        do {
-            ArealightPolygonLight light = load_light(light_at(list, place));
-            add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, polygon_quality));
-            place++;
-        } while (place < list.light_count);
+}
+
+void shade_shape(inout PixelRadiance sum, ArealightPoint point, ArealightGpuShape record) {
+    if (HAS_TUBES && record.kind == SHAPE_TUBE) {
+        add_light(sum, record.radiance, arealight_reflected(point, load_tube(record)));
+    } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
+        add_light(sum, record.radiance, arealight_reflected(point, load_sphere(record)));
+    } else if (HAS_DISKS && record.kind == SHAPE_DISK) {
+        add_light(sum, record.radiance, arealight_reflected(point, load_disk(record, HAS_TEXTURED_DISKS)));
     }
-    if ((EFFECTS & ANY_SHAPE) != 0u && constants.shape_count != 0u) {
-        uint index = 0u;
-        do {
-            ArealightShape shape = load_shape(index, SHAPE_ANY);
-            add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, shape_quality));
-            index++;
-        } while (index < constants.shape_count);
+}
+
+PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
+    ArealightPoint point = arealight_point(load_surface(pixel, position, constants.camera));
+    PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
+    if (HAS_QUADS) {
+        for (uint index = 0u; index < list.quad_count; index++) {
+            ArealightGpuLight record = lights[light_at(list, index)];
+            add_light(sum, record.radiance, arealight_reflected(point, load_quad(record)));
+        }
+    }
+    if (HAS_POLYGONS) {
+        for (uint index = list.quad_count; index < list.light_count; index++) {
+            shade_polygon(sum, point, lights[light_at(list, index)]);
+        }
+    }
+    if (HAS_DISKS || HAS_SPHERES || HAS_TUBES) {
+        for (uint index = 0u; index < constants.shape_count; index++) {
+            shade_shape(sum, point, shapes[index]);
+        }
     }
     return sum;
 }
 
 // Shades a pixel of an image of that size, if it is one, and stores it.
 void shade_pixel(ivec2 pixel, ivec2 size, LightList list) {
-    // Items go on, though they have no pixel or no surface, where others of their subgroup need them to read
-    bool is_inside = all(lessThan(pixel, size));
-    if (!any_together(is_inside)) {
+    if (any(greaterThanEqual(pixel, size))) {
         return;
     }
-    if (IS_TOGETHER) {
-        pixel = min(pixel, size - 1);
-    } else {
-        is_inside = true;
-    }
-
     vec3 position;
-    bool hit = load_position(pixel, size, position) && is_inside;
+    bool hit = load_position(pixel, size, position);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
-    if (HAS_LIGHTS && any_together(hit)) {
+    if (HAS_LIGHTS && hit) {
         sum = shade_surface(pixel, position, list);
     }
-    if (is_inside) {
-        store_radiance(pixel, hit, sum);
-    }
+    store_radiance(pixel, hit, sum);
 }
 
 #endif

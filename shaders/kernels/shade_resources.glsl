@@ -1,7 +1,7 @@
 #ifndef SHADE_RESOURCES_GLSL
 #define SHADE_RESOURCES_GLSL
 
-// What shading reads and writes, of whole frames (shade_main.glsl) and by tiles (shade_tiles_main.glsl), and what specialises it.
+// What shading reads and writes, of whole frames (shade.comp) and by tiles (shade_tiles.comp), and its specialisation constants.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -22,12 +22,12 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9
 #define GLOSSY_BINDING 10
-// The lights are the frame's, or the tile's, which is the group's
-#define AREALIGHT_UNIFORM_LIGHTS 1
+#include "effects.glsl"
+const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "table_image.glsl"
-#include "lights.glsl"
+#include "polygon_lights.glsl"
+#include "round_lights.glsl"
 #include "g_buffer.glsl"
-#include "shape_buffer.glsl"
 #include "output.glsl"
 
 #endif

@@ -4,7 +4,11 @@
 // Drawing points of disks, spheres and tubes, and the density of such draws in solid angle: for the Monte Carlo reference.
 
 #include "random.glsl"
-#include "shape_buffer.glsl"
+#include "round_lights.glsl"
+
+bool is_two_sided(ArealightGpuShape shape) {
+    return (shape.flags & SHAPE_TWO_SIDED) != 0u;
+}
 
 // A point that was drawn.
 struct ShapeSample {
@@ -39,27 +43,27 @@ float sphere_density(vec3 center, float radius, bool two_sided) {
     return 0.5 * AREALIGHT_INVERSE_PI / height;
 }
 
-float ellipse_area(ArealightShape shape) {
+float ellipse_area(ArealightGpuShape shape) {
     return AREALIGHT_PI * length(cross(shape.axis_u, shape.axis_v));
 }
 
 // Areas of a tube's mantle and of both its ends.
-vec2 tube_areas(ArealightShape shape) {
+vec2 tube_areas(ArealightGpuShape shape) {
     float round = AREALIGHT_PI * shape.radius;
-    float ends = shape.ends == AREALIGHT_TUBE_ROUND ? 4.0 : shape.ends == AREALIGHT_TUBE_FLAT ? 2.0 : 0.0;
+    float ends = int(shape.detail) == AREALIGHT_TUBE_ROUND ? 4.0 : int(shape.detail) == AREALIGHT_TUBE_FLAT ? 2.0 : 0.0;
     return round * vec2(4.0 * length(shape.axis_u), ends * shape.radius);
 }
 
-ShapeSample sample_ellipse(ArealightShape shape, vec3 center, inout RandomState random) {
+ShapeSample sample_ellipse(ArealightGpuShape shape, vec3 center, inout RandomState random) {
     float radius = sqrt(random_float(random));
     float angle = 2.0 * AREALIGHT_PI * random_float(random);
     vec3 offset = center + radius * (cos(angle) * shape.axis_u + sin(angle) * shape.axis_v);
     vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
-    return ShapeSample(offset, area_density(offset, normal, ellipse_area(shape), shape.two_sided));
+    return ShapeSample(offset, area_density(offset, normal, ellipse_area(shape), is_two_sided(shape)));
 }
 
-ShapeSample sample_sphere(ArealightShape shape, vec3 center, inout RandomState random) {
-    float density = sphere_density(center, shape.radius, shape.two_sided);
+ShapeSample sample_sphere(ArealightGpuShape shape, vec3 center, inout RandomState random) {
+    float density = sphere_density(center, shape.radius, is_two_sided(shape));
     vec3 axis = arealight_normalize_or(center, vec3(0.0, 0.0, 1.0));
     vec3 across;
     vec3 up;
@@ -71,7 +75,7 @@ ShapeSample sample_sphere(ArealightShape shape, vec3 center, inout RandomState r
     return ShapeSample((1.0 - depth) * axis + sine * (cos(angle) * across + sin(angle) * up), density);
 }
 
-ShapeSample sample_tube(ArealightShape shape, vec3 center, inout RandomState random) {
+ShapeSample sample_tube(ArealightGpuShape shape, vec3 center, inout RandomState random) {
     vec2 areas = tube_areas(shape);
     float choice = random_float(random) * (areas.x + areas.y);
     float u = random_float(random);
@@ -86,7 +90,7 @@ ShapeSample sample_tube(ArealightShape shape, vec3 center, inout RandomState ran
     if (choice < areas.x) {
         normal = radial;
         offset = center + (2.0 * u - 1.0) * shape.axis_u + shape.radius * normal;
-    } else if (shape.ends == AREALIGHT_TUBE_ROUND) {
+    } else if (int(shape.detail) == AREALIGHT_TUBE_ROUND) {
         float height = 2.0 * u - 1.0;
         normal = height * axis + sqrt(max(1.0 - height * height, 0.0)) * radial;
         offset = center + (height < 0.0 ? -shape.axis_u : shape.axis_u) + shape.radius * normal;
@@ -100,12 +104,12 @@ ShapeSample sample_tube(ArealightShape shape, vec3 center, inout RandomState ran
 }
 
 // A point of a shape before the shading point.
-ShapeSample sample_shape(ArealightShape shape, vec3 position, inout RandomState random) {
+ShapeSample sample_shape(ArealightGpuShape shape, vec3 position, inout RandomState random) {
     vec3 center = shape.center - position;
-    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+    if (shape.kind == SHAPE_TUBE) {
         return sample_tube(shape, center, random);
     }
-    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+    if (shape.kind == SHAPE_SPHERE) {
         return sample_sphere(shape, center, random);
     }
     return sample_ellipse(shape, center, random);
@@ -114,7 +118,7 @@ ShapeSample sample_shape(ArealightShape shape, vec3 position, inout RandomState 
 // Below, the density with which sample_shape draws what a ray from the shading point meets: 0 where it meets nothing that
 // shines. `ray` is a unit vector.
 
-float ray_ellipse_density(ArealightShape shape, vec3 center, vec3 ray) {
+float ray_ellipse_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
     vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
     float distance = dot(normal, center) / dot(normal, ray);
     if (!(distance > 0.0 && distance < 1e30)) {
@@ -127,23 +131,23 @@ float ray_ellipse_density(ArealightShape shape, vec3 center, vec3 ray) {
     float vv = dot(shape.axis_v, shape.axis_v);
     vec2 along = vec2(dot(point, shape.axis_u), dot(point, shape.axis_v));
     vec2 place = vec2(along.x * vv - along.y * uv, along.y * uu - along.x * uv) / (uu * vv - uv * uv);
-    return dot(place, place) <= 1.0 ? area_density(ray * distance, normal, ellipse_area(shape), shape.two_sided) : 0.0;
+    return dot(place, place) <= 1.0 ? area_density(ray * distance, normal, ellipse_area(shape), is_two_sided(shape)) : 0.0;
 }
 
-float ray_sphere_density(ArealightShape shape, vec3 center, vec3 ray) {
+float ray_sphere_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
     vec3 beside = cross(ray, center);
     bool inside = dot(center, center) <= shape.radius * shape.radius;
     bool met = inside || (dot(ray, center) > 0.0 && dot(beside, beside) <= shape.radius * shape.radius);
-    return met ? sphere_density(center, shape.radius, shape.two_sided) : 0.0;
+    return met ? sphere_density(center, shape.radius, is_two_sided(shape)) : 0.0;
 }
 
 // The density of the point at `distance`, from where the tube's outside is seen: as it is convex, a ray enters it once.
-float tube_point_density(ArealightShape shape, vec3 ray, float distance, vec3 normal) {
+float tube_point_density(ArealightGpuShape shape, vec3 ray, float distance, vec3 normal) {
     vec2 areas = tube_areas(shape);
     return distance > 0.0 ? area_density(ray * distance, normal, areas.x + areas.y, false) : 0.0;
 }
 
-float ray_tube_density(ArealightShape shape, vec3 center, vec3 ray) {
+float ray_tube_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
     float half_length = length(shape.axis_u);
     vec3 axis = shape.axis_u / half_length;
     float speed = dot(ray, axis);
@@ -162,14 +166,14 @@ float ray_tube_density(ArealightShape shape, vec3 center, vec3 ray) {
         }
     }
     // The end that the ray comes from, or both half spheres
-    if (shape.ends == AREALIGHT_TUBE_FLAT && speed != 0.0) {
+    if (int(shape.detail) == AREALIGHT_TUBE_FLAT && speed != 0.0) {
         float side = speed > 0.0 ? -1.0 : 1.0;
         float distance = (side * half_length - height) / speed;
         vec3 beside = from + distance * across;
         bool met = dot(beside, beside) <= shape.radius * shape.radius;
         return met ? tube_point_density(shape, ray, distance, side * axis) : 0.0;
     }
-    if (shape.ends == AREALIGHT_TUBE_ROUND) {
+    if (int(shape.detail) == AREALIGHT_TUBE_ROUND) {
         for (float side = -1.0; side <= 1.0; side += 2.0) {
             vec3 middle = center + side * shape.axis_u;
             float approach = dot(middle, ray);
@@ -185,21 +189,22 @@ float ray_tube_density(ArealightShape shape, vec3 center, vec3 ray) {
 }
 
 // What multiplies the radiance of a shape that a ray from the shading point meets: its image, if it shows one. The ray has any length.
-vec3 shape_color(ArealightShape shape, vec3 position, vec3 ray) {
-    if (shape.kind != AREALIGHT_SHAPE_ELLIPSE || shape.image == AREALIGHT_NO_IMAGE) {
+vec3 shape_color(ArealightGpuShape shape, vec3 position, vec3 ray) {
+    if (shape.kind != SHAPE_DISK || shape.detail == AREALIGHT_NO_IMAGE) {
         return vec3(1.0);
     }
     vec3 center = shape.center - position;
     vec3 normal = cross(shape.axis_u, shape.axis_v);
-    return arealight_image_color(arealight_ellipse_image(shape), ray * (dot(normal, center) / dot(normal, ray)) - center);
+    ArealightImage image = arealight_disk_image(shape.detail, shape.axis_u, shape.axis_v);
+    return arealight_image_color(image, ray * (dot(normal, center) / dot(normal, ray)) - center);
 }
 
-float ray_shape_density(ArealightShape shape, vec3 position, vec3 ray) {
+float ray_shape_density(ArealightGpuShape shape, vec3 position, vec3 ray) {
     vec3 center = shape.center - position;
-    if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+    if (shape.kind == SHAPE_TUBE) {
         return ray_tube_density(shape, center, ray);
     }
-    if (shape.kind == AREALIGHT_SHAPE_SPHERE) {
+    if (shape.kind == SHAPE_SPHERE) {
         return ray_sphere_density(shape, center, ray);
     }
     return ray_ellipse_density(shape, center, ray);

@@ -4,7 +4,7 @@
 // The light table as an array image at binding 0: layer 0 the matrix, layer 1 the magnitudes, layer 2 the matrix of
 // Schlick's weight.
 
-#include "arealight/table.glsl"
+#include "arealight/lobes/table.glsl"
 
 layout(set = 0, binding = 0) uniform texture2DArray table_image;
 

@@ -13,9 +13,8 @@ const int FUNCTION_COMMON = 1;
 const int FUNCTION_TABLE = 2;
 const int FUNCTION_GGX = 3;
 const int FUNCTION_ARC = 4;
-const int FUNCTION_LIGHT = 5;
 
-#include "arealight/form_factor.glsl"
+#include "arealight/form_factor/arc.glsl"
 #include "arealight/ggx.glsl"
 #include "table_image.glsl"
 
@@ -53,11 +52,11 @@ ProbeResults common_of(vec3 vector, vec3 fallback, float number) {
     return ProbeResults(vec4(unit, arealight_power_of_two_scale(number)), vec4(0.0), vec4(0.0), vec4(0.0));
 }
 
-// The transform's columns, and what the table says of the lobe.
+// The columns of the lobe's transform from the world, and what the table holds of the lobe.
 ProbeResults table_of(vec3 normal, vec3 view, float roughness) {
     ArealightFrame frame = arealight_surface_frame(normal, view);
     ArealightTableSample table = arealight_table_lookup(frame, roughness);
-    mat3 transform = arealight_table_transform(frame, table.matrix, table.alpha);
+    mat3 transform = arealight_table_space(frame, table.matrix, table.alpha) * arealight_frame_matrix(frame);
     return ProbeResults(vec4(transform[0], table.albedo), vec4(transform[1], table.schlick),
                         vec4(transform[2], table.alpha), table.schlick_matrix);
 }
@@ -71,21 +70,13 @@ ProbeResults ggx_of(vec3 view, vec3 light, float alpha, vec2 u) {
                         vec4(0.0));
 }
 
-// The arc between two vertices, and where it crosses the horizon.
-ProbeResults arc_of(vec3 from, vec3 to, int rung) {
-    ArealightAnchor nowhere = arealight_anchor(vec3(0.0), 0.0, AREALIGHT_FORM_FACTOR_EXACT);
-    ArealightVertex a = arealight_vertex(nowhere, from, rung);
-    ArealightVertex b = arealight_vertex(nowhere, to, rung);
-    ArealightCrossing crossing = arealight_crossing(nowhere, a, b, rung);
-    ArealightVertex on_horizon = arealight_horizon_vertex(nowhere, crossing, a.unit.z > 0.0 ? 1.0 : -1.0, rung);
-    return ProbeResults(vec4(a.unit, arealight_arc(a, b, rung).z), vec4(b.unit, arealight_acute_arc(a, b, rung).z),
-                        vec4(on_horizon.unit, 0.0), vec4(0.0));
-}
-
-ProbeResults light_of(vec3 center, float extent) {
-    return ProbeResults(vec4(arealight_is_bare(center, extent) ? 1.0 : 0.0, arealight_is_far(center, extent) ? 1.0 : 0.0,
-                             0.0, 0.0),
-                        vec4(0.0), vec4(0.0), vec4(0.0));
+// The arc between two directions, the same by the weight of acute angles, and where it crosses the horizon.
+ProbeResults arc_of(vec3 from, vec3 to) {
+    vec3 a = arealight_unit(from);
+    vec3 b = arealight_unit(to);
+    vec2 crossing = a.z > 0.0 ? arealight_crossing(a, b) : arealight_crossing(b, a);
+    return ProbeResults(vec4(a, arealight_arc(a, b).z), vec4(b, arealight_acute_weight(cross(a, b).z, dot(a, b))),
+                        vec4(crossing, 0.0, 0.0), vec4(0.0));
 }
 
 void main() {
@@ -103,10 +94,8 @@ void main() {
         result = table_of(given.a.xyz, given.b.xyz, given.a.w);
     } else if (FUNCTION == FUNCTION_GGX) {
         result = ggx_of(given.a.xyz, given.b.xyz, given.a.w, given.c.xy);
-    } else if (FUNCTION == FUNCTION_ARC) {
-        result = arc_of(given.a.xyz, given.b.xyz, int(given.a.w));
     } else {
-        result = light_of(given.a.xyz, given.a.w);
+        result = arc_of(given.a.xyz, given.b.xyz);
     }
     results[index] = result;
 }

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 64) in;
 
-#include "arealight/arc.glsl"
+#include "arealight/form_factor/arc.glsl"
 
 layout(set = 0, binding = 0, std430) readonly buffer Vertices {
     vec4 vertices[];
@@ -23,14 +23,13 @@ void main() {
     if (index >= constants.count) {
         return;
     }
-    ArealightAnchor nowhere = arealight_anchor(vec3(0.0), 0.0, AREALIGHT_FORM_FACTOR_EXACT);
-    ArealightVertex from = arealight_vertex(nowhere, vertices[4u * index + 3u].xyz, AREALIGHT_FORM_FACTOR_EXACT);
-    float sum = 0.0;
+    vec3 from = arealight_unit(vertices[4u * index + 3u].xyz);
+    vec3 arcs = vec3(0.0);
     for (uint i = 0u; i < 4u; i++) {
-        ArealightVertex to = arealight_vertex(nowhere, vertices[4u * index + i].xyz, AREALIGHT_FORM_FACTOR_EXACT);
-        sum += arealight_arc(from, to, AREALIGHT_FORM_FACTOR_EXACT).z;
+        vec3 to = arealight_unit(vertices[4u * index + i].xyz);
+        arcs += arealight_arc(from, to);
         from = to;
     }
-    float form_factor = -sum * AREALIGHT_INVERSE_TWO_PI;
+    float form_factor = AREALIGHT_PER_ARC * arcs.z;
     results[index] = vec4(form_factor, clamp(form_factor, 0.0, 1.0), 0.0, 0.0);
 }

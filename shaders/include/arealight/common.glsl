@@ -24,9 +24,13 @@ const float AREALIGHT_MIN_ALPHA = 1e-4;
 // Squared lengths below this count as zero: 2^-100, far above float32's smallest normal number.
 const float AREALIGHT_TINY = 7.8886090522101181e-31;
 
-// The sine of the elevation below which a vertex counts as on the horizon: 1.7 x 2^-24, about what the rounding of a
-// vertex can make of zero. In the cosine space of a lobe it is as much narrower as heights are lower there.
+// The sine of the elevation below which an end of a curved outline, or a vertex in the difference form, counts as on the horizon:
+// 1.7 x 2^-24, about what the rounding of a vertex can make of zero. In a lobe's cosine space it is as much narrower as heights
+// are lower there: arealight_horizon_width.
 const float AREALIGHT_HORIZON_WIDTH = 1e-7;
+
+// The sine of the elevation over a light's plane below which a shading point counts as in it: what rounding can make of zero.
+const float AREALIGHT_PLANE_WIDTH = 3e-7;
 
 // The largest absolute component of v.
 float arealight_max_component(vec3 v) {
@@ -54,16 +58,36 @@ float arealight_power_of_two_scale(float x) {
     return uintBitsToFloat((254u - exponent) << 23);
 }
 
+// AREALIGHT_HORIZON_WIDTH in a linear space: less where heights become lower than lengths.
+float arealight_horizon_width(mat3 space) {
+    vec3 height = vec3(space[0].z, space[1].z, space[2].z);
+    float longest = max(dot(space[0], space[0]), max(dot(space[1], space[1]), dot(space[2], space[2])));
+    return AREALIGHT_HORIZON_WIDTH * sqrt(dot(height, height) / (longest + AREALIGHT_TINY));
+}
+
+// Whether a light shines onto a shading point: whether the point is before the light's front, or for a two-sided light on either
+// side, and not in its plane, so that a light in the plane of a surface does not light it by the last bit. `offset` goes from
+// the point to the light's center; `normal` is that of the front, unit. False where a component of `offset` is not finite.
+bool arealight_is_lit(vec3 offset, vec3 normal, bool two_sided) {
+    float side = -dot(offset, normal);
+    float width = AREALIGHT_PLANE_WIDTH * (abs(offset.x) + abs(offset.y) + abs(offset.z));
+    return (two_sided ? abs(side) : side) > width;
+}
+
 // A height that is a rounding of zero for a vector of the size that `width` is of, as zero.
 float arealight_settled_height(float height, float width) {
     return abs(height) > width ? height : 0.0;
 }
 
-// A form factor as the library returns it: in [0, 1], and 0 where it is negative or NaN, or where `square`, what is squared
-// of the light's distances, is not finite.
-//
-// The guard works on the bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
-// up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
+// Whether x is neither infinite nor NaN, by its bits, of which no compiler may assume anything. Of a light's record, which
+// all of a wave read, GPUs with scalar units compute this once for the wave.
+bool arealight_is_finite(float x) {
+    return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
+}
+
+// A form factor in [0, 1] for any bits: 0 where it is negative or NaN, or where `square`, what is squared of the light's
+// distances, is not finite. The bit patterns of [0, 1] are those up to 0x3f800000; everything negative or NaN lies beyond
+// infinity's 0x7f800000.
 float arealight_guarded_form_factor(float form_factor, float square) {
     uint bits = floatBitsToUint(form_factor);
     bool finite = bits < 0x7f800000u && floatBitsToUint(square) < 0x7f800000u;

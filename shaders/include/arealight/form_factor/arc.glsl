@@ -1,0 +1,72 @@
+#ifndef AREALIGHT_ARC_GLSL
+#define AREALIGHT_ARC_GLSL
+
+#include "arealight/common.glsl"
+
+// Edges of polygons as arcs of great circles between two directions.
+//
+// The form factor is -1 / (2 pi) times z of the sum, around an outline, of (angle between the ends) x (unit normal of the edge's
+// plane) (Baum et al. 1989): counter-clockwise from the light's front is clockwise about the direction to the light. All of
+// the vector points to where the light comes from (Arvo 1995); what a caller does not read costs nothing.
+//
+// For unit vectors a and b at the angle theta the arc is (a x b) theta / sin(theta), taken here at the half angle: with
+// m = a + b and y = |m| = 2 cos(theta / 2),
+//
+//     a x b = a x m,    theta / sin(theta) = 2 G(y / 2) / y,    G(c) = acos(c) / sqrt(1 - c^2).
+//
+// G is smooth on [0, 1], so one rational function serves every angle up to pi; and where a and b are nearly opposite, a x m and
+// y are as small as each other, so that rounding is as if an end had moved by 2^-24. Nothing branches.
+
+// What the sum of arcs is multiplied with.
+const float AREALIGHT_PER_ARC = -AREALIGHT_INVERSE_TWO_PI;
+
+// Squared lengths below this count as zero: 2^-120, so that it changes no bit of distances down to 1e-14.
+const float AREALIGHT_LEAST_SQUARE = 7.52316384526264e-37;
+
+// The direction of v, for lengths from 1e-14 to 1e18; 0 for zero, NaN where a component is.
+vec3 arealight_unit(vec3 v) {
+    return v * inversesqrt(dot(v, v) + AREALIGHT_LEAST_SQUARE);
+}
+
+// s theta / sin(theta) of an arc with y = 2 cos(theta / 2), from sqrt(AREALIGHT_LEAST_SQUARE) to 2: relative error 7e-8
+// before rounding.
+vec3 arealight_arc_weight(vec3 s, float y) {
+    return s * ((3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
+                / (y + y * y * (0.66850024 + y * 0.096849829)));
+}
+
+// s theta / sin(theta) of an angle of at most a right one with the cosine x: relative error 7e-8 before rounding.
+float arealight_acute_weight(float s, float x) {
+    return s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
+         / (1.0 + x * (1.3370004 + x * 0.38739931));
+}
+
+// The angle from a to b, unit vectors, times the unit normal of their plane, radians. Error 3.6e-7 of one radian or of the angle,
+// whichever is larger.
+vec3 arealight_arc(vec3 a, vec3 b) {
+    vec3 middle = a + b;
+    return arealight_arc_weight(cross(a, middle), sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE));
+}
+
+// The arc along the horizon from a to b, unit vectors on it: z is the angle, in (-pi, pi]. An obtuse angle is pi less the other
+// one: here rounding of y would turn the arc, not move its end.
+vec3 arealight_horizon_arc(vec2 a, vec2 b) {
+    float sine = a.x * b.y - a.y * b.x;
+    float cosine = dot(a, b);
+    float acute = arealight_acute_weight(sine, abs(cosine));
+    return vec3(0.0, 0.0, cosine < 0.0 ? (sine < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
+}
+
+// The direction in which the edge from `above` to `below`, points of any length on either side of the horizon, meets it: a
+// sum of two vectors, which cancel only where the ends are opposite.
+vec2 arealight_crossing(vec3 above, vec3 below) {
+    vec2 point = below.xy * above.z - above.xy * below.z;
+    return point * inversesqrt(dot(point, point) + AREALIGHT_LEAST_SQUARE);
+}
+
+// The point in which that edge meets the horizon.
+vec3 arealight_cut(vec3 above, vec3 below) {
+    return vec3((below.xy * above.z - above.xy * below.z) / (above.z - below.z), 0.0);
+}
+
+#endif

@@ -1,0 +1,103 @@
+#ifndef AREALIGHT_OUTLINE_GLSL
+#define AREALIGHT_OUTLINE_GLSL
+
+#include "arealight/form_factor/arc.glsl"
+
+// The vector form factor of any simple polygon, convex or concave, of any number of vertices, clipped at the horizon z = 0 of
+// its space: edge by edge as they pass, without a vertex array, a limit to the number of vertices, or a table of cases.
+//
+//     ArealightOutline outline = arealight_outline_begin();
+//     for each edge: arealight_outline_edge(outline, from, to);   // unit vectors
+//     vec3 vector = arealight_outline_vector(outline);
+//
+// Promises: as form_factor/quad.glsl states; tested for up to 64 vertices, the rounding of a longer sum grows with its length
+// (1024: 1.4e-6).
+struct ArealightOutline {
+    vec3 arcs; // the sum so far
+    vec2 turn; // how far the outline has to turn along the horizon to be closed, as a complex number
+};
+
+ArealightOutline arealight_outline_begin() {
+    return ArealightOutline(vec3(0.0), vec2(1.0, 0.0));
+}
+
+// Closes the outline along the horizon at a crossing, a unit vector; `exits`: there the outline goes down.
+//
+// The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that line, add up to
+// less than pi: so it is enough to know their sum's direction, as a product of complex numbers.
+void arealight_outline_close(inout ArealightOutline outline, vec2 crossing, bool exits) {
+    vec2 turn = vec2(crossing.x, exits ? -crossing.y : crossing.y);
+    outline.turn = vec2(outline.turn.x * turn.x - outline.turn.y * turn.y, outline.turn.x * turn.y + outline.turn.y * turn.x);
+}
+
+// Adds the edge between two directions, unit vectors, as far as it is above the horizon.
+void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) {
+    bool from_above = from.z > 0.0;
+    bool to_above = to.z > 0.0;
+    if (from_above || to_above) {
+        if (from_above != to_above) {
+            vec2 crossing = from_above ? arealight_crossing(from, to) : arealight_crossing(to, from);
+            arealight_outline_close(outline, crossing, from_above);
+            from = from_above ? from : vec3(crossing, 0.0);
+            to = to_above ? to : vec3(crossing, 0.0);
+        }
+        outline.arcs += arealight_arc(from, to);
+    }
+}
+
+// The vector form factor of all edges. Seen from the front z is positive.
+vec3 arealight_outline_vector(ArealightOutline outline) {
+    vec2 turn = outline.turn * inversesqrt(dot(outline.turn, outline.turn) + AREALIGHT_LEAST_SQUARE);
+    return AREALIGHT_PER_ARC * (outline.arcs + arealight_horizon_arc(vec2(1.0, 0.0), turn));
+}
+
+// A polygon clipped at the surface's horizon first, vertex by vertex: they come in the shading frame, whose horizon is the
+// surface's, and what is left of the outline goes on into a lobe's space.
+struct ArealightClippedOutline {
+    ArealightOutline outline;
+    vec3 previous; // the vertex before, in the shading frame
+    vec3 first;    // of what is left, unit vectors in the lobe's space
+    vec3 last;
+    bool begun;
+};
+
+// Begins at the polygon's last vertex.
+ArealightClippedOutline arealight_clipped_begin(vec3 last) {
+    return ArealightClippedOutline(arealight_outline_begin(), last, vec3(0.0), vec3(0.0), false);
+}
+
+// Goes on to a vertex of what is left, in the shading frame.
+void arealight_clipped_add(inout ArealightClippedOutline clipped, mat3 space, vec3 vertex) {
+    vec3 unit = arealight_unit(space * vertex);
+    if (clipped.begun) {
+        arealight_outline_edge(clipped.outline, clipped.last, unit);
+    } else {
+        clipped.first = unit;
+        clipped.begun = true;
+    }
+    clipped.last = unit;
+}
+
+// Goes on to the polygon's next vertex.
+void arealight_clipped_vertex(inout ArealightClippedOutline clipped, mat3 space, vec3 vertex) {
+    bool is_above = vertex.z > 0.0;
+    if (is_above != (clipped.previous.z > 0.0)) {
+        arealight_clipped_add(clipped, space, is_above ? arealight_cut(vertex, clipped.previous)
+                                                       : arealight_cut(clipped.previous, vertex));
+    }
+    if (is_above) {
+        arealight_clipped_add(clipped, space, vertex);
+    }
+    clipped.previous = vertex;
+}
+
+// Its vector form factor, when all vertices have come.
+vec3 arealight_clipped_vector(ArealightClippedOutline clipped) {
+    if (!clipped.begun) {
+        return vec3(0.0);
+    }
+    arealight_outline_edge(clipped.outline, clipped.last, clipped.first);
+    return arealight_outline_vector(clipped.outline);
+}
+
+#endif

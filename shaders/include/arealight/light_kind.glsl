@@ -1,0 +1,71 @@
+#ifndef AREALIGHT_LIGHT_KIND_GLSL
+#define AREALIGHT_LIGHT_KIND_GLSL
+
+#include "arealight/material.glsl"
+
+// The loop that brings lights and lobes together. A kind of light is a record with `radiance`, a type for it in the shading
+// frame of a point, and three functions:
+//
+//     // The light in the shading frame; false where it does not shine onto the point's side
+//     bool arealight_to_local(ArealightPoint point, Light light, out Local local);
+//     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the light comes from,
+//     // and its z is the form factor, of either sign where the light is seen from its back
+//     vec3 arealight_vector_form_factor(mat3 space, Local local);
+//     // The colour that a lobe sees of its image, 1 without: what the radiance is multiplied with
+//     vec3 arealight_image_seen(mat3 space, Local local, vec3 vector);
+//
+// AREALIGHT_LIGHT_KIND(Light, Local), the last line of its file, makes of them arealight_reflected and arealight_radiance.
+
+// What a surface reflects of a light of unit radiance towards the viewer, per channel.
+struct ArealightReflected {
+    vec3 diffuse;
+    vec3 specular;
+};
+
+// A form factor from z of a vector form factor: in [0, 1] for any bits, 0 for NaN, and for light from behind where no light
+// has two sides. It compares bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
+// up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
+float arealight_form_factor(vec3 vector) {
+    uint bits = floatBitsToUint(AREALIGHT_HAS_TWO_SIDED ? abs(vector.z) : vector.z);
+    return bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+}
+
+// What is left of a lobe above the surface keeps its albedo; rounding of a small part may not exceed it.
+float arealight_gained(float form_factor, float gain) {
+    return AREALIGHT_CLIPS_AT_SURFACE ? min(form_factor * gain, 1.0) : form_factor;
+}
+
+// arealight_reflected: of a light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off.
+// arealight_radiance: outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
+//
+// The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the table's lobe, and
+// as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
+#define AREALIGHT_LIGHT_KIND(Light, Local)                                                          \
+    ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
+        ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \
+        Local local;                                                                                \
+        if (arealight_to_local(point, light, local)) {                                              \
+            for (int i = 0; i < AREALIGHT_LOBES; i++) {                                             \
+                if (!arealight_has_lobe(i)) {                                                       \
+                    continue;                                                                       \
+                }                                                                                   \
+                ArealightLobe lobe = point.lobes[i];                                                \
+                vec3 vector = arealight_vector_form_factor(lobe.space, local);                      \
+                float form_factor = arealight_gained(arealight_form_factor(vector), lobe.gain);     \
+                vec3 reflected = lobe.albedo * (form_factor * arealight_image_seen(lobe.space, local, vector)); \
+                if (i == AREALIGHT_LOBE_DIFFUSE) {                                                  \
+                    sum.diffuse = reflected;                                                        \
+                } else {                                                                            \
+                    sum.specular += reflected;                                                      \
+                }                                                                                   \
+            }                                                                                       \
+            sum.specular = AREALIGHT_SPLITS_FRESNEL ? max(sum.specular, vec3(0.0)) : sum.specular;  \
+        }                                                                                           \
+        return sum;                                                                                 \
+    }                                                                                               \
+    vec3 arealight_radiance(ArealightPoint point, Light light) {                                    \
+        ArealightReflected reflected = arealight_reflected(point, light);                           \
+        return light.radiance * (reflected.diffuse + reflected.specular);                           \
+    }
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef AREALIGHT_MESH_LIGHT_GLSL
+#define AREALIGHT_MESH_LIGHT_GLSL
+
+#include "arealight/lights/polygon.glsl"
+
+// The host's bridge to the faces of meshes: the plane of the face whose first vertex is `index`: the unit normal of its front in
+// xyz, and in w how many vertices it has.
+vec4 arealight_bridge_face(uint index);
+
+// Flat, simple polygons, one after another, of one constant radiance. The sum is of what each emits: where one hides another,
+// both count.
+struct ArealightMeshLight {
+    vec3 radiance;     // of the fronts, W/(m^2 sr)
+    vec3 center;       // relative to the origin of ArealightSurface.position
+    uint first_vertex; // for arealight_bridge_vertex and arealight_bridge_face
+    uint vertex_count; // of all faces
+    bool two_sided;    // the backs emit too (with AREALIGHT_TWO_SIDED)
+};
+
+struct ArealightLocalMesh {
+    vec3 offset;   // from the shading point to the center
+    mat3 to_frame; // into the shading frame
+    uint first;
+    uint end;
+    bool two_sided;
+};
+
+bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out ArealightLocalMesh local) {
+    local.offset = light.center - point.position;
+    local.to_frame = point.to_frame;
+    local.first = light.first_vertex;
+    local.end = light.first_vertex + light.vertex_count;
+    local.two_sided = AREALIGHT_HAS_TWO_SIDED && light.two_sided;
+    return true;
+}
+
+// Each face is clipped and closed by itself, if the point is on its bright side.
+vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
+    vec3 center = local.to_frame * local.offset;
+    vec3 sum = vec3(0.0);
+    for (uint first = local.first; first < local.end;) {
+        vec4 face = arealight_bridge_face(first);
+        uint end = first + clamp(uint(face.w), 1u, local.end - first);
+        vec3 offset = local.offset + arealight_bridge_vertex(first);
+        if (arealight_is_lit(offset, face.xyz, local.two_sided)) {
+            vec3 vector = arealight_outline_form_factor(space, center, local.to_frame, first, end);
+            // Seen from the back an outline goes around the other way
+            sum += dot(offset, face.xyz) < 0.0 ? vector : -vector;
+        }
+        first = end;
+    }
+    return sum;
+}
+
+vec3 arealight_image_seen(mat3 space, ArealightLocalMesh local, vec3 vector) {
+    return vec3(1.0);
+}
+
+AREALIGHT_LIGHT_KIND(ArealightMeshLight, ArealightLocalMesh)
+
+#endif

@@ -1,0 +1,107 @@
+#ifndef AREALIGHT_QUAD_LIGHT_GLSL
+#define AREALIGHT_QUAD_LIGHT_GLSL
+
+#include "arealight/form_factor/difference.glsl"
+#include "arealight/form_factor/quad.glsl"
+#include "arealight/light_kind.glsl"
+
+// A convex, flat quad of constant radiance (a triangle has a vertex twice), counter-clockwise seen from its front.
+struct ArealightQuadLight {
+    vec3 radiance;      // of the front, W/(m^2 sr)
+    vec3 center;        // near the middle, relative to the origin of ArealightSurface.position
+    vec3 normal;        // of the front, unit; zero for a quad without area, which gives no light
+    ArealightQuad quad; // from the center
+    bool two_sided;     // the back emits too (with AREALIGHT_TWO_SIDED)
+};
+
+// A quad in the shading frame, cut at the surface's horizon with AREALIGHT_SURFACE_HORIZON.
+struct ArealightLocalQuad {
+    ArealightQuad quad;     // from the shading point; with AREALIGHT_DIFFERENCE from the center
+    ArealightQuad triangle; // what the cut leaves beside a quad where three vertices are above, its last vertex twice
+    bool has_triangle;
+    vec3 center;            // from the shading point
+};
+
+// A quad in the shading frame, whose vertices are offsets from `center`.
+ArealightQuad arealight_quad_in_frame(mat3 to_frame, vec3 center, ArealightQuad quad) {
+    return ArealightQuad(center + to_frame * quad.a, center + to_frame * quad.b, center + to_frame * quad.c,
+                         center + to_frame * quad.d);
+}
+
+// Whether every coordinate is finite.
+bool arealight_is_finite(ArealightQuad quad) {
+    uvec3 sign_bit = uvec3(0x7fffffffu);
+    uvec3 ab = max(floatBitsToUint(quad.a) & sign_bit, floatBitsToUint(quad.b) & sign_bit);
+    uvec3 cd = max(floatBitsToUint(quad.c) & sign_bit, floatBitsToUint(quad.d) & sign_bit);
+    uvec3 largest = max(ab, cd);
+    return max(largest.x, max(largest.y, largest.z)) < 0x7f800000u;
+}
+
+ArealightQuad arealight_moved(ArealightQuad quad, vec3 by) {
+    return ArealightQuad(quad.a + by, quad.b + by, quad.c + by, quad.d + by);
+}
+
+// Cuts a quad that crosses the surface's horizon into a quad and, where three vertices are above, a triangle.
+void arealight_cut_quad(inout ArealightLocalQuad local) {
+    ArealightQuad turned = arealight_turned(local.quad);
+    bool b_above = turned.b.z > 0.0;
+    bool c_above = b_above && turned.c.z > 0.0;
+    vec3 entry = arealight_cut(turned.a, turned.d);
+    vec3 exit = arealight_cut(c_above ? turned.c : b_above ? turned.b : turned.a,
+                              c_above ? turned.d : b_above ? turned.c : turned.b);
+    local.quad = ArealightQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit);
+    local.triangle = ArealightQuad(entry, turned.c, exit, exit);
+    local.has_triangle = c_above;
+}
+
+bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out ArealightLocalQuad local) {
+    vec3 offset = light.center - point.position;
+    if (!arealight_is_lit(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided)
+        || !arealight_is_finite(light.quad)) {
+        return false;
+    }
+    local.center = point.to_frame * offset;
+    local.quad = arealight_quad_in_frame(point.to_frame, local.center, light.quad);
+    local.has_triangle = false;
+    bool is_cut = false;
+    if (AREALIGHT_CLIPS_AT_SURFACE) {
+        if (arealight_highest(local.quad) <= 0.0) {
+            return false;
+        }
+        is_cut = arealight_lowest(local.quad) < 0.0;
+        if (is_cut) {
+            arealight_cut_quad(local);
+        }
+    }
+    if (AREALIGHT_USES_DIFFERENCE) {
+        local.quad = is_cut ? arealight_moved(local.quad, -local.center)
+                            : arealight_quad_in_frame(point.to_frame, vec3(0.0), light.quad);
+        local.triangle = arealight_moved(local.triangle, -local.center);
+    }
+    return true;
+}
+
+// The vector form factor of a quad as ArealightLocalQuad has it.
+vec3 arealight_quad_part(mat3 space, vec3 center, ArealightQuad quad) {
+    ArealightQuad in_space = arealight_transformed(space, quad);
+    if (AREALIGHT_USES_DIFFERENCE) {
+        return arealight_difference_quad(space * center, in_space, arealight_horizon_width(space));
+    }
+    return arealight_quad_vector(in_space);
+}
+
+vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
+    vec3 vector = arealight_quad_part(space, local.center, local.quad);
+    if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
+        vector += arealight_quad_part(space, local.center, local.triangle);
+    }
+    return vector;
+}
+
+vec3 arealight_image_seen(mat3 space, ArealightLocalQuad local, vec3 vector) {
+    return vec3(1.0);
+}
+
+AREALIGHT_LIGHT_KIND(ArealightQuadLight, ArealightLocalQuad)
+
+#endif

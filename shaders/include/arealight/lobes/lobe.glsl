@@ -1,0 +1,25 @@
+#ifndef AREALIGHT_LOBE_GLSL
+#define AREALIGHT_LOBE_GLSL
+
+#include "arealight/options.glsl"
+#include "arealight/surface.glsl"
+
+// A lobe of a surface's reflection: a clamped cosine, linearly transformed and weighted.
+struct ArealightLobe {
+    mat3 space;  // from the shading frame (x to the viewer's side, z the normal) to the lobe's cosine space; determinant > 0
+    vec3 albedo; // what it reflects of light from everywhere, per channel
+    float gain;  // of what is left by clipping at the surface's horizon, to keep the albedo; 1 without that
+};
+
+// The gain of a lobe with this space, from 1 on: the inverse of its part above the surface, which is a lune of the cosine
+// (share_above_surface in Rust). For spaces that keep the plane of incidence, as those of isotropic BRDFs do.
+float arealight_gain_above_surface(mat3 space) {
+    if (!AREALIGHT_CLIPS_AT_SURFACE) {
+        return 1.0;
+    }
+    vec3 across = space[0];
+    float share = 0.5 + 0.5 * across.x * inversesqrt(across.x * across.x + across.z * across.z + AREALIGHT_TINY);
+    return 1.0 / max(share, 1e-6);
+}
+
+#endif

@@ -1,0 +1,101 @@
+#ifndef AREALIGHT_TABLE_GLSL
+#define AREALIGHT_TABLE_GLSL
+
+#include "arealight/surface.glsl"
+
+// The host's bridge to the fitted table: texel `texel` (x roughness, y view angle) of layer 0 (matrix of the lobe without
+// Fresnel term), layer 1 (magnitudes; their third channel says how much of arealight_ggx_grazing_dip is in the first two)
+// or layer 2 (matrix of the lobe of Schlick's weight; layer 0 again in a table of one matrix), all four channels,
+// unfiltered, in float32 or float16. Texels outside are never asked for.
+vec4 arealight_bridge_table(int layer, ivec2 texel);
+// Nodes a side of the table, from 2 on.
+int arealight_bridge_table_size();
+
+// What the table holds for a roughness and a view.
+struct ArealightTableSample {
+    vec4 matrix;         // of f cos; see arealight_table_space
+    vec4 schlick_matrix; // of f cos (1 - cos theta_vh)^5
+    float albedo;        // integral of f cos over the hemisphere, without Fresnel term, in [0, 1]
+    float schlick;       // integral of f cos (1 - cos theta_vh)^5, in [0, 1]
+    float alpha;         // roughness^2, at least AREALIGHT_MIN_ALPHA
+};
+
+// The bilinear mean of four texels around `coordinate`, which is in nodes: 0 to size - 1.
+vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
+    vec2 node = clamp(floor(coordinate), vec2(0.0), vec2(float(size - 2)));
+    vec2 weight = coordinate - node;
+    ivec2 texel = ivec2(node);
+    vec4 low = mix(arealight_bridge_table(layer, texel), arealight_bridge_table(layer, texel + ivec2(1, 0)),
+                   weight.x);
+    vec4 high = mix(arealight_bridge_table(layer, texel + ivec2(0, 1)),
+                    arealight_bridge_table(layer, texel + ivec2(1, 1)), weight.x);
+    return mix(low, high, weight.y);
+}
+
+// What fills the dips of GGX's two albedos (albedo, schlick) at grazing views, so that a table can interpolate them: its
+// magnitudes hold it at each node, and the lookup takes that of its own place away. For a roughness in [0.01, 1] and the
+// cosine of a view in [0, 1]: within [0, 0.23] and [-0.71, 0]. Error against the float64 twin, ggx_grazing_dip: 4e-7.
+// Source: docs/fit.md.
+vec2 arealight_ggx_grazing_dip(float roughness, float cos_view) {
+    float alpha = roughness * roughness;
+    float x = cos_view / alpha;
+    float below = 1.0 / (1.0 + x * (0.5545 + x * (0.1566 + x * 0.2887)));
+    float dip = 0.2173 * x;
+    // How much of its weight a lobe that lies on the surface has lost to its width
+    float width = alpha / (alpha + 0.2298 * roughness + 0.01559);
+    float halted = width * (0.6346 + x * (0.1751 * x - 0.2419));
+    float from_normal = 1.0 - cos_view;
+    float schlick_weight = from_normal * (from_normal * from_normal) * (from_normal * from_normal);
+    return vec2(dip * below + 0.1222 * alpha * (cos_view / (cos_view + 0.02746)),
+                ((dip + halted) * below - 0.7329) * schlick_weight);
+}
+
+// The table at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01). Source: Heitz et
+// al. 2016, section 4. Error against the float64 twin, LightTable::lookup: 4e-7 of the largest entry, and what
+// moving both axes by 3 x 2^-24 changes; together 1.3e-6 for the matrices. Albedos follow the view's cosine within alpha of
+// the horizon, where an error of it counts 0.3 / alpha times.
+// Against the truth, GGX's albedo is within 1.5e-3 and that of Schlick's weight within 2e-3, with 64 nodes a side, at every
+// roughness and view.
+ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness) {
+    // Clamp so that NaN becomes the smallest roughness
+    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
+    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
+
+    // Axes: roughness and sqrt(1 - cos), the latter without cancellation near the normal
+    int size = arealight_bridge_table_size();
+    vec2 axes = vec2(roughness, frame.sin_view * inversesqrt(1.0 + frame.cos_view));
+    vec2 coordinate = axes * float(size - 1);
+    vec4 magnitude = arealight_table_bilinear(1, coordinate, size);
+    magnitude.xy -= magnitude.z * arealight_ggx_grazing_dip(roughness, frame.cos_view);
+
+    ArealightTableSample result;
+    result.matrix = arealight_table_bilinear(0, coordinate, size);
+    result.schlick_matrix = arealight_table_bilinear(2, coordinate, size);
+    result.albedo = clamp(magnitude.x, 0.0, 1.0);
+    result.schlick = clamp(magnitude.y, 0.0, result.albedo);
+    result.alpha = roughness * roughness;
+    return result;
+}
+
+// The part that Schlick's weight has in the specular albedo, in [0, 1]: TableSample::schlick_share. Colours count by the
+// mean of their channels.
+float arealight_schlick_share(ArealightTableSample table, vec3 f0, float f90) {
+    float mean = dot(f0, vec3(1.0 / 3.0));
+    float lobe = mean * table.albedo;
+    float schlick = (f90 - mean) * table.schlick;
+    return schlick > 0.0 && lobe >= 0.0 ? schlick / (lobe + schlick) : 0.0;
+}
+
+// The space of a lobe of the table, from the shading frame.
+//
+// A texel (q00, q02, q20, q22) holds the transform in the mirror frame, divided by its middle entry, with the last row divided by
+// alpha: there it is smooth down to a mirror. The mirror frame's axes are across = (cos, 0, sin) and mirror = (-sin, 0, cos). Zeros
+// and the one are literals: they cost nothing.
+mat3 arealight_table_space(ArealightFrame frame, vec4 texel, float alpha) {
+    mat2 to_mirror = mat2(frame.cos_view, frame.sin_view, -frame.sin_view, frame.cos_view);
+    vec2 first = to_mirror * texel.xy;
+    vec2 last = to_mirror * texel.zw * alpha;
+    return mat3(first.x, 0.0, last.x, 0.0, 1.0, 0.0, first.y, 0.0, last.y);
+}
+
+#endif

@@ -1,0 +1,46 @@
+#ifndef AREALIGHT_MATERIAL_GLSL
+#define AREALIGHT_MATERIAL_GLSL
+
+#include "arealight/lobes/diffuse.glsl"
+#include "arealight/lobes/specular.glsl"
+
+// Which lobes a surface has. No kind of light knows of this, and no lobe of another.
+
+const int AREALIGHT_LOBE_DIFFUSE = 0;
+const int AREALIGHT_LOBE_SPECULAR = 1;
+const int AREALIGHT_LOBE_SCHLICK = 2; // with AREALIGHT_FRESNEL_SPLIT alone
+const int AREALIGHT_LOBES = 3;
+
+// A surface made ready for any number of lights: all that does not depend on the light.
+struct ArealightPoint {
+    vec3 position;
+    mat3 to_frame; // offsets from the point into the shading frame: x to the viewer's side, z the normal
+    ArealightLobe lobes[AREALIGHT_LOBES];
+};
+
+// Whether surfaces have a lobe: constant for a literal `lobe`.
+bool arealight_has_lobe(int lobe) {
+    return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
+         : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_SPLITS_FRESNEL);
+}
+
+// Prepares a surface: its frame, and one lookup in the table (or the formula) where it has a specular lobe.
+ArealightPoint arealight_point(ArealightSurface surface) {
+    ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
+    ArealightPoint point;
+    point.position = surface.position;
+    point.to_frame = arealight_frame_matrix(frame);
+    point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_diffuse_lobe(surface.diffuse_albedo);
+    if (AREALIGHT_HAS_SPECULAR) {
+        ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
+        if (AREALIGHT_SPLITS_FRESNEL) {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
+            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);
+        } else {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
+        }
+    }
+    return point;
+}
+
+#endif

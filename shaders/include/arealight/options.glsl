@@ -1,0 +1,82 @@
+#ifndef AREALIGHT_OPTIONS_GLSL
+#define AREALIGHT_OPTIONS_GLSL
+
+// What a shader uses of the library: options of the translation unit. Define them before the include, as 0 or 1, or as an
+// expression of literals and specialisation constants; these here are the defaults. What is off is not in the pipeline.
+
+// Lobes.
+#ifndef AREALIGHT_DIFFUSE
+#define AREALIGHT_DIFFUSE 1
+#endif
+#ifndef AREALIGHT_SPECULAR
+#define AREALIGHT_SPECULAR 1
+#endif
+
+// Some light emits from both sides: those whose record says so.
+#ifndef AREALIGHT_TWO_SIDED
+#define AREALIGHT_TWO_SIDED 0
+#endif
+
+// Clip lights at the surface's own horizon too, before any lobe: nothing leaks in from below (arealight::Horizon::Both).
+#ifndef AREALIGHT_SURFACE_HORIZON
+#define AREALIGHT_SURFACE_HORIZON 0
+#endif
+
+// Integrate the two parts of Schlick's Fresnel term each with its own lobe (arealight::Fresnel::Split); else one lobe
+// between the two, as the reflectance asks for.
+#ifndef AREALIGHT_FRESNEL_SPLIT
+#define AREALIGHT_FRESNEL_SPLIT 0
+#endif
+
+// The specular lobe by formulas (arealight::Lobes::Formula): the table's bridges are not called.
+#ifndef AREALIGHT_FORMULA
+#define AREALIGHT_FORMULA 0
+#endif
+
+// Relative precision for small and distant lights (arealight::FormFactor::Difference).
+#ifndef AREALIGHT_DIFFERENCE
+#define AREALIGHT_DIFFERENCE 0
+#endif
+
+// Look up images by four fetches along the footprint's longer axis (arealight::Footprint::Ellipse); else by one.
+#ifndef AREALIGHT_FOOTPRINT_ELLIPSE
+#define AREALIGHT_FOOTPRINT_ELLIPSE 0
+#endif
+
+// The remaining options are 0 or 1, and nothing else: they decide which bridges a host has to define.
+
+// Lights may show images: textures/footprint.glsl declares the bridges.
+#ifndef AREALIGHT_LIGHT_TEXTURES
+#define AREALIGHT_LIGHT_TEXTURES 0
+#endif
+
+// The kinds of lights that arealight.glsl includes.
+#ifndef AREALIGHT_QUADS
+#define AREALIGHT_QUADS 1
+#endif
+#ifndef AREALIGHT_POLYGONS
+#define AREALIGHT_POLYGONS 0
+#endif
+#ifndef AREALIGHT_MESHES
+#define AREALIGHT_MESHES 0
+#endif
+#ifndef AREALIGHT_DISKS
+#define AREALIGHT_DISKS 0
+#endif
+#ifndef AREALIGHT_SPHERES
+#define AREALIGHT_SPHERES 0
+#endif
+#ifndef AREALIGHT_TUBES
+#define AREALIGHT_TUBES 0
+#endif
+
+const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
+const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
+const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
+const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
+const bool AREALIGHT_SPLITS_FRESNEL = bool(AREALIGHT_FRESNEL_SPLIT);
+const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
+const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
+const bool AREALIGHT_USES_FOOTPRINT_ELLIPSE = bool(AREALIGHT_FOOTPRINT_ELLIPSE);
+
+#endif

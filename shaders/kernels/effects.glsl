@@ -1,0 +1,46 @@
+#ifndef EFFECTS_GLSL
+#define EFFECTS_GLSL
+
+// The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including kernel has the
+// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, FRESNEL, LOBES and FOOTPRINT; what EFFECTS lacks is not in the
+// pipeline.
+
+const uint EFFECT_DIFFUSE = 1u;
+const uint EFFECT_GLOSSY = 2u;
+// Some light emits from both sides.
+const uint EFFECT_TWO_SIDED = 4u;
+// The G-buffer has a dielectric reflectance of its own.
+const uint EFFECT_SPECULAR_INPUT = 8u;
+// Some light is concave, not quite flat, or has more than four vertices.
+const uint EFFECT_POLYGON = 16u;
+// Some polygon light shows an image.
+const uint EFFECT_TEXTURED = 32u;
+const uint EFFECT_ELLIPSE = 256u;
+const uint EFFECT_SPHERE = 512u;
+const uint EFFECT_TUBE = 1024u;
+// Some light has several faces.
+const uint EFFECT_MESH = 2048u;
+// Some disk shows an image; EFFECT_ELLIPSE is set then, too.
+const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
+
+// Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
+const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
+// Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
+const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
+
+#define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
+#define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
+#define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
+#define AREALIGHT_DIFFERENCE FORM_FACTOR
+#define AREALIGHT_SURFACE_HORIZON HORIZON
+#define AREALIGHT_FRESNEL_SPLIT FRESNEL
+#define AREALIGHT_FORMULA LOBES
+#define AREALIGHT_FOOTPRINT_ELLIPSE FOOTPRINT
+#define AREALIGHT_LIGHT_TEXTURES 1
+#define AREALIGHT_POLYGONS 1
+#define AREALIGHT_MESHES 1
+#define AREALIGHT_DISKS 1
+#define AREALIGHT_SPHERES 1
+#define AREALIGHT_TUBES 1
+
+#endif
