@@ -7,7 +7,6 @@
 #include "light_textures.glsl"
 #include "light_records.glsl"
 #define AREALIGHT_LIGHT_MESHES 1
-#define AREALIGHT_FOUR_VERTICES READ_TOGETHER
 #include "arealight/polygon_light.glsl"
 
 // What a convex quad without an image never calls for: Effects::BEYOND_QUADS in Rust.
@@ -20,14 +19,6 @@ layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVerti
 vec3 arealight_bridge_vertex(uint index) {
     return light_vertices[index].xyz;
 }
-
-#if READ_TOGETHER
-mat4x3 arealight_bridge_four_vertices(uint first, uint last) {
-    vec3 vertex = light_vertices[min(first + row_to_read(4u), last)].xyz;
-    return mat4x3(subgroupShuffle(vertex, 0u), subgroupShuffle(vertex, 1u), subgroupShuffle(vertex, 2u),
-                  subgroupShuffle(vertex, 3u));
-}
-#endif
 
 uint arealight_bridge_face_size(uint index) {
     return uint(light_vertices[index].w);

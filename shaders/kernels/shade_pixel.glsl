@@ -19,56 +19,39 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
     ArealightQuality shape_quality = ArealightQuality(FORM_FACTOR, of_shapes, FRESNEL, LOBES, FOOTPRINT);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
 
-    // Every loop ends with its condition: devices that run masked passes have none to run then
-    if (HAS_QUADS && list.quad_count != 0u) {
-        uint place = 0u;
-        do {
+    if (HAS_QUADS) {
+        for (uint place = 0u; place < list.quad_count; place++) {
             ArealightPolygonLight light = load_light(light_at(list, place));
             add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS & ~BEYOND_QUADS, polygon_quality));
-            place++;
-        } while (place < list.quad_count);
+        }
     }
-    if (HAS_OTHERS && list.quad_count < list.light_count) {
-        uint place = list.quad_count;
-        do {
+    if (HAS_OTHERS) {
+        for (uint place = list.quad_count; place < list.light_count; place++) {
             ArealightPolygonLight light = load_light(light_at(list, place));
             add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, polygon_quality));
-            place++;
-        } while (place < list.light_count);
+        }
     }
-    if ((EFFECTS & ANY_SHAPE) != 0u && constants.shape_count != 0u) {
-        uint index = 0u;
-        do {
+    if ((EFFECTS & ANY_SHAPE) != 0u) {
+        for (uint index = 0u; index < constants.shape_count; index++) {
             ArealightShape shape = load_shape(index, SHAPE_ANY);
             add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, shape_quality));
-            index++;
-        } while (index < constants.shape_count);
+        }
     }
     return sum;
 }
 
 // Shades a pixel of an image of that size, if it is one, and stores it.
 void shade_pixel(ivec2 pixel, ivec2 size, LightList list) {
-    // Items go on, though they have no pixel or no surface, where others of their subgroup need them to read
-    bool is_inside = all(lessThan(pixel, size));
-    if (!any_together(is_inside)) {
+    if (any(greaterThanEqual(pixel, size))) {
         return;
     }
-    if (IS_TOGETHER) {
-        pixel = min(pixel, size - 1);
-    } else {
-        is_inside = true;
-    }
-
     vec3 position;
-    bool hit = load_position(pixel, size, position) && is_inside;
+    bool hit = load_position(pixel, size, position);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
-    if (HAS_LIGHTS && any_together(hit)) {
+    if (HAS_LIGHTS && hit) {
         sum = shade_surface(pixel, position, list);
     }
-    if (is_inside) {
-        store_radiance(pixel, hit, sum);
-    }
+    store_radiance(pixel, hit, sum);
 }
 
 #endif

@@ -22,8 +22,6 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9
 #define GLOSSY_BINDING 10
-// The lights are the frame's, or the tile's, which is the group's
-#define AREALIGHT_UNIFORM_LIGHTS 1
 #include "table_image.glsl"
 #include "lights.glsl"
 #include "g_buffer.glsl"

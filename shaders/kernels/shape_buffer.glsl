@@ -4,7 +4,6 @@
 // The list of shapes as the library sees them. The including kernel defines SHAPES_BINDING.
 
 #include "arealight/shapes.glsl"
-#include "together.glsl"
 
 // The CPU writes it: crates/arealight/src/gpu.rs has the same, and a test compares the offsets.
 struct ArealightGpuShape {
@@ -25,25 +24,6 @@ const uint SHAPE_TWO_SIDED = 1u;
 // Each shape is what its record says
 const int SHAPE_ANY = 3;
 
-#if READ_TOGETHER
-
-layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
-    uvec4 shapes[]; // four rows a shape
-};
-
-// The record of a shape, which is the same for all of the subgroup.
-ArealightGpuShape shape_record(uint index) {
-    uvec4 row = shapes[index * 4u + row_to_read(4u)];
-    uvec4 place = subgroupShuffle(row, 1u);
-    uvec4 axis_u = subgroupShuffle(row, 2u);
-    uvec4 axis_v = subgroupShuffle(row, 3u);
-    row = subgroupShuffle(row, 0u);
-    return ArealightGpuShape(uintBitsToFloat(row.xyz), row.w, uintBitsToFloat(place.xyz), uintBitsToFloat(place.w),
-                             uintBitsToFloat(axis_u.xyz), axis_u.w, uintBitsToFloat(axis_v.xyz), axis_v.w);
-}
-
-#else
-
 layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
     ArealightGpuShape shapes[];
 };
@@ -52,8 +32,6 @@ layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
 ArealightGpuShape shape_record(uint index) {
     return shapes[index];
 }
-
-#endif
 
 // `kind`: what all shapes are, as a specialisation constant, or SHAPE_ANY.
 ArealightShape load_shape(uint index, int kind) {

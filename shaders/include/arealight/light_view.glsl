@@ -11,27 +11,10 @@
 // light keeps its shape however far from the origin it is.
 vec3 arealight_bridge_vertex(uint index);
 
-// Whether the host reads four vertices at once. A host that says so defines the second bridge below. It is called by all invocations
-// of a group, for the same light (AREALIGHT_UNIFORM_LIGHTS), so that they may read together; else by each that needs it.
-#ifndef AREALIGHT_FOUR_VERTICES
-#define AREALIGHT_FOUR_VERTICES 0
-#endif
-
-#if AREALIGHT_FOUR_VERTICES
-// The host's bridge to four vertices of a light, from `first` on, as columns. None that is asked for is beyond `last`, which
-// comes in the place of each that would be.
-mat4x3 arealight_bridge_four_vertices(uint first, uint last);
-#endif
-
 // Four vertices of a light, from `first` on; beyond `last` that again.
 ArealightQuad arealight_four_vertices(uint first, uint last) {
-#if AREALIGHT_FOUR_VERTICES
-    mat4x3 four = arealight_bridge_four_vertices(first, last);
-    return ArealightQuad(four[0], four[1], four[2], four[3]);
-#else
     return ArealightQuad(arealight_bridge_vertex(min(first, last)), arealight_bridge_vertex(min(first + 1u, last)),
                          arealight_bridge_vertex(min(first + 2u, last)), arealight_bridge_vertex(min(first + 3u, last)));
-#endif
 }
 
 // Whether lights may be meshes of several faces. A host that says so defines the bridge below, and sets

@@ -7,14 +7,6 @@
 // Walks around outlines of any number of vertices: in the cosine spaces of all lobes at once, four vertices a pass. Reading a
 // vertex and going round a loop cost more than an edge's arithmetic, so both are shared.
 
-// Whether all invocations of a group shade with the same lights in the same order. Where a host says so, loops end with their
-// last pass; else they begin one more to find that there is none, which takes its time on devices that run masked passes. It must
-// hold: where it does not, such a device (lavapipe, Mesa 22.3) takes what the last pass computed for all of a group.
-#ifndef AREALIGHT_UNIFORM_LIGHTS
-#define AREALIGHT_UNIFORM_LIGHTS 0
-#endif
-const bool AREALIGHT_LIGHTS_DIFFER = AREALIGHT_UNIFORM_LIGHTS == 0;
-
 // How each lobe sees a light. What `effects` and the quality do without is not looked at.
 struct ArealightLobeViews {
     ArealightLobeView glossy;
@@ -82,11 +74,10 @@ void arealight_outline_to(inout ArealightSurfaceWalk outline, ArealightLobeView 
 // Walks on around four vertices: by a loop, since the registers of all lobes' edges at once are more than there are.
 void arealight_outline_pass(inout ArealightSurfaceWalk outline, ArealightLobeView view, ArealightQuad part,
                             ArealightQuality quality) {
-    int place = 0;
-    do {
+    for (int place = 0; place < 4; place++) {
         vec3 vertex = place == 0 ? part.v0 : place == 1 ? part.v1 : place == 2 ? part.v2 : part.v3;
         arealight_outline_to(outline, view, vertex, quality);
-    } while (++place < 4);
+    }
 }
 
 ArealightArcs arealight_outline_end(ArealightSurfaceWalk outline, ArealightLobeView view, ArealightQuality quality) {
@@ -113,10 +104,7 @@ ArealightLobeArcs arealight_walk_outline(ArealightLobeViews views, uint first, u
     ArealightSurfaceWalk diffuse = arealight_outline_begin(views.diffuse, from, diffuse_quality);
 
     // Past its end an outline stays at its last vertex, which changes nothing
-    for (uint index = first;;) {
-        if (AREALIGHT_LIGHTS_DIFFER && index > last) {
-            break;
-        }
+    for (uint index = first; index <= last; index += 4u) {
         ArealightQuad part = arealight_four_vertices(index, last);
         if (has_glossy) {
             arealight_outline_pass(glossy, views.glossy, part, quality);
@@ -126,10 +114,6 @@ ArealightLobeArcs arealight_walk_outline(ArealightLobeViews views, uint first, u
         }
         if (has_diffuse) {
             arealight_outline_pass(diffuse, views.diffuse, part, diffuse_quality);
-        }
-        index += 4u;
-        if (!AREALIGHT_LIGHTS_DIFFER && index > last) {
-            break;
         }
     }
     return ArealightLobeArcs(arealight_outline_end(glossy, views.glossy, quality),
@@ -169,10 +153,7 @@ ArealightLobeArcs arealight_walk_light(ArealightLobeViews views, ArealightPolygo
         uint end = light.first_vertex + light.vertex_count;
         uint first = light.first_vertex;
         ArealightLobeArcs sum = arealight_no_arcs();
-        for (;;) {
-            if (AREALIGHT_LIGHTS_DIFFER && first >= end) {
-                break;
-            }
+        while (first < end) {
             uint size = arealight_bridge_face_size(first);
             uint count = size == 0u ? end - first : min(size, end - first);
             ArealightLobeArcs face = arealight_walk_outline(views, first, count, effects, quality);
@@ -182,9 +163,6 @@ ArealightLobeArcs arealight_walk_light(ArealightLobeViews views, ArealightPolygo
                 sum = face;
             }
             first += count;
-            if (!AREALIGHT_LIGHTS_DIFFER && first >= end) {
-                break;
-            }
         }
         return sum;
     }

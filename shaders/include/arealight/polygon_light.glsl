@@ -30,13 +30,9 @@ ArealightArcs arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, Ar
 // The outline of a light of three or four vertices. A triangle's last vertex comes twice, which changes nothing.
 ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
     uint last = clamp(light.vertex_count, 1u, 4u) - 1u;
-#if AREALIGHT_FOUR_VERTICES
-    return arealight_four_vertices(light.first_vertex, light.first_vertex + last);
-#else
     return ArealightQuad(arealight_bridge_vertex(light.first_vertex), arealight_bridge_vertex(light.first_vertex + 1u),
                          arealight_bridge_vertex(light.first_vertex + min(2u, last)),
                          arealight_bridge_vertex(light.first_vertex + last));
-#endif
 }
 
 // Whether one point stands for a light.
@@ -178,10 +174,6 @@ bool arealight_is_walked(ArealightLobeViews views, ArealightSeenLight seen, Area
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         return false;
     }
-#if AREALIGHT_FOUR_VERTICES
-    // All go, since they read together
-    return true;
-#else
 #if AREALIGHT_LIGHT_TEXTURES
     if (quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && arealight_shows_image(light, effects)) {
         return false;
@@ -194,7 +186,6 @@ bool arealight_is_walked(ArealightLobeViews views, ArealightSeenLight seen, Area
     bool diffuse = (effects & AREALIGHT_EFFECT_DIFFUSE) != 0u
                 && !arealight_is_one_point(views.diffuse, seen, light, effects, arealight_diffuse_quality(quality));
     return glossy || schlick || diffuse;
-#endif
 }
 
 // What a surface reflects of one polygon light of unit radiance towards the viewer, without visibility, lobe by lobe; a
