@@ -2,7 +2,7 @@
 //! under 10 to 1,000 lamps of which those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with
 //! `-- scenes`, `-- disks` or `-- lamps` these alone. Prints Markdown tables.
 
-use arealight::plan::{LightReads, ShadeOptions, TileOptions};
+use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, Quality};
 use arealight_benches::pictures;
 use arealight_benches::start::start;
@@ -83,8 +83,7 @@ fn frame(
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     renderer = renderer.with_shapes(&scene.shapes)?;
-    let reads = engine.context().light_reads(LightReads::Auto)?;
-    let options = ShadeOptions { effects: scene.effects(), quality, reads, ..ShadeOptions::all() };
+    let options = ShadeOptions { effects: scene.effects(), quality, ..ShadeOptions::all() };
     let what = (options, scene.lights.len() + scene.shapes.len());
     Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
 }

@@ -94,8 +94,7 @@ void main() {
 
     // Sum the lights
     vec3 radiance = vec3(0.0);
-    uint index = 0u;
-    do {
+    for (uint index = 0u; index < constants.light_count; index++) {
         vec3 center = lights[index].center - position.xyz;
         float scale = arealight_power_of_two_scale(arealight_max_component(center) + lights[index].radius);
         center *= scale;
@@ -109,8 +108,7 @@ void main() {
         }
         reflected += stripped_reflected(diffuse, center, scale, quad);
         radiance += lights[index].radiance * reflected;
-        index++;
-    } while (index < constants.light_count);
+    }
     vec4 before = imageLoad(radiance_image, pixel);
     imageStore(radiance_image, pixel, vec4(before.rgb + radiance, 1.0));
 }

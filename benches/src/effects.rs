@@ -7,7 +7,7 @@
 use crate::cost::quantile;
 use crate::textures::clocked;
 use arealight::kernels::{Kernel, SHADE};
-use arealight::plan::{LightReads, Output, ShadeOptions, shade_specialization};
+use arealight::plan::{Output, ShadeOptions, shade_specialization};
 use arealight::{Effects, Quality};
 use arealight_engine::{EngineError, SceneRenderer};
 use arealight_host::Host;
@@ -66,14 +66,8 @@ struct Run {
 impl Run {
     /// Seconds of one frame.
     fn once(&self, host: &Host, renderer: &mut SceneRenderer<'_>) -> Result<f64, EngineError> {
-        // The kernel that was stripped reads lights by item: so do all
-        let options = |effects, quality| ShadeOptions {
-            effects,
-            quality,
-            output: Output::Add,
-            reads: LightReads::ByItem,
-            ..ShadeOptions::all()
-        };
+        let options =
+            |effects, quality| ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
         clocked(host, || match self.method {
             Method::Stripped { diffuse_only } => {
                 renderer.shade_by(&SHADE_STRIPPED, &[(DIFFUSE_ONLY, u32::from(diffuse_only))])

@@ -7,7 +7,7 @@ use crate::ladder::Spread;
 use crate::ladder::methods::{LOBES, SHADE_YARDSTICK, Yardstick};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
-use arealight::kernels::Kernel;
+use arealight::kernels::{Kernel, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
 use arealight::{Effects, Horizon, PolygonLight, Quality, Shape, ShapeLight, TileClass};
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
@@ -41,7 +41,7 @@ impl Baseline {
 
     /// Its kernel, and that kernel's specialisation.
     fn kernel(self, options: ShadeOptions) -> (&'static Kernel, Vec<(u32, u32)>) {
-        let shade = options.reads.shade();
+        let shade = &SHADE;
         match self {
             Self::Practice => {
                 let practice = Yardstick::Practice as u32;
@@ -79,8 +79,7 @@ pub struct TiledFrame {
     pub error: [f64; 2],
 }
 
-/// Shades a frame by each method in `rounds` rounds, after one that warms up. `options` says how lights are read by all but the
-/// practice, which reads them by item.
+/// Shades a frame by each method in `rounds` rounds, after one that warms up.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -99,7 +98,7 @@ pub fn measure(
     for round in 0..=rounds {
         let took = [
             clocked(host, || renderer.shade_by(kernel, &specialization))?,
-            clocked(host, || renderer.shade_by(options.reads.shade(), &exact))?,
+            clocked(host, || renderer.shade_by(&SHADE, &exact))?,
             clocked(host, || renderer.shade_tiled(&view))?,
         ];
         if round > 0 {
@@ -107,7 +106,7 @@ pub fn measure(
         }
     }
     let by_tiles = renderer.radiance()?;
-    renderer.shade_by(options.reads.shade(), &exact)?;
+    renderer.shade_by(&SHADE, &exact)?;
     let without = renderer.radiance()?;
     // On a software device seconds are of all its processors
     let processors = if is_software(host) { crate::ladder::frame::processors() } else { 1.0 };

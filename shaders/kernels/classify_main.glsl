@@ -3,7 +3,7 @@
 
 // Sorts tiles of 8 x 8 pixels into classes by the lights that matter to them and by how those are to be clipped: an item a
 // tile. It goes over the tile's pixels once, for bounds of what they are, and holds each light against the bounds, not
-// the pixels. Nothing is shared and nobody waits: barriers are dear on lavapipe. What is found holds for every pixel of the tile:
+// the pixels. Nothing is shared. What is found holds for every pixel of the tile:
 //
 // - A light is left out where it is nothing to each lobe: it is wholly below the lobe's horizon, or the pixel is behind
 //   a light of one side.
@@ -302,7 +302,7 @@ uint write_record(TileBounds bounds, uvec2 tile) {
     float negligible = negligible_reach(bounds);
     for (uint index = 0u; index < constants.light_count; index++) {
         Verdict verdict = judge(bounds, light_record(index));
-        if (bounds.has_surface && verdict.is_needed && !(verdict.reach.y < negligible)) {
+        if (verdict.is_needed && !(verdict.reach.y < negligible)) {
             all_above = all_above && verdict.is_above;
             if (total < constants.capacity) {
                 tile_lists[first + TILE_RECORD_HEADER + total] = index;
@@ -312,9 +312,6 @@ uint write_record(TileBounds bounds, uvec2 tile) {
         }
     }
     bool is_listed = total <= constants.capacity;
-    if (!bounds.has_surface) {
-        return CLASS_EMPTY;
-    }
     tile_lists[first] = is_listed ? quads : TILE_ALL_LIGHTS;
     tile_lists[first + 1u] = is_listed ? total : TILE_ALL_LIGHTS;
     if (!is_listed) {
@@ -343,8 +340,7 @@ void append(uvec2 tile, uint tile_class) {
 void main() {
     uint item = gl_GlobalInvocationID.x;
     uvec2 counts = tile_counts();
-    bool is_tile = item < counts.x * counts.y;
-    if (!any_together(is_tile)) {
+    if (item >= counts.x * counts.y) {
         return;
     }
 
@@ -354,12 +350,10 @@ void main() {
 
     // Write down its lights
     uint tile_class = CLASS_EMPTY;
-    if (any_together(bounds.has_surface)) {
+    if (bounds.has_surface) {
         tile_class = write_record(bounds, tile);
     }
-    if (is_tile) {
-        append(tile, tile_class);
-    }
+    append(tile, tile_class);
 }
 
 #endif

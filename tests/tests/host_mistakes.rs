@@ -2,8 +2,8 @@
 //! that every answer can be had on any.
 
 use arealight::Effects;
-use arealight::kernels::{SHADE, SHADE_TOGETHER, VISIBILITY};
-use arealight::plan::{LightReads, ShadeOptions};
+use arealight::kernels::{SHADE, VISIBILITY};
+use arealight::plan::ShadeOptions;
 use arealight_host::Location;
 use arealight_tests::TestEngine;
 use arealight_vk::{
@@ -25,9 +25,6 @@ fn lying_instance(engine: &TestEngine, lies: &[(&CStr, *const c_void)]) -> ash::
                 (Some((_, function)), _) => *function,
                 (None, b"vkGetPhysicalDeviceProperties") => {
                     real.fp_v1_0().get_physical_device_properties as *const c_void
-                }
-                (None, b"vkGetPhysicalDeviceProperties2") => {
-                    real.fp_v1_1().get_physical_device_properties2 as *const c_void
                 }
                 (None, b"vkGetPhysicalDeviceFormatProperties") => {
                     real.fp_v1_0().get_physical_device_format_properties as *const c_void
@@ -85,64 +82,6 @@ unsafe extern "system" fn no_format(
 ) {
     // SAFETY: Vulkan's contract.
     unsafe { *properties = vk::FormatProperties::default() };
-}
-
-/// A processor with subgroups of four items.
-unsafe extern "system" fn small_subgroups(
-    _: vk::PhysicalDevice,
-    properties: *mut vk::PhysicalDeviceProperties2<'_>,
-) {
-    // SAFETY: as in `describe`.
-    unsafe { describe(properties, vk::PhysicalDeviceType::CPU, 4) };
-}
-
-/// A GPU with subgroups of 32 items.
-unsafe extern "system" fn gpu(_: vk::PhysicalDevice, properties: *mut vk::PhysicalDeviceProperties2<'_>) {
-    // SAFETY: as in `describe`.
-    unsafe { describe(properties, vk::PhysicalDeviceType::DISCRETE_GPU, 32) };
-}
-
-/// # Safety
-/// Vulkan's contract; the subgroup properties are all that is asked for beside the others.
-unsafe fn describe(
-    properties: *mut vk::PhysicalDeviceProperties2<'_>,
-    device_type: vk::PhysicalDeviceType,
-    subgroup_size: u32,
-) {
-    // SAFETY: by the caller.
-    unsafe {
-        (*properties).properties.device_type = device_type;
-        let subgroups = &mut *(*properties).p_next.cast::<vk::PhysicalDeviceSubgroupProperties<'_>>();
-        assert_eq!(subgroups.s_type, vk::StructureType::PHYSICAL_DEVICE_SUBGROUP_PROPERTIES);
-        subgroups.subgroup_size = subgroup_size;
-        subgroups.supported_stages = vk::ShaderStageFlags::COMPUTE;
-        subgroups.supported_operations = vk::SubgroupFeatureFlags::BASIC
-            | vk::SubgroupFeatureFlags::VOTE
-            | vk::SubgroupFeatureFlags::SHUFFLE;
-    }
-}
-
-#[test]
-fn lights_are_read_together_where_the_device_can_and_gains_by_it() {
-    let Some(engine) = TestEngine::new() else { return };
-    let on = |lie: *const c_void| {
-        context(&engine, &lying_instance(&engine, &[(c"vkGetPhysicalDeviceProperties2", lie)])).unwrap()
-    };
-    let made = |context: &Context, reads| {
-        // SAFETY: no submission uses the pass.
-        let pass = unsafe { ShadePass::new(context, ShadeOptions { reads, ..ShadeOptions::all() }) }?;
-        Ok::<_, Error>(pass.options().reads)
-    };
-    let (small, gpu) = (on(small_subgroups as *const c_void), on(gpu as *const c_void));
-    for device in [&small, &gpu] {
-        assert_eq!(made(device, LightReads::Auto).unwrap(), LightReads::ByItem);
-    }
-    assert_eq!(made(&gpu, LightReads::Together).unwrap(), LightReads::Together);
-    // SAFETY: as above.
-    let error = unsafe { ComputePass::new(&small, &SHADE_TOGETHER, &[]) }.unwrap_err();
-    assert!(matches!(error, Error::MissingFeature { needed_by: "shade_together", .. }), "{error}");
-    let error = made(&small, LightReads::Together).unwrap_err();
-    assert!(matches!(error, Error::MissingFeature { needed_by: "LightReads::Together", .. }), "{error}");
 }
 
 #[test]
@@ -262,8 +201,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         let staging = engine.host().buffer("staging", bytes.len() as u64, usage, Location::Upload).unwrap();
         staging.upload(&bytes).unwrap();
         engine.host().submit(|commands| image.record_upload(commands, staging.handle(), 0)).unwrap();
-        let reads = LightReads::ByItem;
-        let options = ShadeOptions { effects: Effects::DIFFUSE, reads, ..ShadeOptions::all() };
+        let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
         let pass = ShadePass::new(&context, options).unwrap();
         // What is not recorded has no label either
         let frame = ShadeFrame {

@@ -2,9 +2,7 @@
 
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{self, Kernel, constant};
-use arealight::plan::{
-    LightReads, ShadeOptions, ShadeVariant, shade_specialization, shade_variant_specialization,
-};
+use arealight::plan::{ShadeOptions, ShadeVariant, shade_specialization, shade_variant_specialization};
 use arealight::{Effects, Footprint, Fresnel, Horizon, Quality, TileClass};
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{bits, scene, with_renderer};
@@ -181,7 +179,7 @@ fn what_is_not_called_for_is_left_out() {
 #[test]
 fn what_no_light_of_a_frame_calls_for_leaves_the_pass_its_module_word_for_word() {
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
-    let words = kernels::SHADE_TOGETHER.words();
+    let words = kernels::SHADE.words();
     let quads =
         ShadeConstants { light_count: 4, quad_count: 4, shape_count: 0, ..bytemuck::Zeroable::zeroed() };
     let module = |pass: Effects, unused: Effects, constants: &ShadeConstants| {
@@ -201,11 +199,11 @@ fn what_no_light_of_a_frame_calls_for_leaves_the_pass_its_module_word_for_word()
 }
 
 /// The bits of a picture of one of our scenes.
-fn picture(engine: &TestEngine, name: &str, quality: Quality, reads: LightReads) -> Vec<[u32; 4]> {
+fn picture(engine: &TestEngine, name: &str, quality: Quality) -> Vec<[u32; 4]> {
     let scene = scene(name);
-    let options = ShadeOptions { effects: scene.effects(), quality, reads, ..ShadeOptions::all() };
+    let options = ShadeOptions { effects: scene.effects(), quality, ..ShadeOptions::all() };
     with_renderer(engine, &scene, &scene.lights, [61, 37], |renderer| {
-        renderer.shade_by(reads.shade(), &shade_specialization(options)).unwrap();
+        renderer.shade_by(&kernels::SHADE, &shade_specialization(options)).unwrap();
         bits(renderer)
     })
 }
@@ -214,14 +212,12 @@ fn picture(engine: &TestEngine, name: &str, quality: Quality, reads: LightReads)
 fn pictures_are_the_same_to_the_bit() {
     let (Some(pruning), Some(whole)) = (TestEngine::new(), TestEngine::with_whole_modules()) else { return };
     let split = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..Quality::default() };
-    let cases =
-        [("demo.glb", Quality::default(), LightReads::Together), ("shapes.glb", split, LightReads::ByItem)];
-    for (scene, quality, reads) in cases {
-        let pictures = [&pruning, &whole].map(|engine| picture(engine, scene, quality, reads));
+    for (scene, quality) in [("demo.glb", Quality::default()), ("shapes.glb", split)] {
+        let pictures = [&pruning, &whole].map(|engine| picture(engine, scene, quality));
         assert!(pictures[0] == pictures[1], "{scene}");
         // The twin: one rung lower is another picture
         let lower = Quality { horizon: Horizon::Bare, ..quality };
-        assert!(pictures[0] != picture(&pruning, scene, lower, reads), "{scene}: the twin is the same");
+        assert!(pictures[0] != picture(&pruning, scene, lower), "{scene}: the twin is the same");
     }
 }
 

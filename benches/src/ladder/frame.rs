@@ -4,8 +4,8 @@ use super::methods::{Method, SHADE_YARDSTICK};
 use super::points::Point;
 use crate::textures::{is_software, timed};
 use arealight::gpu::{ReferenceConstants, ShadeConstants};
-use arealight::kernels::{Kernel, REFERENCE};
-use arealight::plan::{LightReads, ShadeOptions, ShadeVariant, shade_variant_specialization};
+use arealight::kernels::{Kernel, REFERENCE, SHADE};
+use arealight::plan::{ShadeOptions, ShadeVariant, shade_variant_specialization};
 use arealight::{LightSampling, PackedLights, PolygonLight};
 use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass};
 use arealight_host::{Buffer, Usage};
@@ -59,7 +59,6 @@ pub struct Frame<'a> {
     camera: Vec3,
     light_count: u32,
     quad_count: u32,
-    reads: LightReads,
     lights: Buffer,
     vertices: Buffer,
     sampling: Buffer,
@@ -92,7 +91,6 @@ impl<'a> Frame<'a> {
             camera,
             light_count: lights.len() as u32,
             quad_count: packed.quad_count,
-            reads: engine.context().light_reads(LightReads::Auto)?,
             lights: host.storage_buffer("lights", &packed.lights)?,
             vertices: host.storage_buffer("light vertices", &packed.vertices)?,
             sampling: host.storage_buffer("light sampling", &sampling.lights)?,
@@ -123,7 +121,7 @@ impl<'a> Frame<'a> {
             Method::Rung { effects, quality } => {
                 let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
                 let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
-                (self.reads.shade(), shade_variant_specialization(options, variant))
+                (&SHADE, shade_variant_specialization(options, variant))
             }
             Method::Yardstick { effects, which } => {
                 (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, which as u32)])

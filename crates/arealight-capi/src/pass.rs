@@ -7,9 +7,7 @@ use crate::types::{
     ArealightSetLayout,
 };
 use crate::{arguments, handles};
-use arealight::plan::{
-    GBufferLayout, LightReads, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions,
-};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -136,7 +134,6 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             "radiance_format",
         )?,
         // What suits the device
-        reads: LightReads::Auto,
     })
 }
 

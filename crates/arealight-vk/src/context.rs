@@ -4,8 +4,6 @@ use crate::debug_names::DebugNames;
 use crate::error::{Error, VulkanCall};
 use crate::light_textures::{FORMAT, USAGE};
 use crate::written_sets::WrittenSets;
-use arealight::kernels::SUBGROUPS;
-use arealight::plan::LightReads;
 use ash::vk;
 
 /// The host's handles. All stay the host's: nothing here is destroyed, waited for or submitted to.
@@ -33,37 +31,10 @@ pub struct Context {
     pub(crate) limits: DescriptorLimits,
     /// `None` where the device has no such images at all.
     pub(crate) light_texture_limits: Option<ImageLimits>,
-    /// [`LightReads::Together`] where the device can, and whether it is to without being asked.
-    pub(crate) reads_together: Together,
     /// Whether drivers get modules as they are, not as [`crate::prune`] leaves them.
     pub(crate) whole_modules: bool,
     pub(crate) names: DebugNames,
     pub(crate) written_sets: WrittenSets,
-}
-
-/// Whether the items of a subgroup read lights together.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Together {
-    /// The device cannot.
-    No,
-    /// Where the host asks for it: a GPU reads once what is the same for all.
-    Can,
-    /// Unless the host asks for something else: a processor.
-    Should,
-}
-
-impl Together {
-    fn check(self, needed_by: &'static str) -> Result<(), Error> {
-        if self == Self::No { Err(Error::MissingFeature { feature: SUBGROUPS, needed_by }) } else { Ok(()) }
-    }
-
-    fn resolve(self, reads: LightReads) -> Result<LightReads, Error> {
-        match (reads, self) {
-            (LightReads::Together, _) => self.check("LightReads::Together").map(|()| reads),
-            (LightReads::Auto, Self::Should) => Ok(LightReads::Together),
-            (LightReads::ByItem | LightReads::Auto, _) => Ok(LightReads::ByItem),
-        }
-    }
 }
 
 /// The largest image of a kind.
@@ -113,7 +84,6 @@ impl Context {
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             },
             light_texture_limits: light_texture_limits(host)?,
-            reads_together: reads_together(host),
             whole_modules: false,
             names: DebugNames::default(),
             written_sets: WrittenSets::default(),
@@ -139,42 +109,9 @@ impl Context {
         self
     }
 
-    /// How passes of these options read lights on this device: never [`LightReads::Auto`].
-    ///
-    /// # Errors
-    /// [`Error::MissingFeature`] where they are to read together, which the device cannot.
-    pub fn light_reads(&self, reads: LightReads) -> Result<LightReads, Error> {
-        self.reads_together.resolve(reads)
-    }
-
-    /// Refuses a kernel that uses subgroups where the device has none that will do.
-    pub(crate) fn check_subgroups(&self, needed_by: &'static str) -> Result<(), Error> {
-        self.reads_together.check(needed_by)
-    }
-
     /// The device's function table.
     pub fn device(&self) -> &ash::Device {
         &self.device
-    }
-}
-
-/// Whether the device can read lights together, and is one that gains by it.
-fn reads_together(host: &HostDevice<'_>) -> Together {
-    const ITEMS: u32 = 8;
-    let needed =
-        vk::SubgroupFeatureFlags::BASIC | vk::SubgroupFeatureFlags::VOTE | vk::SubgroupFeatureFlags::SHUFFLE;
-    let mut subgroups = vk::PhysicalDeviceSubgroupProperties::default();
-    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut subgroups);
-    // SAFETY: the host's handles are valid by the contract of Context::new, and of Vulkan 1.1, which has this.
-    unsafe { host.instance.get_physical_device_properties2(host.physical_device, &mut properties) };
-    let is_processor = properties.properties.device_type == vk::PhysicalDeviceType::CPU;
-    let can = subgroups.subgroup_size >= ITEMS
-        && subgroups.supported_stages.contains(vk::ShaderStageFlags::COMPUTE)
-        && subgroups.supported_operations.contains(needed);
-    match (can, is_processor) {
-        (false, _) => Together::No,
-        (true, false) => Together::Can,
-        (true, true) => Together::Should,
     }
 }
 
@@ -202,26 +139,5 @@ fn light_texture_limits(host: &HostDevice<'_>) -> Result<Option<ImageLimits>, Er
             let extent = [limits.max_extent.width, limits.max_extent.height];
             Ok(Some(ImageLimits { extent, layers: limits.max_array_layers }))
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn processors_read_lights_together_and_others_where_they_are_asked_to_and_can() {
-        use LightReads::{Auto, ByItem};
-        for (together, auto) in
-            [(Together::No, ByItem), (Together::Can, ByItem), (Together::Should, LightReads::Together)]
-        {
-            assert_eq!(together.resolve(Auto).unwrap(), auto);
-            assert_eq!(together.resolve(ByItem).unwrap(), ByItem);
-        }
-        for together in [Together::Can, Together::Should] {
-            assert_eq!(together.resolve(LightReads::Together).unwrap(), LightReads::Together);
-        }
-        let refused = Together::No.resolve(LightReads::Together).unwrap_err().to_string();
-        assert!(refused.contains("subgroups") && refused.contains("LightReads::Together"), "{refused}");
     }
 }

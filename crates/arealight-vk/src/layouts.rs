@@ -216,12 +216,9 @@ impl Drop for Layouts {
     }
 }
 
-/// Only the kernels of our own tools bind more than every Vulkan device can; only those that read lights together use subgroups.
+/// Only the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
     use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
-    if kernel.uses_subgroups() {
-        context.check_subgroups(kernel.name)?;
-    }
     let limits = context.limits;
     for (kinds, limit, feature) in [
         (&[SampledImage, FilteredImage][..], limits.sampled_images, "maxPerStageDescriptorSampledImages"),

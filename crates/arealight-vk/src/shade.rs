@@ -115,20 +115,17 @@ impl ShadePass {
     /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
     ///
     /// # Errors
-    /// [`Error::MissingFeature`] where the device cannot do what [`ShadeOptions::reads`] asks for; [`Error::Vulkan`] where a call
-    /// fails.
+    /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
-        let reads = context.light_reads(options.reads)?;
         // SAFETY: the same contract; the module is the kernel's.
-        unsafe { Self::with_module(context, ShadeOptions { reads, ..options }, reads.shade().words()) }
+        unsafe { Self::with_module(context, options, SHADE.words()) }
     }
 
     /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of its own
-    /// (docs/embedding.md): [`ShadeOptions::g_buffer`] and [`ShadeOptions::reads`] do not count then.
+    /// (docs/embedding.md): [`ShadeOptions::g_buffer`] does not count then.
     ///
     /// # Safety
-    /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`, or of `shade_together.comp` where
-    /// [`Context::light_reads`] says that the device can run it.
+    /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
     ///
     /// # Errors
     /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
@@ -140,11 +137,11 @@ impl ShadePass {
         check_module(&module)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pipelines = unsafe { Pipelines::new(context, options.reads.shade(), module) }?;
+        let pipelines = unsafe { Pipelines::new(context, &SHADE, module) }?;
         Ok(Self { pipelines, options })
     }
 
-    /// What the pass was specialised for; [`ShadeOptions::reads`] is how it does read.
+    /// What the pass was specialised for.
     pub fn options(&self) -> ShadeOptions {
         self.options
     }

@@ -81,12 +81,10 @@ impl TiledShade {
         // SAFETY: the same contract.
         unsafe {
             let shade = ShadePass::new(context, options)?;
-            let reads = shade.options().reads;
-            let (classify, classes) = (reads.classify(), reads.shade_tiles());
             Ok(Self {
                 shade,
-                classify: Pipelines::new(context, classify, classify.words())?,
-                classes: Pipelines::new(context, classes, classes.words_for(options.format))?,
+                classify: Pipelines::new(context, &CLASSIFY, CLASSIFY.words())?,
+                classes: Pipelines::new(context, &SHADE_TILES, SHADE_TILES.words_for(options.format))?,
                 tiles,
                 horizon_cells: table_size.max(2) - 1,
             })

@@ -8,9 +8,6 @@ pub use binding::{Access, Binding, BindingKind};
 mod binding;
 pub mod constant;
 
-/// What a device needs for kernels that read lights together, in words.
-pub const SUBGROUPS: &str = "subgroups of eight items or more, with votes and shuffles, in compute shaders";
-
 /// A compute kernel.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Kernel {
@@ -48,21 +45,6 @@ impl Kernel {
 
     fn each_word(&self) -> impl Iterator<Item = u32> {
         self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-    }
-
-    /// Whether it needs [`SUBGROUPS`]: [`crate::plan::LightReads`].
-    pub fn uses_subgroups(&self) -> bool {
-        const HEADER: usize = 5;
-        // OpCapability, in two words, and GroupNonUniformShuffle (the SPIR-V specification, 3.42.5 and 3.31)
-        const CAPABILITY: u32 = 0x0002_0011;
-        const SHUFFLE: u32 = 65;
-        let mut words = self.each_word().skip(HEADER);
-        while words.next() == Some(CAPABILITY) {
-            if words.next() == Some(SHUFFLE) {
-                return true;
-            }
-        }
-        false
     }
 
     /// As [`Kernel::words`], with images of this format where the module stores to rgba32f: a word a type, so that one
@@ -201,10 +183,6 @@ pub static SHADE: Kernel = Kernel {
     ],
 };
 
-/// As [`SHADE`], where the items of a subgroup read lights together: [`LightReads::Together`](crate::plan::LightReads).
-pub static SHADE_TOGETHER: Kernel =
-    SHADE.like("shade_together", include_bytes!("../spirv/shade_together.spv"));
-
 /// Sorts the tiles of a G-buffer into classes; an item a tile. Push constants: [`crate::gpu::TileConstants`].
 pub static CLASSIFY: Kernel = Kernel {
     name: "classify",
@@ -236,10 +214,6 @@ pub static CLASSIFY: Kernel = Kernel {
         constant::CULL,
     ],
 };
-
-/// As [`CLASSIFY`], where the items of a subgroup read lights together.
-pub static CLASSIFY_TOGETHER: Kernel =
-    CLASSIFY.like("classify_together", include_bytes!("../spirv/classify_together.spv"));
 
 /// As [`SHADE`], of the tiles of one class; a group a tile, dispatched indirectly. Push constants:
 /// [`crate::gpu::TileConstants`].
@@ -275,10 +249,6 @@ pub static SHADE_TILES: Kernel = Kernel {
         constant::LAYOUT,
     ],
 };
-
-/// As [`SHADE_TILES`], where the items of a subgroup read lights together.
-pub static SHADE_TILES_TOGETHER: Kernel =
-    SHADE_TILES.like("shade_tiles_together", include_bytes!("../spirv/shade_tiles_together.spv"));
 
 /// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
 pub static EVAL: Kernel = Kernel {
@@ -421,13 +391,10 @@ pub static VISIBILITY: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 12] = [
+pub static ALL: [&Kernel; 9] = [
     &SHADE,
-    &SHADE_TOGETHER,
     &CLASSIFY,
-    &CLASSIFY_TOGETHER,
     &SHADE_TILES,
-    &SHADE_TILES_TOGETHER,
     &EVAL,
     &EVAL_SHAPES,
     &REFERENCE,
@@ -445,13 +412,6 @@ mod tests {
         for kernel in ALL {
             assert_eq!(kernel.spirv.len() % 4, 0, "{}", kernel.name);
             assert_eq!(kernel.words()[0], 0x0723_0203, "{}: SPIR-V's magic number", kernel.name);
-        }
-    }
-
-    #[test]
-    fn only_the_kernels_that_read_together_use_subgroups() {
-        for kernel in ALL {
-            assert_eq!(kernel.uses_subgroups(), kernel.name.ends_with("_together"), "{}", kernel.name);
         }
     }
 

@@ -73,38 +73,6 @@ pub enum RadianceFormat {
     Rgba16Float = 4,
 }
 
-/// How the items of a shading kernel read lights, which are the same for all of them. The picture is the same, to the bit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum LightReads {
-    /// What suits the device, which the recorder knows: together on processors that can, else by item. A plan without the
-    /// recorder takes it for that too.
-    #[default]
-    Auto,
-    /// Each item reads all. GPUs see that it is the same for all of them, and read it once.
-    ByItem,
-    /// Each item of a subgroup reads a row of 16 bytes, and takes the others from its neighbours: a quarter of the time less on
-    /// devices that read buffers item by item (lavapipe). For devices whose compute stage has subgroups of eight items or
-    /// more, with votes and shuffles.
-    Together,
-}
-
-impl LightReads {
-    /// The kernel of the shade pass.
-    pub fn shade(self) -> &'static Kernel {
-        if self == Self::Together { &kernels::SHADE_TOGETHER } else { &kernels::SHADE }
-    }
-
-    /// The kernel that classifies tiles.
-    pub fn classify(self) -> &'static Kernel {
-        if self == Self::Together { &kernels::CLASSIFY_TOGETHER } else { &kernels::CLASSIFY }
-    }
-
-    /// The kernel that shades tiles.
-    pub fn shade_tiles(self) -> &'static Kernel {
-        if self == Self::Together { &kernels::SHADE_TILES_TOGETHER } else { &kernels::SHADE_TILES }
-    }
-}
-
 /// Everything that a shade pipeline is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
@@ -122,8 +90,6 @@ pub struct ShadeOptions {
     pub images: RadianceImages,
     /// Their format.
     pub format: RadianceFormat,
-    /// How lights are read.
-    pub reads: LightReads,
 }
 
 impl ShadeOptions {
@@ -137,7 +103,6 @@ impl ShadeOptions {
             output: Output::default(),
             images: RadianceImages::default(),
             format: RadianceFormat::default(),
-            reads: LightReads::default(),
         }
     }
 
@@ -197,11 +162,10 @@ pub struct Dispatch {
 /// The shade pass over a G-buffer of `width` × `height` pixels. Its module is that of
 /// [`Kernel::words_for`] with [`ShadeOptions::format`].
 pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
-    let kernel = options.reads.shade();
     Dispatch {
-        kernel,
+        kernel: &kernels::SHADE,
         specialization: shade_specialization(options),
-        groups: kernel.groups_for([width, height, 1]),
+        groups: kernels::SHADE.groups_for([width, height, 1]),
     }
 }
 
@@ -424,19 +388,5 @@ mod tests {
         assert!(tiles.classifies(&counts(1, 0, 0)), "an outline");
         assert!(tiles.classifies(&counts(1, 1, 1)), "a shape");
         assert!(TileOptions { least_quads: 0, ..tiles }.classifies(&counts(0, 0, 0)));
-    }
-
-    #[test]
-    fn kernels_that_read_together_take_the_place_of_those_that_read_by_item() {
-        for (by_item, together) in [
-            (LightReads::Auto.shade(), LightReads::Together.shade()),
-            (LightReads::ByItem.classify(), LightReads::Together.classify()),
-            (LightReads::ByItem.shade_tiles(), LightReads::Together.shade_tiles()),
-        ] {
-            assert_eq!(format!("{}_together", by_item.name), together.name);
-            assert_eq!((by_item.bindings, by_item.constants), (together.bindings, together.constants));
-        }
-        let dispatch = shade(ShadeOptions { reads: LightReads::Together, ..ShadeOptions::all() }, 9, 8);
-        assert_eq!((dispatch.kernel, dispatch.groups), (&kernels::SHADE_TOGETHER, [2, 1, 1]));
     }
 }

@@ -7,9 +7,7 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, M
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::gpu::GpuLight;
-use arealight::plan::{
-    GBufferLayout, LightReads, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions,
-};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, Quality};
 use arealight_vk::{
     Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
@@ -76,7 +74,6 @@ impl<'a> Deferred<'a> {
             output: Output::Add, // to the emission that was drawn
             images: RadianceImages::One,
             format: RadianceFormat::Rgba32Float,
-            reads: LightReads::Auto,
         };
         g_buffer.formats().check(options)?; // says which image has another format than it should
         // SAFETY: the pass is dropped after the frames, and before the device.

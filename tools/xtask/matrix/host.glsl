@@ -56,13 +56,6 @@ vec3 arealight_bridge_vertex(uint index) {
 }
 #endif
 
-#ifndef WITHOUT_arealight_bridge_four_vertices
-mat4x3 arealight_bridge_four_vertices(uint first, uint last) {
-    return mat4x3(numbers[first].xyz, numbers[min(first + 1u, last)].xyz, numbers[min(first + 2u, last)].xyz,
-                  numbers[last].xyz);
-}
-#endif
-
 #ifndef WITHOUT_arealight_bridge_face_size
 uint arealight_bridge_face_size(uint index) {
     return index;

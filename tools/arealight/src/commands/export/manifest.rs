@@ -104,7 +104,6 @@ fn of_kernel(kernel: &Kernel) -> Value {
     let constants = kernel.constants.iter().map(|id| (constant_name(*id).to_owned(), json!(id)));
     json!({
         "spirv": format!("spirv/{}.spv", kernel.name),
-        "needs": if kernel.uses_subgroups() { vec![kernels::SUBGROUPS] } else { vec![] },
         "local_size": kernel.local_size,
         "push_constant_bytes": kernel.push_constant_size,
         "bindings": bindings.collect::<Vec<_>>(),
