@@ -2,8 +2,8 @@
 #define EFFECTS_GLSL
 
 // The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including kernel has the
-// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, FRESNEL, LOBES and FOOTPRINT; what EFFECTS lacks is not in the
-// pipeline.
+// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, FRESNEL, LOBES and FOOTPRINT, or defines the option of one that it lacks;
+// what EFFECTS lacks is not in the pipeline.
 
 const uint EFFECT_DIFFUSE = 1u;
 const uint EFFECT_GLOSSY = 2u;
@@ -31,11 +31,15 @@ const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 #define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
+#ifndef AREALIGHT_DIFFERENCE
 #define AREALIGHT_DIFFERENCE FORM_FACTOR
+#endif
 #define AREALIGHT_SURFACE_HORIZON HORIZON
 #define AREALIGHT_FRESNEL_SPLIT FRESNEL
 #define AREALIGHT_FORMULA LOBES
+#ifndef AREALIGHT_FOOTPRINT_ELLIPSE
 #define AREALIGHT_FOOTPRINT_ELLIPSE FOOTPRINT
+#endif
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1

@@ -1,7 +1,8 @@
 #ifndef LIGHT_RECORDS_GLSL
 #define LIGHT_RECORDS_GLSL
 
-// The records of lights, which the CPU writes: crates/arealight/src/gpu.rs has the same, and a test compares the offsets.
+// The records of lights, which the CPU writes: crates/arealight/src/gpu.rs has the same, and a test compares the offsets. The including
+// kernel defines LIGHTS_BINDING, SHAPES_BINDING or both.
 
 struct ArealightGpuLight {
     vec3 radiance;
@@ -15,6 +16,12 @@ struct ArealightGpuLight {
     uint texture_layer;
     uint reserved;
 };
+
+#ifdef LIGHTS_BINDING
+layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
+    ArealightGpuLight lights[];
+};
+#endif
 
 const uint LIGHT_TWO_SIDED = 1u;
 const uint LIGHT_FLAT = 2u; // its vertices lie in a plane, to 1e-4 of its size
@@ -31,6 +38,12 @@ struct ArealightGpuShape {
     vec3 axis_v;
     uint flags;
 };
+
+#ifdef SHAPES_BINDING
+layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
+    ArealightGpuShape shapes[];
+};
+#endif
 
 const uint SHAPE_DISK = 0u;
 const uint SHAPE_SPHERE = 1u;

@@ -8,10 +8,6 @@
 #include "light_textures.glsl"
 #include "arealight/arealight.glsl"
 
-layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
-    ArealightGpuLight lights[];
-};
-
 // Of each light its vertices in xyz, from its center. A mesh has before each face's vertices its unit normal in xyz and their
 // count in w. A light with an image has after its vertices the image's place: (corner, low u), (axis u, low v), (axis v, width),
 // (height).

@@ -8,10 +8,6 @@
 #include "light_textures.glsl"
 #include "arealight/arealight.glsl"
 
-layout(set = 0, binding = SHAPES_BINDING, std430) readonly buffer Shapes {
-    ArealightGpuShape shapes[];
-};
-
 // `textured`: some disk shows an image.
 ArealightDiskLight load_disk(ArealightGpuShape record, bool textured) {
     return ArealightDiskLight(record.radiance, record.center, record.axis_u, record.axis_v,

@@ -19,13 +19,18 @@ layout(push_constant, std430) uniform ShadeConstants {
 
 const bool HAS_LIGHTS = true;
 const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
+const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 
 // The lights of the buffer.
 struct LightList {
     uint quad_count;
     uint light_count;
+    uint shape_count;
 };
 uint light_at(LightList list, uint index) {
+    return index;
+}
+uint shape_at(LightList list, uint index) {
     return index;
 }
 
@@ -33,5 +38,6 @@ uint light_at(LightList list, uint index) {
 
 void main() {
     uint quad_count = HAS_POLYGONS ? constants.quad_count : constants.light_count;
-    shade_pixel(ivec2(gl_GlobalInvocationID.xy), imageSize(radiance_image), LightList(quad_count, constants.light_count));
+    LightList list = LightList(quad_count, constants.light_count, constants.shape_count);
+    shade_pixel(ivec2(gl_GlobalInvocationID.xy), imageSize(radiance_image), list);
 }

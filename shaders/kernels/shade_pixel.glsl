@@ -1,10 +1,12 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// Shades a pixel with a list of lights. The including kernel has shade_resources.glsl, push constants with camera and shape_count, a
-// struct LightList with quad_count and light_count, and
-// - uint light_at(LightList list, uint index): a light of the list, of which the first quad_count are convex quads without an image;
-// - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS: whether a pixel may have any light, such quads, other polygons and meshes.
+// Shades a pixel with a list of lights. The including kernel has shade_resources.glsl, push constants with camera, a
+// struct LightList with quad_count, light_count and shape_count, and
+// - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are convex quads without an image;
+// - uint shape_at(LightList list, uint index): a disk, sphere or tube of the list;
+// - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other polygons and meshes,
+//   shapes.
 
 #include "position.glsl"
 
@@ -47,9 +49,9 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
             shade_polygon(sum, point, lights[light_at(list, index)]);
         }
     }
-    if (HAS_DISKS || HAS_SPHERES || HAS_TUBES) {
-        for (uint index = 0u; index < constants.shape_count; index++) {
-            shade_shape(sum, point, shapes[index]);
+    if (HAS_SHAPES) {
+        for (uint index = 0u; index < list.shape_count; index++) {
+            shade_shape(sum, point, shapes[shape_at(list, index)]);
         }
     }
     return sum;

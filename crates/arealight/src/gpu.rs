@@ -3,44 +3,30 @@
 use crate::pyramid::LevelKernel;
 use bytemuck::{Pod, Zeroable};
 
-/// A polygon light: `ArealightGpuLight` in `shaders/kernels/buffers.glsl`.
+/// A polygon or mesh light: `ArealightGpuLight` in `shaders/kernels/light_records.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuLight {
     /// Radiance of the front, W/(m² sr).
     pub radiance: [f32; 3],
-    /// Index of the first vertex in the vertex buffer.
+    /// Index of the first row in the vertex buffer: see [`crate::PackedLights::vertices`].
     pub first_vertex: u32,
     /// The middle of the area, relative to the origin: what the vertices are offsets from.
     pub center: [f32; 3],
     /// Radius of a sphere about the center that holds every vertex.
     pub radius: f32,
-    /// Area times the normal of the front, divided by the radius squared.
-    pub area: [f32; 3],
-    /// How many vertices the outline has.
+    /// Unit normal of the front; zero for a light without area, which gives no light. Of a mesh that of its mean.
+    pub normal: [f32; 3],
+    /// Area divided by the radius squared; of a mesh that of its area vector.
+    pub area: f32,
+    /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`] and [`GpuLight::FLAT`], where they are so.
+    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`] and [`GpuLight::MESH`], where they are so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
     /// Zero.
-    pub reserved: [u32; 2],
-    /// Where the texture coordinate `texture_low` is, from the center.
-    pub texture_corner: [f32; 3],
-    /// Zero.
-    pub reserved_corner: u32,
-    /// From the corner to where the first coordinate has grown by `texture_size[0]`.
-    pub texture_axis_u: [f32; 3],
-    /// Zero.
-    pub reserved_axis_u: u32,
-    /// From the corner to where the second coordinate has grown by `texture_size[1]`.
-    pub texture_axis_v: [f32; 3],
-    /// Zero.
-    pub reserved_axis_v: u32,
-    /// The smallest texture coordinates on the light.
-    pub texture_low: [f32; 2],
-    /// The box of its coordinates, in [0, 1].
-    pub texture_size: [f32; 2],
+    pub reserved: u32,
 }
 
 impl GpuLight {
@@ -48,12 +34,14 @@ impl GpuLight {
     pub const TWO_SIDED: u32 = 1;
     /// [`PolygonLight::is_flat`](crate::PolygonLight::is_flat).
     pub const FLAT: u32 = 2;
+    /// It has several faces ([`PolygonLight::is_mesh`](crate::PolygonLight::is_mesh)).
+    pub const MESH: u32 = 4;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }
 
 /// A disk, sphere or tube as a light, packed by [`crate::ShapeLight::pack`]: `ArealightGpuShape` in
-/// `shaders/kernels/shape_buffer.glsl`.
+/// `shaders/kernels/light_records.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuShape {
@@ -117,19 +105,19 @@ pub struct TileConstants {
     pub shape_count: u32,
     /// As [`ShadeConstants::quad_count`].
     pub quad_count: u32,
-    /// As [`crate::plan::TileOptions::negligible`].
-    pub negligible: f32,
+    /// As [`crate::plan::TileOptions::cull_threshold`].
+    pub cull_threshold: f32,
 }
 
 /// How a class of tiles is dispatched.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
 pub struct GpuTileClass {
-    /// Groups in x: `VkDispatchIndirectCommand` begins here.
+    /// Workgroups in x: `VkDispatchIndirectCommand` begins here.
     pub x: u32,
-    /// Groups in y.
+    /// Workgroups in y.
     pub y: u32,
-    /// Groups in z: 1.
+    /// Workgroups in z: 1.
     pub z: u32,
     /// How many tiles there are in the class.
     pub tile_count: u32,

@@ -53,6 +53,18 @@ fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
     indices
 }
 
+/// The row of each of a light's vertices among its rows: before each face of a mesh there is one more.
+fn vertex_rows(light: &PolygonLight) -> Vec<u32> {
+    let mut rows = Vec::with_capacity(light.vertices.len());
+    let mut next = 0;
+    for outline in light.outlines() {
+        next += u32::from(light.is_mesh());
+        rows.extend(next..next + outline.len() as u32);
+        next += outline.len() as u32;
+    }
+    rows
+}
+
 impl LightSampling {
     /// Triangulates `lights`, which were packed as `packed`.
     pub fn new(lights: &[PolygonLight], packed: &PackedLights) -> Self {
@@ -61,6 +73,7 @@ impl LightSampling {
             let Some(light) = lights.get(*index as usize) else { continue };
             let first_triangle = sampling.triangles.len() as u32;
             let indices = light.triangles();
+            let rows = vertex_rows(light);
             let areas = indices.chunks_exact(3).map(|triangle| {
                 let [a, b, c] = [0, 1, 2].map(|corner| light.vertices[triangle[corner] as usize]);
                 (b - a).cross(c - a).length() * 0.5
@@ -70,7 +83,7 @@ impl LightSampling {
             for (triangle, area) in indices.chunks_exact(3).zip(areas) {
                 before += area;
                 sampling.triangles.push(GpuLightTriangle {
-                    vertices: [0, 1, 2].map(|corner| record.first_vertex + triangle[corner]),
+                    vertices: [0, 1, 2].map(|corner| record.first_vertex + rows[triangle[corner] as usize]),
                     cumulative: (before / total) as f32,
                 });
             }

@@ -4,11 +4,17 @@ use crate::Effects;
 use crate::gpu::GpuLight;
 use crate::light::{LightError, PolygonLight, may_be_far};
 use crate::light_texture::TextureMap;
+use crate::mesh::area_of;
 use glam::{DVec3, Vec3};
+
+/// Rows of a texture's place in the vertex buffer.
+const TEXTURE_ROWS: usize = 4;
 
 fn flags(light: &PolygonLight) -> u32 {
     let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-    flag(light.two_sided, GpuLight::TWO_SIDED) | flag(light.is_flat(), GpuLight::FLAT)
+    flag(light.two_sided, GpuLight::TWO_SIDED)
+        | flag(light.is_flat(), GpuLight::FLAT)
+        | flag(light.is_mesh(), GpuLight::MESH)
 }
 
 /// Lights as the GPU reads them, relative to an origin.
@@ -16,8 +22,10 @@ fn flags(light: &PolygonLight) -> u32 {
 pub struct PackedLights {
     /// One record a light: convex quads without an image first, else in the given order.
     pub lights: Vec<GpuLight>,
-    /// Vertex positions relative to their light's center, in xyz; w is zero, but with the first vertex of a face of a mesh how many
-    /// vertices the face has.
+    /// Of each light its vertices' positions relative to its center, in xyz. A mesh has before each face's vertices a row with the
+    /// face's unit normal in xyz and their count in w. After the vertices of a light with a texture come four rows, its place:
+    /// (corner, lowest u), (axis of u, lowest v), (axis of v, extent in u), (extent in v, 0, 0, 0), see
+    /// [`TextureMap`](crate::light_texture::TextureMap).
     pub vertices: Vec<[f32; 4]>,
     /// Which of the given lights each record is of.
     pub order: Vec<u32>,
@@ -42,7 +50,8 @@ impl PackedLights {
     /// # Errors
     /// The first light that [`PolygonLight::validate`] refuses.
     pub fn new(lights: &[PolygonLight], origin: DVec3) -> Result<Self, LightError> {
-        let count = lights.iter().map(|light| light.vertices.len()).sum::<usize>().max(lights.len());
+        let rows = |light: &PolygonLight| light.vertices.len() + light.faces.len() + TEXTURE_ROWS;
+        let count = lights.iter().map(rows).sum::<usize>();
         if u32::try_from(count).is_err() {
             return Err(LightError::TooMany { count });
         }
@@ -117,46 +126,61 @@ impl PackedLights {
         let center = (light.center() - origin).as_vec3();
         let offsets: Vec<DVec3> =
             light.vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();
-        self.vertices.extend(offsets.iter().map(|offset| offset.as_vec3().extend(0.0).to_array()));
         // The middle lies between the vertices, but two of them may be farther apart than float32 reaches
         if let Some(index) = offsets.iter().position(|offset| !(offset.length() as f32 * 2.0).is_finite()) {
-            self.vertices.truncate(first_vertex as usize);
             let value = light.vertices[index];
             return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
         }
         let mut radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
         if light.is_mesh() {
             radius = radius.max(light.covering_radius());
-            let mut first = first_vertex as usize;
-            for &count in &light.faces {
-                self.vertices[first][3] = count as f32;
-                first += count as usize;
-            }
         }
-        let area = light.area_vector() / radius.powi(2);
-        // The texture's axes keep their precision as the vertices do
-        let corner = map.map(|map| map.corner - origin - center.as_dvec3()).unwrap_or_default();
-        let map = map.unwrap_or_default();
+        self.push_outlines(light, &offsets);
+        let vertex_count = self.vertices.len() as u32 - first_vertex;
+        if let Some(map) = map {
+            // The texture's axes keep their precision as the vertices do
+            self.push_texture(map, map.corner - origin - center.as_dvec3());
+        }
+        let area_vector = light.area_vector();
+        let area = area_vector.length() / radius.powi(2);
         self.lights.push(GpuLight {
             radiance: light.radiance.to_array(),
             first_vertex,
             center: center.to_array(),
             radius: (radius as f32).next_up(),
-            area: if area.is_finite() { area.as_vec3().to_array() } else { [0.0; 3] },
-            vertex_count: light.vertices.len() as u32,
+            normal: area_vector.normalize_or_zero().as_vec3().to_array(),
+            area: if area.is_finite() { area as f32 } else { 0.0 },
+            vertex_count,
             flags: flags(light),
             texture_layer: light.texture.as_ref().map_or(GpuLight::NO_TEXTURE, |texture| texture.layer),
-            reserved: [0; 2],
-            texture_corner: corner.as_vec3().to_array(),
-            reserved_corner: 0,
-            texture_axis_u: map.axis_u.as_vec3().to_array(),
-            reserved_axis_u: 0,
-            texture_axis_v: map.axis_v.as_vec3().to_array(),
-            reserved_axis_v: 0,
-            texture_low: map.low.as_vec2().to_array(),
-            texture_size: map.size.as_vec2().to_array(),
+            reserved: 0,
         });
         Ok(())
+    }
+
+    /// The rows of an outline, or of the faces of a mesh.
+    fn push_outlines(&mut self, light: &PolygonLight, offsets: &[DVec3]) {
+        let mut first = 0;
+        for face in light.outlines() {
+            let vertices = &offsets[first..first + face.len()];
+            if light.is_mesh() {
+                let normal = area_of(vertices).normalize_or_zero().as_vec3();
+                self.vertices.push(normal.extend(face.len() as f32).to_array());
+            }
+            self.vertices.extend(vertices.iter().map(|offset| offset.as_vec3().extend(0.0).to_array()));
+            first += face.len();
+        }
+    }
+
+    /// The rows of a texture's place, whose corner is `corner` from the light's center.
+    fn push_texture(&mut self, map: TextureMap, corner: DVec3) {
+        let row = |vector: DVec3, number: f64| vector.as_vec3().extend(number as f32).to_array();
+        self.vertices.extend([
+            row(corner, map.low.x),
+            row(map.axis_u, map.low.y),
+            row(map.axis_v, map.size.x),
+            [map.size.y as f32, 0.0, 0.0, 0.0],
+        ]);
     }
 }
 

@@ -296,6 +296,7 @@ impl<'a> SceneRenderer<'a> {
             glossy: None,
             light_textures: self.engine.light_textures(),
             shapes: Resource::buffer(self.shape_buffer.handle()),
+            tiles: None,
         }
     }
 
@@ -308,6 +309,7 @@ impl<'a> SceneRenderer<'a> {
             quad_count: self.quad_count,
             unused: self.unused,
             shape_count: self.shapes.len() as u32,
+            tile_lists: None,
         }
     }
 
