@@ -13,8 +13,8 @@ layout(constant_id = 0) const int METHOD = 0;
 
 const int METHOD_OUTLINE = 0;
 const int METHOD_OUTLINE_DIFFERENCE = 1;
-const int METHOD_QUAD = 2;
-const int METHOD_QUAD_DIFFERENCE = 3;
+const int METHOD_QUAD = 8;
+const int METHOD_QUAD_DIFFERENCE = 9;
 const int METHOD_TEXTBOOK = 32;
 const int METHOD_PRACTICE = 33;
 

@@ -6,15 +6,18 @@
 
 layout(local_size_x = 64) in;
 
-#include "arealight/form_factor.glsl"
 
 layout(constant_id = 0) const int METHOD = 0;
 layout(constant_id = 1) const int REPEATS = 1;
 
-// AREALIGHT_FORM_FACTOR_* bits, plus one of these; or a yardstick. See benches/src/cost.rs.
-const int METHOD_RUNG = 3;
+#define AREALIGHT_SURFACE_HORIZON ((METHOD & 12) == 8)
+#define AREALIGHT_DIFFERENCE (METHOD & 1)
+#include "arealight/form_factor/outline.glsl"
+#include "arealight/lights/quad.glsl"
+
+// AREALIGHT_FORM_FACTOR_*, plus one of these; or a yardstick. See benches/src/cost.rs.
+const int METHOD_RUNG = 1;
 const int METHOD_QUAD = 0;
-const int METHOD_BARE = 4;
 const int METHOD_BOTH = 8;
 const int METHOD_WALK = 12;
 const int METHOD_NOTHING = 16;
@@ -29,50 +32,44 @@ layout(set = 0, binding = 1, std430) writeonly buffer Results {
 };
 
 ArealightQuad moved(ArealightQuad quad, vec3 shift) {
-    return ArealightQuad(quad.v0 + shift, quad.v1 + shift, quad.v2 + shift, quad.v3 + shift);
+    return ArealightQuad(quad.a + shift, quad.b + shift, quad.c + shift, quad.d + shift);
 }
 
-ArealightArcs walk(ArealightAnchor anchor, ArealightQuad quad, int rung) {
-    ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
-    ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
-    ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
-    ArealightVertex v3 = arealight_vertex(anchor, quad.v3, rung);
-    ArealightWalk walk = arealight_walk_begin();
-    arealight_walk_edge(walk, anchor, v3, v0, rung);
-    arealight_walk_edge(walk, anchor, v0, v1, rung);
-    arealight_walk_edge(walk, anchor, v1, v2, rung);
-    arealight_walk_edge(walk, anchor, v2, v3, rung);
-    return arealight_walk_end(walk, anchor, rung);
+void add_edge(inout ArealightOutline outline, vec3 from, vec3 to) {
+    arealight_outline_edge(outline, arealight_unit(from), arealight_unit(to));
 }
 
-// The library's arcs around a quad given as offsets from `center`.
-ArealightArcs library_arcs(vec3 center, ArealightQuad quad) {
-    int rung = METHOD & METHOD_RUNG;
-    int shape = METHOD & ~METHOD_RUNG;
-    ArealightAnchor anchor = arealight_anchor(center, 1.0, rung);
-    if (shape == METHOD_BARE) {
-        return arealight_quad_bare(anchor, quad, rung);
-    }
-    if (shape == METHOD_BOTH) {
-        vec3 normal = vec3(0.6, 0.0, 0.8);
-        vec4 height = dot(normal, center)
-                    + vec4(dot(normal, quad.v0), dot(normal, quad.v1), dot(normal, quad.v2), dot(normal, quad.v3));
-        return arealight_quad_both_horizons(anchor, quad, height, rung);
-    }
-    if (shape == METHOD_WALK) {
-        return walk(anchor, quad, rung);
-    }
-    return arealight_quad_clipped(anchor, quad, rung);
+vec3 outline_vector(ArealightQuad quad) {
+    ArealightOutline outline = arealight_outline_begin();
+    add_edge(outline, quad.a, quad.b);
+    add_edge(outline, quad.b, quad.c);
+    add_edge(outline, quad.c, quad.d);
+    add_edge(outline, quad.d, quad.a);
+    return arealight_outline_vector(outline);
 }
 
+// The library's form factor of a quad given as offsets from `center`, in a space; where both horizons clip, a tilted one.
 float library(vec3 center, ArealightQuad quad) {
-    return arealight_form_factor(library_arcs(center, quad), false);
+    if ((METHOD & ~METHOD_RUNG) == METHOD_WALK) {
+        return arealight_form_factor(outline_vector(moved(quad, center)));
+    }
+    mat3 space = (METHOD & ~METHOD_RUNG) == METHOD_BOTH ? mat3(0.8, 0.0, -0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8) : mat3(1.0);
+    ArealightPoint point;
+    point.position = vec3(0.0);
+    point.to_frame = mat3(1.0);
+    vec3 normal = arealight_normalize_or(cross(quad.b - quad.a, quad.c - quad.a), vec3(0.0, 0.0, 1.0));
+    ArealightLocalQuad local;
+    vec3 vector = vec3(0.0);
+    if (arealight_to_local(point, ArealightQuadLight(vec3(1.0), center, normal, quad, false), local)) {
+        vector = arealight_vector_form_factor(space, local);
+    }
+    return arealight_form_factor(vector);
 }
 
 ArealightQuad yardstick;
 
 vec3 yardstick_vertex(uint index) {
-    return index == 0u ? yardstick.v0 : index == 1u ? yardstick.v1 : index == 2u ? yardstick.v2 : yardstick.v3;
+    return index == 0u ? yardstick.a : index == 1u ? yardstick.b : index == 2u ? yardstick.c : yardstick.d;
 }
 
 #include "yardsticks.glsl"
@@ -82,7 +79,7 @@ void main() {
     uint first = 4u * index;
     ArealightQuad quad = ArealightQuad(vertices[first].xyz, vertices[first + 1u].xyz, vertices[first + 2u].xyz,
                                        vertices[first + 3u].xyz);
-    vec3 center = 0.25 * (quad.v0 + quad.v1 + quad.v2 + quad.v3);
+    vec3 center = 0.25 * (quad.a + quad.b + quad.c + quad.d);
     ArealightQuad offsets = moved(quad, -center);
     float sum = 0.0;
     for (int i = 0; i < REPEATS; i++) {
@@ -90,13 +87,13 @@ void main() {
         vec3 shift = vec3(1.0, 1.0, 0.5) * (float(i) / 512.0);
         if (METHOD == METHOD_PRACTICE) {
             ArealightQuad there = moved(quad, shift);
-            sum += yardstick_practice_quad(there.v0, there.v1, there.v2, there.v3);
+            sum += yardstick_practice_quad(there.a, there.b, there.c, there.d);
         } else if (METHOD == METHOD_TEXTBOOK) {
             yardstick = moved(quad, shift);
             sum += yardstick_textbook(4u);
         } else if (METHOD == METHOD_NOTHING) {
             ArealightQuad there = moved(quad, shift);
-            sum += dot(there.v0 + there.v1, there.v2 + there.v3);
+            sum += dot(there.a + there.b, there.c + there.d);
         } else {
             sum += library(center + shift, offsets);
         }

@@ -7,27 +7,30 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
-layout(constant_id = 1) const int RUNG = 0;
+layout(constant_id = 1) const int RUNG = 0; // 1: the difference form
 // 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
 // How often each is evaluated, ever farther to the side: for its cost, in which memory traffic is lost
 layout(constant_id = 3) const int REPEATS = 1;
 
 const int FUNCTION_ELLIPSE = 0;
-const int FUNCTION_ELLIPSE_BARE = 1;
-const int FUNCTION_ELLIPSE_VECTOR = 2;
-const int FUNCTION_SPHERE = 3;
-const int FUNCTION_SILHOUETTE = 4;
-const int FUNCTION_ARCTANGENT = 5;
-const int FUNCTION_PUBLISHED = 6;
-const int FUNCTION_TUBE = 7;
-const int FUNCTION_LOBE = 8;
-const int FUNCTION_PUBLISHED_CHEAP = 9;
-const int FUNCTION_SPHERE_HORIZON = 10;
-const int FUNCTION_POLYGON = 11;
-const int FUNCTION_NOTHING = 12;
+const int FUNCTION_SPHERE = 1;
+const int FUNCTION_SILHOUETTE = 2;
+const int FUNCTION_ARCTANGENT = 3;
+const int FUNCTION_PUBLISHED = 4;
+const int FUNCTION_TUBE = 5;
+const int FUNCTION_LOBE = 6;
+const int FUNCTION_PUBLISHED_CHEAP = 7;
+const int FUNCTION_SPHERE_HORIZON = 8;
+const int FUNCTION_POLYGON = 9;
+const int FUNCTION_NOTHING = 10;
 
-#include "arealight/shapes.glsl"
+#define AREALIGHT_TWO_SIDED 1
+#define AREALIGHT_DIFFERENCE RUNG
+#define AREALIGHT_SURFACE_HORIZON CHOICE
+#include "arealight/lights/disk.glsl"
+#include "arealight/lights/sphere.glsl"
+#include "arealight/lights/tube.glsl"
 #include "published_disk.glsl"
 
 struct ShapeArguments {
@@ -55,7 +58,7 @@ layout(push_constant, std430) uniform ShapeConstants {
 vec4 silhouette_of(vec3 center, float radius, mat3 transform, bool two_sided) {
     ArealightSilhouette silhouette = arealight_sphere_silhouette(center, radius);
     float form_factor = arealight_ellipse_form_factor(transform * silhouette.center, transform * silhouette.axis_u,
-                                                      transform * silhouette.axis_v, two_sided, RUNG);
+                                                      transform * silhouette.axis_v, two_sided);
     return vec4(silhouette.inside ? 0.0 : form_factor, silhouette.center);
 }
 
@@ -64,23 +67,36 @@ vec4 silhouette_of(vec3 center, float radius, mat3 transform, bool two_sided) {
 float lobe_of(ShapeArguments given, bool sphere) {
     vec3 first = vec3(given.a.w, given.b.w, given.c.w);
     vec3 third = given.d.w * arealight_normalize_or(cross(first, given.d.xyz), vec3(0.0, 0.0, 1.0));
-    ArealightCosineSpace space = arealight_cosine_space(transpose(mat3(first, given.d.xyz, third)));
-    ArealightLobe lobe = ArealightLobe(space, vec3(1.0), 1.0);
-    ArealightQuality quality = ArealightQuality(RUNG, CHOICE, AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
-                                                AREALIGHT_FOOTPRINT_ROUND);
-    float radius = sphere ? given.b.x : length(given.b.xyz) + length(given.c.xyz);
-    ArealightShape shape = ArealightShape(sphere ? AREALIGHT_SHAPE_SPHERE : AREALIGHT_SHAPE_ELLIPSE, vec3(1.0),
-                                          given.a.xyz, given.b.xyz, given.c.xyz, radius, AREALIGHT_TUBE_OPEN, true,
-                                          AREALIGHT_NO_IMAGE);
-    ArealightSeenShape seen = arealight_see_shape(vec3(0.0), shape, 0xffffffffu);
-    return arealight_lobe_shape(lobe, vec3(0.0, 0.0, 1.0), seen, shape, false, 0xffffffffu, quality).x;
+    mat3 space = transpose(mat3(first, given.d.xyz, third));
+    ArealightPoint point;
+    point.position = vec3(0.0);
+    point.to_frame = mat3(1.0);
+    vec3 vector = vec3(0.0);
+    if (sphere) {
+        ArealightLocalSphere local;
+        if (arealight_to_local(point, ArealightSphereLight(vec3(1.0), given.a.xyz, given.b.x, true), local)) {
+            vector = arealight_vector_form_factor(space, local);
+        }
+    } else {
+        ArealightDiskLight light = ArealightDiskLight(vec3(1.0), given.a.xyz, given.b.xyz, given.c.xyz, true);
+        ArealightLocalDisk local;
+        if (arealight_to_local(point, light, local)) {
+            vector = arealight_vector_form_factor(space, local);
+        }
+    }
+    return arealight_form_factor(vector);
 }
 
-// The whole ellipse's form factor, exactly, and a sphere's horizon.
+// The whole ellipse's form factor along its cone's axis, exactly, and a sphere's horizon.
 float sphere_horizon(ShapeArguments given) {
-    vec3 vector = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
-    float whole = length(vector);
-    return whole > 0.0 ? published_horizon(min(whole, 1.0), vector.z / whole) : 0.0;
+    ArealightEllipse ellipse = arealight_ellipse(given.a.xyz, given.b.xyz, given.c.xyz);
+    float root = arealight_confocal_root(ellipse);
+    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
+    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
+    float area = ellipse.center.z * ellipse.major * ellipse.minor;
+    float whole = area * sqrt(reciprocals.x) * sqrt(reciprocals.y) * inversesqrt(dot(axis, axis));
+    float cosine = normalize(ellipse.frame * axis).z;
+    return whole > 0.0 ? published_horizon(min(whole, 1.0), cosine) : 0.0;
 }
 
 // An inscribed polygon of CHOICE vertices, grown until it has the ellipse's area.
@@ -88,43 +104,38 @@ float polygon_of(ShapeArguments given) {
     float angle = 2.0 * AREALIGHT_PI / float(CHOICE);
     vec2 step = vec2(cos(angle), sin(angle));
     float growth = sqrt(angle / step.y);
-    ArealightAnchor anchor = arealight_anchor(given.a.xyz, length(given.b.xyz) + length(given.c.xyz), RUNG);
-    ArealightWalk walk = arealight_walk_begin();
+    ArealightOutline outline = arealight_outline_begin();
     vec2 place = vec2(growth, 0.0);
-    ArealightVertex from = arealight_vertex(anchor, place.x * given.b.xyz + place.y * given.c.xyz, RUNG);
+    vec3 from = arealight_unit(given.a.xyz + place.x * given.b.xyz + place.y * given.c.xyz);
     for (int index = 0; index < CHOICE; index++) {
         place = vec2(place.x * step.x - place.y * step.y, place.x * step.y + place.y * step.x);
-        ArealightVertex to = arealight_vertex(anchor, place.x * given.b.xyz + place.y * given.c.xyz, RUNG);
-        arealight_walk_edge(walk, anchor, from, to, RUNG);
+        vec3 to = arealight_unit(given.a.xyz + place.x * given.b.xyz + place.y * given.c.xyz);
+        arealight_outline_edge(outline, from, to);
         from = to;
     }
-    return arealight_form_factor(arealight_walk_end(walk, anchor, RUNG), true);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), 0.0);
 }
 
 vec4 evaluate(ShapeArguments given, int tube_ends) {
     bool two_sided = given.d.w != 0.0;
     vec4 result = vec4(0.0);
     if (FUNCTION == FUNCTION_ELLIPSE) {
-        result.x = arealight_ellipse_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
-    } else if (FUNCTION == FUNCTION_ELLIPSE_BARE) {
-        result.x = arealight_ellipse_bare(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
-    } else if (FUNCTION == FUNCTION_ELLIPSE_VECTOR) {
-        result.xyz = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+        result.x = arealight_ellipse_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, two_sided);
     } else if (FUNCTION == FUNCTION_SPHERE) {
-        result.x = arealight_sphere_form_factor(given.a.xyz, given.a.w, two_sided, RUNG);
+        result.x = arealight_sphere_form_factor(given.a.xyz, given.a.w, two_sided);
     } else if (FUNCTION == FUNCTION_SILHOUETTE) {
         mat3 transform = mat3(given.b.xyz, given.c.xyz, given.d.xyz);
         result = silhouette_of(given.a.xyz, given.a.w, transform, two_sided);
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
-        result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
+        result.x = arealight_arctangent(given.a.y, given.a.x);
     } else if (FUNCTION == FUNCTION_TUBE) {
         ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, tube_ends);
         // The matrix's rows, of which the last one is of unit length
         vec3 row = vec3(given.c.w, given.d.w, given.b.w);
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
         result.x = CHOICE == 0
-                 ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH, RUNG)
-                 : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH, RUNG);
+                 ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH)
+                 : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH);
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else if (FUNCTION == FUNCTION_PUBLISHED) {

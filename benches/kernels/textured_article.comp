@@ -20,21 +20,19 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 
 #define LIGHTS_BINDING 1
 #define LIGHT_TEXTURES_BINDING 5
-#include "table_image.glsl"
-#include "lights.glsl"
 #define CASES_BINDING 3
+#include "effects.glsl"
+#include "table_image.glsl"
+#include "polygon_lights.glsl"
 #include "cases.glsl"
 
-vec3 article_lobe(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen, ArealightPolygonLight light,
-                  ArealightArcs walked, ArealightQuad quad, ArealightQuality quality) {
-    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, walked, quad, EFFECTS, quality);
-    ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
+vec3 article_color(mat3 space, ArealightLocalPolygon local) {
+    ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);
     // The foot of the perpendicular: the plane met along its normal
-    ArealightSeenPoint foot = arealight_seen_point(image, image.normal);
+    ArealightPlaneHit foot = arealight_plane_hit(image, image.normal);
     vec2 box = arealight_clamp_coordinate(foot.box, vec2(0.0), vec2(1.0));
     float area = sqrt(dot(image.normal, image.normal));
-    vec3 color = arealight_image_blurred(image, box, foot.square / (2.0 * area));
-    return lobe.albedo * arealight_form_factor(arcs, light.two_sided) * color;
+    return arealight_image_blurred(image, box, foot.square / (2.0 * area));
 }
 
 void main() {
@@ -42,18 +40,18 @@ void main() {
     if (index >= constants.case_count) {
         return;
     }
-    ArealightGpuCase given = cases[index];
-    ArealightPolygonLight light = load_light(given.light);
-    ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(case_surface(given), EFFECTS, quality);
-    ArealightSeenLight seen = arealight_see(point.position, light);
-    ArealightQuad quad = arealight_light_quad(light);
-    ArealightLobeViews views = arealight_lobe_views(point, seen, quality.form_factor);
-    ArealightLobeArcs walked = arealight_walk_light(views, light, EFFECTS, quality);
-    vec3 reflected = article_lobe(point.glossy, views.glossy, seen, light, walked.glossy, quad, quality)
-                   + article_lobe(point.diffuse, views.diffuse, seen, light, walked.diffuse, quad, quality);
-    if (FRESNEL == AREALIGHT_FRESNEL_SPLIT) {
-        reflected += article_lobe(point.schlick, views.schlick, seen, light, walked.schlick, quad, quality);
+    ArealightPolygonLight light = load_polygon(lights[cases[index].light], true);
+    ArealightPoint point = arealight_point(case_surface(cases[index]));
+    vec3 reflected = vec3(0.0);
+    ArealightLocalPolygon local;
+    if (arealight_to_local(point, light, local)) {
+        for (int i = 0; i < AREALIGHT_LOBES; i++) {
+            if (arealight_has_lobe(i)) {
+                ArealightLobe lobe = point.lobes[i];
+                float form_factor = arealight_form_factor(arealight_vector_form_factor(lobe.space, local));
+                reflected += lobe.albedo * form_factor * article_color(lobe.space, local);
+            }
+        }
     }
     results[index] = vec4(light.radiance * reflected, 0.0);
 }

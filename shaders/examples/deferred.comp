@@ -6,15 +6,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2DArray table; // tables/ggx.ktx2; or texture2DArray and a sampler
 layout(set = 0, binding = 1) uniform sampler2D g_buffer[3]; // position; normal, roughness; base colour, metalness
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
-struct Lamp { vec3 radiance; uint first_vertex; vec3 center; float radius; vec3 area; uint vertex_count; };
+struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2; vec4 vertices[4]; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Vertices { vec4 vertices[]; };
 layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 
 // The bridges: how the library reads what is yours
 vec4 arealight_bridge_table(int layer, ivec2 texel) { return texelFetch(table, ivec3(texel, layer), 0); }
 int arealight_bridge_table_size() { return textureSize(table, 0).x; }
-vec3 arealight_bridge_vertex(uint index) { return vertices[index].xyz; } // from its light's center
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -31,22 +29,17 @@ void main() {
     surface.roughness = normal_roughness.w;
     arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
 
-    const uint EFFECTS = AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_GLOSSY; // what your scene calls for
-    const ArealightQuality QUALITY = ArealightQuality(AREALIGHT_FORM_FACTOR_EXACT, AREALIGHT_HORIZON_COSINE,
-        AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE, AREALIGHT_FOOTPRINT_ROUND);
-    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, QUALITY);
+    ArealightPoint point = arealight_point(surface);
     vec3 radiance = vec3(0.0);
     for (uint i = 0u; i < frame.lamp_count; i++) {
-        ArealightPolygonLight light;
+        ArealightQuadLight light;
         light.radiance = lamps[i].radiance;
-        light.first_vertex = lamps[i].first_vertex;
-        light.vertex_count = lamps[i].vertex_count;
         light.center = lamps[i].center; // relative to the origin of positions, as frame.camera is
-        light.radius = lamps[i].radius;
-        light.area = lamps[i].area; // area times the front's normal, over radius squared
+        light.normal = lamps[i].normal; // of the front, unit
+        light.quad = ArealightQuad(lamps[i].vertices[0].xyz, lamps[i].vertices[1].xyz, lamps[i].vertices[2].xyz,
+                                   lamps[i].vertices[3].xyz); // from the center
         light.two_sided = false;
-        radiance += arealight_polygon_radiance(point, light, EFFECTS, QUALITY);
+        radiance += arealight_radiance(point, light);
     }
-    // doc end
     imageStore(radiance_image, pixel, vec4(radiance, 1.0));
 }

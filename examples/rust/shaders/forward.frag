@@ -4,6 +4,8 @@
 // The forward engine's shading: the library, and bridges to what this engine binds.
 
 // doc: bridges
+#define AREALIGHT_QUADS 0
+#define AREALIGHT_POLYGONS 1 // outlines of any number of vertices
 #include "arealight/arealight.glsl"
 
 layout(set = 0, binding = 0) uniform sampler2DArray table;
@@ -12,9 +14,9 @@ struct Lamp {
     vec3 radiance;
     uint first_vertex;
     vec3 center;
-    float radius;
-    vec3 area;
     uint vertex_count;
+    vec3 normal;
+    float reserved;
 };
 
 layout(set = 0, binding = 1, std140) uniform Lamps {
@@ -44,11 +46,6 @@ layout(location = 3) flat in vec4 emission_roughness;
 layout(location = 0) out vec4 out_radiance;
 
 // doc: shade
-const uint EFFECTS = AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_GLOSSY; // what this scene calls for
-const ArealightQuality QUALITY =
-    ArealightQuality(AREALIGHT_FORM_FACTOR_EXACT, AREALIGHT_HORIZON_COSINE, AREALIGHT_FRESNEL_BY_F0,
-                     AREALIGHT_LOBES_TABLE, AREALIGHT_FOOTPRINT_ROUND);
-
 void main() {
     ArealightSurface surface;
     surface.position = position;
@@ -57,18 +54,17 @@ void main() {
     surface.roughness = emission_roughness.w;
     arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
 
-    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, QUALITY);
+    ArealightPoint point = arealight_point(surface);
     vec3 radiance = emission_roughness.rgb;
     for (uint i = 0u; i < lamp_count; i++) {
         ArealightPolygonLight light;
         light.radiance = lamps[i].radiance;
+        light.center = lamps[i].center;
+        light.normal = lamps[i].normal;
         light.first_vertex = lamps[i].first_vertex;
         light.vertex_count = lamps[i].vertex_count;
-        light.center = lamps[i].center;
-        light.radius = lamps[i].radius;
-        light.area = lamps[i].area;
         light.two_sided = false;
-        radiance += arealight_polygon_radiance(point, light, EFFECTS, QUALITY);
+        radiance += arealight_radiance(point, light);
     }
     out_radiance = vec4(radiance, 1.0);
 }

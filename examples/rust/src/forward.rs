@@ -40,9 +40,9 @@ struct Lamp {
     radiance: [f32; 3],
     first_vertex: u32,
     center: [f32; 3],
-    radius: f32,
-    area: [f32; 3],
     vertex_count: u32,
+    normal: [f32; 3],
+    reserved: f32,
 }
 
 /// The uniform buffer of `forward.frag`.
@@ -65,9 +65,9 @@ impl Uniforms {
                 radiance: light.radiance,
                 first_vertex: light.first_vertex,
                 center: light.center,
-                radius: light.radius,
-                area: light.area,
                 vertex_count: light.vertex_count,
+                normal: light.normal,
+                reserved: 0.0,
             };
         }
         all.vertices[..packed.vertices.len()].copy_from_slice(&packed.vertices);

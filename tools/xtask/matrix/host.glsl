@@ -4,23 +4,29 @@
 // A host of the GLSL library, in every way that the matrix asks for by macros:
 //   COMPUTE            a compute shader, else a fragment shader
 //   COMBINED           combined image samplers, else images and samplers apart
-//   SHAPES             disks, spheres and tubes beside polygons
-//   SPECIALIZED        effects and rungs are specialisation constants, else literals: EFFECTS, FORM_FACTOR and so on
+//   SPECIALIZED        the library's options are specialisation constants, else what the command line says, or the defaults
 //   WITHOUT_<bridge>   the host forgot that bridge
 
-#include "arealight/arealight.glsl"
-#if SHAPES
-#include "arealight/shapes.glsl"
+#if SPECIALIZED
+layout(constant_id = 0) const bool DIFFUSE = true;
+layout(constant_id = 1) const bool SPECULAR = true;
+layout(constant_id = 2) const bool TWO_SIDED = false;
+layout(constant_id = 3) const bool SURFACE_HORIZON = false;
+layout(constant_id = 4) const bool FRESNEL_SPLIT = false;
+layout(constant_id = 5) const bool FORMULA = false;
+layout(constant_id = 6) const bool DIFFERENCE = false;
+layout(constant_id = 7) const int FOOTPRINT = 0;
+#define AREALIGHT_DIFFUSE DIFFUSE
+#define AREALIGHT_SPECULAR SPECULAR
+#define AREALIGHT_TWO_SIDED TWO_SIDED
+#define AREALIGHT_SURFACE_HORIZON SURFACE_HORIZON
+#define AREALIGHT_FRESNEL_SPLIT FRESNEL_SPLIT
+#define AREALIGHT_FORMULA FORMULA
+#define AREALIGHT_DIFFERENCE DIFFERENCE
+#define AREALIGHT_FOOTPRINT_ELLIPSE (FOOTPRINT == 1)
 #endif
 
-#if SPECIALIZED
-layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
-layout(constant_id = 1) const int FORM_FACTOR = 0;
-layout(constant_id = 2) const int HORIZON = 0;
-layout(constant_id = 3) const int FRESNEL = 0;
-layout(constant_id = 4) const int LOBES = 0;
-layout(constant_id = 5) const int FOOTPRINT = 0;
-#endif
+#include "arealight/arealight.glsl"
 
 #if COMBINED
 layout(set = 0, binding = 0) uniform sampler2DArray table;
@@ -56,9 +62,9 @@ vec3 arealight_bridge_vertex(uint index) {
 }
 #endif
 
-#ifndef WITHOUT_arealight_bridge_face_size
-uint arealight_bridge_face_size(uint index) {
-    return index;
+#ifndef WITHOUT_arealight_bridge_face
+vec4 arealight_bridge_face(uint index) {
+    return numbers[index];
 }
 #endif
 
@@ -93,34 +99,57 @@ vec3 shade(int first) {
     surface.roughness = numbers[first + 3].x;
     arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a, numbers[first + 5].rgb,
                                      numbers[first + 5].a);
-    const ArealightQuality quality = ArealightQuality(FORM_FACTOR, HORIZON, FRESNEL, LOBES, FOOTPRINT);
-    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+    ArealightPoint point = arealight_point(surface);
 
     uvec4 counts = floatBitsToUint(numbers[first + 6]);
-    ArealightPolygonLight light;
-    light.radiance = numbers[first + 7].rgb;
-    light.first_vertex = counts.x;
-    light.vertex_count = counts.y;
-    light.center = numbers[first + 8].xyz;
-    light.radius = numbers[first + 8].w;
-    light.area = numbers[first + 9].xyz;
-    light.two_sided = counts.z != 0u;
-    light.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz, numbers[first + 12].xyz,
-                                 numbers[first + 13].xy, numbers[first + 13].zw);
-    vec3 radiance = arealight_polygon_radiance(point, light, EFFECTS, quality);
-#if SHAPES
-    ArealightShape shape;
-    shape.kind = int(counts.y);
-    shape.radiance = light.radiance;
-    shape.center = light.center;
-    shape.axis_u = numbers[first + 11].xyz;
-    shape.axis_v = numbers[first + 12].xyz;
-    shape.radius = light.radius;
-    shape.ends = int(counts.w);
-    shape.two_sided = light.two_sided;
-    radiance += arealight_shape_radiance(point, shape, EFFECTS, quality);
+    vec3 radiance = numbers[first + 7].rgb;
+    vec3 center = numbers[first + 8].xyz;
+    float radius = numbers[first + 8].w;
+    vec3 axis_u = numbers[first + 9].xyz;
+    vec3 axis_v = numbers[first + 10].xyz;
+    bool two_sided = counts.z != 0u;
+    vec3 sum = vec3(0.0);
+#if AREALIGHT_QUADS
+    ArealightQuad quad = ArealightQuad(numbers[first + 9].xyz, numbers[first + 10].xyz, numbers[first + 11].xyz,
+                                       numbers[first + 12].xyz);
+    sum += arealight_radiance(point, ArealightQuadLight(radiance, center, numbers[first + 13].xyz, quad, two_sided));
 #endif
-    return radiance;
+#if AREALIGHT_POLYGONS
+    ArealightPolygonLight polygon;
+    polygon.radiance = radiance;
+    polygon.center = center;
+    polygon.normal = axis_u;
+    polygon.first_vertex = counts.x;
+    polygon.vertex_count = counts.y;
+    polygon.two_sided = two_sided;
+#if AREALIGHT_LIGHT_TEXTURES
+    polygon.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz, numbers[first + 12].xyz,
+                                   numbers[first + 13].xy, numbers[first + 13].zw);
+#endif
+    sum += arealight_radiance(point, polygon);
+#endif
+#if AREALIGHT_MESHES
+    sum += arealight_radiance(point, ArealightMeshLight(radiance, center, counts.x, counts.y, two_sided));
+#endif
+#if AREALIGHT_DISKS
+    ArealightDiskLight disk;
+    disk.radiance = radiance;
+    disk.center = center;
+    disk.axis_u = axis_u;
+    disk.axis_v = axis_v;
+    disk.two_sided = two_sided;
+#if AREALIGHT_LIGHT_TEXTURES
+    disk.image = counts.w;
+#endif
+    sum += arealight_radiance(point, disk);
+#endif
+#if AREALIGHT_SPHERES
+    sum += arealight_radiance(point, ArealightSphereLight(radiance, center, radius, two_sided));
+#endif
+#if AREALIGHT_TUBES
+    sum += arealight_radiance(point, ArealightTubeLight(radiance, center, axis_u, radius, int(counts.w)));
+#endif
+    return sum;
 }
 
 void main() {

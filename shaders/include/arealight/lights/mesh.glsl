@@ -3,8 +3,8 @@
 
 #include "arealight/lights/polygon.glsl"
 
-// The host's bridge to the faces of meshes: the plane of the face whose first vertex is `index`: the unit normal of its front in
-// xyz, and in w how many vertices it has.
+// The host's bridge to the faces of meshes: at the index before those of a face's vertices, the unit normal of its front in xyz, and
+// in w how many vertices it has.
 vec4 arealight_bridge_face(uint index);
 
 // Flat, simple polygons, one after another, of one constant radiance. The sum is of what each emits: where one hides another,
@@ -12,15 +12,15 @@ vec4 arealight_bridge_face(uint index);
 struct ArealightMeshLight {
     vec3 radiance;     // of the fronts, W/(m^2 sr)
     vec3 center;       // relative to the origin of ArealightSurface.position
-    uint first_vertex; // for arealight_bridge_vertex and arealight_bridge_face
-    uint vertex_count; // of all faces
+    uint first_row;    // for arealight_bridge_face: that of the first face
+    uint row_count;    // of all faces and vertices
     bool two_sided;    // the backs emit too (with AREALIGHT_TWO_SIDED)
 };
 
 struct ArealightLocalMesh {
     vec3 offset;   // from the shading point to the center
     mat3 to_frame; // into the shading frame
-    uint first;
+    uint first;    // rows
     uint end;
     bool two_sided;
 };
@@ -28,8 +28,8 @@ struct ArealightLocalMesh {
 bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out ArealightLocalMesh local) {
     local.offset = light.center - point.position;
     local.to_frame = point.to_frame;
-    local.first = light.first_vertex;
-    local.end = light.first_vertex + light.vertex_count;
+    local.first = light.first_row;
+    local.end = light.first_row + light.row_count;
     local.two_sided = AREALIGHT_HAS_TWO_SIDED && light.two_sided;
     return true;
 }
@@ -38,8 +38,9 @@ bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out Area
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     vec3 sum = vec3(0.0);
-    for (uint first = local.first; first < local.end;) {
-        vec4 face = arealight_bridge_face(first);
+    for (uint row = local.first; row + 1u < local.end;) {
+        vec4 face = arealight_bridge_face(row);
+        uint first = row + 1u;
         uint end = first + clamp(uint(face.w), 1u, local.end - first);
         vec3 offset = local.offset + arealight_bridge_vertex(first);
         if (arealight_is_lit(offset, face.xyz, local.two_sided)) {
@@ -47,7 +48,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
             // Seen from the back an outline goes around the other way
             sum += dot(offset, face.xyz) < 0.0 ? vector : -vector;
         }
-        first = end;
+        row = end;
     }
     return sum;
 }
