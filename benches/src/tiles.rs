@@ -208,7 +208,7 @@ pub fn markdown(frames: &[TiledFrame]) -> String {
             format!("{:.2}", exact.median),
             format!("{:.2}", tiles.median),
             format!("{:.2} to {:.2}", tiles.quartiles[0], tiles.quartiles[1]),
-            format!("{:.1}", frame.counts.lights_a_tile()),
+            format!("{:.1}", frame.counts.lights_per_tile()),
             format!("{:.1e}", frame.error[0]),
             format!("{:.1e}", frame.error[1]),
         ]

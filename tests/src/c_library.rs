@@ -285,6 +285,7 @@ impl<'a> CLibrary<'a> {
             ..ArealightResources::default()
         };
         let frame = ArealightFrame {
+            tile_lists: Default::default(),
             width: 1,
             height: 1,
             camera: camera.to_array(),

@@ -10,6 +10,9 @@ use arealight_vk::{ComputePass, Resource};
 
 const COUNT: usize = 50_000;
 
+/// Rows of an image's place, after the vertices of its light.
+const IMAGE_ROWS: usize = 4;
+
 /// Lights with their vertices, and a case for each.
 struct Buffers {
     lights: Vec<GpuLight>,
@@ -85,7 +88,8 @@ fn buffers() -> Buffers {
             first_vertex: buffers.vertices.len() as u32,
             center: sphere.vector(&mut random),
             radius: sphere.number(&mut random),
-            area: sphere.vector(&mut random),
+            normal: sphere.vector(&mut random),
+            area: sphere.number(&mut random),
             vertex_count,
             flags: random.bits() & GpuLight::TWO_SIDED,
             texture_layer: GpuLight::NO_TEXTURE,
@@ -95,6 +99,8 @@ fn buffers() -> Buffers {
             let [x, y, z] = outline.vector(&mut random);
             buffers.vertices.push([x, y, z, outline.number(&mut random)]);
         }
+        // Where a light's image is, if it has one
+        buffers.vertices.extend([[0.0; 4]; IMAGE_ROWS]);
         let glossy = (index % 2) as f32;
         buffers.cases.push(GpuCase {
             normal: surface.vector(&mut random),
@@ -211,18 +217,17 @@ fn every_bit_pattern_gives_a_form_factor() {
     }
 }
 
-/// A light's image anywhere: its place, and what of it is shown.
+/// A light's image anywhere: its place, and the part of it.
 fn show_images(given: &mut Buffers) {
     let mut random = Random::new(22);
     for light in &mut given.lights {
         let numbers = Numbers::choose(&mut random);
         light.texture_layer = 0;
-        light.texture_corner = numbers.vector(&mut random);
-        light.texture_axis_u = numbers.vector(&mut random);
-        light.texture_axis_v = numbers.vector(&mut random);
-        let numbers = Numbers::choose(&mut random);
-        light.texture_low = std::array::from_fn(|_| numbers.number(&mut random));
-        light.texture_size = std::array::from_fn(|_| numbers.number(&mut random));
+        let first = (light.first_vertex + light.vertex_count) as usize;
+        for row in &mut given.vertices[first..first + IMAGE_ROWS] {
+            let [x, y, z] = numbers.vector(&mut random);
+            *row = [x, y, z, numbers.number(&mut random)];
+        }
     }
 }
 

@@ -29,7 +29,7 @@ fn pairs(rung: Rung, seed: u64, size: f64, [inner, outer]: [f64; 2], lift: f64) 
         let radius = ([inner, outer][index % 2] * distance) as f32;
         assert!(radius > light.radius, "the vertices fit in");
         // The area is stored as a part of the radius squared
-        light.area = light.area.map(|a| a * (light.radius / radius) * (light.radius / radius));
+        light.area *= (light.radius / radius) * (light.radius / radius);
         light.radius = radius;
     }
     property

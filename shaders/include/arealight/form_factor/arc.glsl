@@ -20,12 +20,12 @@
 // What the sum of arcs is multiplied with.
 const float AREALIGHT_PER_ARC = -AREALIGHT_INVERSE_TWO_PI;
 
-// Squared lengths below this count as zero: 2^-120, so that it changes no bit of distances down to 1e-14.
-const float AREALIGHT_LEAST_SQUARE = 7.52316384526264e-37;
+// Squared lengths below this count as this: float32's smallest normal number, 2^-126.
+const float AREALIGHT_LEAST_SQUARE = 1.17549435e-38;
 
-// The direction of v, for lengths from 1e-14 to 1e18; 0 for zero, NaN where a component is.
+// The direction of v, for lengths from 1.1e-19 to 1.8e19; 0 for zero, NaN where a component is.
 vec3 arealight_unit(vec3 v) {
-    return v * inversesqrt(dot(v, v) + AREALIGHT_LEAST_SQUARE);
+    return v * inversesqrt(max(dot(v, v), AREALIGHT_LEAST_SQUARE));
 }
 
 // s theta / sin(theta) of an arc with y = 2 cos(theta / 2), from sqrt(AREALIGHT_LEAST_SQUARE) to 2: relative error 7e-8
@@ -61,7 +61,7 @@ vec3 arealight_horizon_arc(vec2 a, vec2 b) {
 // sum of two vectors, which cancel only where the ends are opposite.
 vec2 arealight_crossing(vec3 above, vec3 below) {
     vec2 point = below.xy * above.z - above.xy * below.z;
-    return point * inversesqrt(dot(point, point) + AREALIGHT_LEAST_SQUARE);
+    return point * inversesqrt(max(dot(point, point), AREALIGHT_LEAST_SQUARE));
 }
 
 // The point in which that edge meets the horizon.

@@ -38,7 +38,7 @@ vec3 arealight_base(ArealightAnchor anchor) {
 // The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space.
 ArealightAnchor arealight_anchor(vec3 position, float extent, float horizon) {
     float square = dot(position, position);
-    float reciprocal = inversesqrt(square + AREALIGHT_LEAST_SQUARE);
+    float reciprocal = inversesqrt(max(square, AREALIGHT_LEAST_SQUARE));
     bool distant = 4.0 * extent * extent <= square;
     return ArealightAnchor(position, square * reciprocal, reciprocal, distant, horizon);
 }
@@ -52,7 +52,7 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset) {
     vec3 position = anchor.position + offset;
     vertex.offset = anchor.distant ? offset : position;
     vertex.square = dot(position, position);
-    float reciprocal = inversesqrt(vertex.square + AREALIGHT_LEAST_SQUARE);
+    float reciprocal = inversesqrt(max(vertex.square, AREALIGHT_LEAST_SQUARE));
     vertex.unit = position * reciprocal;
     // Whether a light in the plane of the surface is above or below must not depend on the last bit
     vertex.unit.z = abs(vertex.unit.z) > anchor.horizon ? vertex.unit.z : 0.0;
