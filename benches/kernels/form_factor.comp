@@ -7,14 +7,12 @@ layout(local_size_x = 64) in;
 
 #include "arealight/form_factor.glsl"
 
-// AREALIGHT_FORM_FACTOR_* bits, plus one of the shapes; or a yardstick. See benches/src/method.rs.
+// AREALIGHT_FORM_FACTOR_*, plus one of the shapes; or a yardstick. See benches/src/method.rs.
 layout(constant_id = 0) const int METHOD = 0;
 
-const int METHOD_RUNG = 7;
+const int METHOD_RUNG = 1;
 const int METHOD_WALK = 0;
 const int METHOD_QUAD = 8;
-const int METHOD_BARE_QUAD = 16;
-const int METHOD_BARE_WALK = 24;
 const int METHOD_TEXTBOOK = 32;
 const int METHOD_PRACTICE = 33;
 
@@ -60,75 +58,32 @@ vec3 yardstick_vertex(uint index) {
 #include "yardsticks.glsl"
 
 // A convex polygon of up to four vertices; the last one of a triangle comes twice.
-ArealightQuad polygon_quad(uint count, vec3 shift) {
+ArealightQuad polygon_quad(uint count) {
     uint last = min(count, 4u) - 1u;
-    return ArealightQuad(polygon_offset(0u) - shift, polygon_offset(1u) - shift, polygon_offset(min(2u, last)) - shift,
-                         polygon_offset(last) - shift);
+    return ArealightQuad(polygon_offset(0u), polygon_offset(1u), polygon_offset(min(2u, last)), polygon_offset(last));
 }
 
 // The library's form factor of a convex polygon of up to four vertices.
-float library_quad(ArealightAnchor anchor, uint count, bool bare, int rung) {
-    ArealightQuad quad = polygon_quad(count, vec3(0.0));
-    if (bare) {
-        return arealight_form_factor(arealight_quad_bare(anchor, quad, rung), true);
-    }
-    return arealight_form_factor(arealight_quad_clipped(anchor, quad, rung), true);
+float library_quad(ArealightAnchor anchor, uint count, int rung) {
+    return arealight_form_factor(arealight_quad_clipped(anchor, polygon_quad(count), rung), true);
 }
 
 // The library's form factor of any polygon.
-float library_walk(ArealightAnchor anchor, uint count, bool bare, int rung) {
+float library_walk(ArealightAnchor anchor, uint count, int rung) {
     ArealightWalk walk = arealight_walk_begin();
     ArealightVertex from = arealight_vertex(anchor, polygon_offset(count - 1u), rung);
     for (uint index = 0u; index < count; index++) {
         ArealightVertex to = arealight_vertex(anchor, polygon_offset(index), rung);
-        if (bare) {
-            walk.sum += arealight_acute_arc(from, to, rung);
-            walk.squares += to.square;
-        } else {
-            arealight_walk_edge(walk, anchor, from, to, rung);
-        }
+        arealight_walk_edge(walk, anchor, from, to, rung);
         from = to;
-    }
-    if (bare) {
-        return arealight_form_factor(ArealightArcs(walk.sum, walk.squares), true);
     }
     return arealight_form_factor(arealight_walk_end(walk, anchor, rung), true);
 }
 
-// The library's one-point form of a convex polygon of up to four vertices, where it is enough; else -1.
-float library_one_point(vec3 anchor, uint count) {
-    // The centre of the area: of the triangles' two centres, weighted
-    ArealightQuad quad = polygon_quad(count, vec3(0.0));
-    vec3 area_a = cross(quad.v1 - quad.v0, quad.v2 - quad.v0);
-    vec3 area_b = cross(quad.v2 - quad.v0, quad.v3 - quad.v0);
-    vec3 center_a = (quad.v0 + quad.v1 + quad.v2) / 3.0;
-    vec3 center_b = (quad.v0 + quad.v2 + quad.v3) / 3.0;
-    float total = length(area_a) + length(area_b);
-    vec3 shift = total > 0.0 ? (center_a * length(area_a) + center_b * length(area_b)) / total : center_a;
-    vec3 center = anchor + shift;
-    quad = polygon_quad(count, shift);
-    float square = max(max(dot(quad.v0, quad.v0), dot(quad.v1, quad.v1)),
-                       max(dot(quad.v2, quad.v2), dot(quad.v3, quad.v3)));
-    if (arealight_is_far(center, sqrt(square))) {
-        return arealight_form_factor(arealight_one_point(center, -0.5 * dot(area_a + area_b, center)), true);
-    }
-    return -1.0;
-}
-
-// The library's form factor. The bare forms are used where the library's own test says that they are enough.
+// The library's form factor.
 float library_form_factor(vec3 anchor, uint count, float extent, int shape, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0) {
-        float form_factor = library_one_point(anchor, count);
-        if (form_factor >= 0.0) {
-            return form_factor;
-        }
-    }
     ArealightAnchor at = arealight_anchor(anchor, extent, rung);
-    bool bare = shape >= METHOD_BARE_QUAD && arealight_is_bare(anchor, extent);
-    if (shape == METHOD_QUAD || shape == METHOD_BARE_QUAD) {
-        return library_quad(at, count, bare, rung);
-    }
-    return library_walk(at, count, bare, rung);
+    return shape == METHOD_QUAD ? library_quad(at, count, rung) : library_walk(at, count, rung);
 }
 
 void main() {

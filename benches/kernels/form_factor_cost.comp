@@ -11,10 +11,9 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const int METHOD = 0;
 layout(constant_id = 1) const int REPEATS = 1;
 
-// AREALIGHT_FORM_FACTOR_* bits, plus one of these; or a yardstick. See benches/src/cost.rs.
-const int METHOD_RUNG = 3;
+// AREALIGHT_FORM_FACTOR_*, plus one of these; or a yardstick. See benches/src/cost.rs.
+const int METHOD_RUNG = 1;
 const int METHOD_QUAD = 0;
-const int METHOD_BARE = 4;
 const int METHOD_BOTH = 8;
 const int METHOD_WALK = 12;
 const int METHOD_NOTHING = 16;
@@ -50,9 +49,6 @@ ArealightArcs library_arcs(vec3 center, ArealightQuad quad) {
     int rung = METHOD & METHOD_RUNG;
     int shape = METHOD & ~METHOD_RUNG;
     ArealightAnchor anchor = arealight_anchor(center, 1.0, rung);
-    if (shape == METHOD_BARE) {
-        return arealight_quad_bare(anchor, quad, rung);
-    }
     if (shape == METHOD_BOTH) {
         vec3 normal = vec3(0.6, 0.0, 0.8);
         vec4 height = dot(normal, center)

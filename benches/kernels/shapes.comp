@@ -14,18 +14,16 @@ layout(constant_id = 2) const int CHOICE = 0;
 layout(constant_id = 3) const int REPEATS = 1;
 
 const int FUNCTION_ELLIPSE = 0;
-const int FUNCTION_ELLIPSE_BARE = 1;
-const int FUNCTION_ELLIPSE_VECTOR = 2;
-const int FUNCTION_SPHERE = 3;
-const int FUNCTION_SILHOUETTE = 4;
-const int FUNCTION_ARCTANGENT = 5;
-const int FUNCTION_PUBLISHED = 6;
-const int FUNCTION_TUBE = 7;
-const int FUNCTION_LOBE = 8;
-const int FUNCTION_PUBLISHED_CHEAP = 9;
-const int FUNCTION_SPHERE_HORIZON = 10;
-const int FUNCTION_POLYGON = 11;
-const int FUNCTION_NOTHING = 12;
+const int FUNCTION_SPHERE = 1;
+const int FUNCTION_SILHOUETTE = 2;
+const int FUNCTION_ARCTANGENT = 3;
+const int FUNCTION_PUBLISHED = 4;
+const int FUNCTION_TUBE = 5;
+const int FUNCTION_LOBE = 6;
+const int FUNCTION_PUBLISHED_CHEAP = 7;
+const int FUNCTION_SPHERE_HORIZON = 8;
+const int FUNCTION_POLYGON = 9;
+const int FUNCTION_NOTHING = 10;
 
 #include "arealight/shapes.glsl"
 #include "published_disk.glsl"
@@ -76,11 +74,16 @@ float lobe_of(ShapeArguments given, bool sphere) {
     return arealight_lobe_shape(lobe, vec3(0.0, 0.0, 1.0), seen, shape, false, 0xffffffffu, quality).x;
 }
 
-// The whole ellipse's form factor, exactly, and a sphere's horizon.
+// The whole ellipse's form factor along its cone's axis, exactly, and a sphere's horizon.
 float sphere_horizon(ShapeArguments given) {
-    vec3 vector = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
-    float whole = length(vector);
-    return whole > 0.0 ? published_horizon(min(whole, 1.0), vector.z / whole) : 0.0;
+    ArealightEllipse ellipse = arealight_ellipse(given.a.xyz, given.b.xyz, given.c.xyz);
+    float root = arealight_confocal_root(ellipse);
+    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
+    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
+    float area = ellipse.center.z * ellipse.major * ellipse.minor;
+    float whole = area * sqrt(reciprocals.x) * sqrt(reciprocals.y) * inversesqrt(dot(axis, axis));
+    float cosine = normalize(ellipse.frame * axis).z;
+    return whole > 0.0 ? published_horizon(min(whole, 1.0), cosine) : 0.0;
 }
 
 // An inscribed polygon of CHOICE vertices, grown until it has the ellipse's area.
@@ -106,17 +109,13 @@ vec4 evaluate(ShapeArguments given, int tube_ends) {
     vec4 result = vec4(0.0);
     if (FUNCTION == FUNCTION_ELLIPSE) {
         result.x = arealight_ellipse_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
-    } else if (FUNCTION == FUNCTION_ELLIPSE_BARE) {
-        result.x = arealight_ellipse_bare(given.a.xyz, given.b.xyz, given.c.xyz, two_sided, RUNG);
-    } else if (FUNCTION == FUNCTION_ELLIPSE_VECTOR) {
-        result.xyz = arealight_ellipse_vector_form_factor(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
     } else if (FUNCTION == FUNCTION_SPHERE) {
         result.x = arealight_sphere_form_factor(given.a.xyz, given.a.w, two_sided, RUNG);
     } else if (FUNCTION == FUNCTION_SILHOUETTE) {
         mat3 transform = mat3(given.b.xyz, given.c.xyz, given.d.xyz);
         result = silhouette_of(given.a.xyz, given.a.w, transform, two_sided);
     } else if (FUNCTION == FUNCTION_ARCTANGENT) {
-        result.x = arealight_arctangent(given.a.y, given.a.x, RUNG);
+        result.x = arealight_arctangent(given.a.y, given.a.x);
     } else if (FUNCTION == FUNCTION_TUBE) {
         ArealightTube tube = arealight_tube(given.a.xyz, given.b.xyz, given.a.w, tube_ends);
         // The matrix's rows, of which the last one is of unit length

@@ -25,9 +25,9 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define CASES_BINDING 3
 #include "cases.glsl"
 
-vec3 article_lobe(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen, ArealightPolygonLight light,
-                  ArealightArcs walked, ArealightQuad quad, ArealightQuality quality) {
-    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, walked, quad, EFFECTS, quality);
+vec3 article_lobe(ArealightLobe lobe, ArealightLobeView view, ArealightPolygonLight light, ArealightArcs walked,
+                  ArealightQuad quad, ArealightQuality quality) {
+    ArealightArcs arcs = arealight_lobe_arcs(view, walked, quad, EFFECTS, quality);
     ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
     // The foot of the perpendicular: the plane met along its normal
     ArealightSeenPoint foot = arealight_seen_point(image, image.normal);
@@ -50,10 +50,10 @@ void main() {
     ArealightQuad quad = arealight_light_quad(light);
     ArealightLobeViews views = arealight_lobe_views(point, seen, quality.form_factor);
     ArealightLobeArcs walked = arealight_walk_light(views, light, EFFECTS, quality);
-    vec3 reflected = article_lobe(point.glossy, views.glossy, seen, light, walked.glossy, quad, quality)
-                   + article_lobe(point.diffuse, views.diffuse, seen, light, walked.diffuse, quad, quality);
+    vec3 reflected = article_lobe(point.glossy, views.glossy, light, walked.glossy, quad, quality)
+                   + article_lobe(point.diffuse, views.diffuse, light, walked.diffuse, quad, quality);
     if (FRESNEL == AREALIGHT_FRESNEL_SPLIT) {
-        reflected += article_lobe(point.schlick, views.schlick, seen, light, walked.schlick, quad, quality);
+        reflected += article_lobe(point.schlick, views.schlick, light, walked.schlick, quad, quality);
     }
     results[index] = vec4(light.radiance * reflected, 0.0);
 }

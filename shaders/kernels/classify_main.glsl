@@ -1,7 +1,7 @@
 #ifndef CLASSIFY_MAIN_GLSL
 #define CLASSIFY_MAIN_GLSL
 
-// Sorts tiles of 8 x 8 pixels into classes by the lights that matter to them and by how those are to be clipped: an item a
+// Sorts tiles of 8 x 8 pixels into classes by the lights that matter to them: an item a
 // tile. It goes over the tile's pixels once, for bounds of what they are, and holds each light against the bounds, not
 // the pixels. Nothing is shared. What is found holds for every pixel of the tile:
 //
@@ -9,8 +9,7 @@
 //   a light of one side.
 // - With CULL lights are left out too which together send less than the fraction `negligible` of what the others do, from each
 //   pixel, in the sum of the channels (tile_reach.glsl).
-// - A light is not clipped where it is wholly above the horizons of both lobes.
-// - Shapes have no lists: a tile is shaded by all of them, if one of them reaches it. Where each is wholly above, disks take their short way.
+// - Shapes have no lists: a tile is shaded by all of them, if one of them reaches it.
 //
 // Horizons. Lambert's is the surface. That of a fitted lobe is a plane through the point as well: its normal is
 // proportional to mirror + q across (table.glsl), with the ratio q = z / w of the texel that the table gives. With p = q / sin,
@@ -175,10 +174,9 @@ TileBounds tile_bounds(ivec2 corner) {
     return bounds;
 }
 
-// Whether some pixel of a tile may need a light, and has to clip it.
+// Whether some pixel of a tile may need a light.
 struct Verdict {
     bool is_needed;
-    bool is_above;
     vec2 reach; // the least and the most that it sends, with CULL alone
 };
 
@@ -203,7 +201,6 @@ Verdict judge_place(TileBounds bounds, TileLight seen, bool two_sided) {
 
     TileSide surface = tile_side(bounds.surface, seen);
     bool is_diffuse = HAS_DIFFUSE && bounds.is_diffuse;
-    bool is_above = !is_diffuse || surface.above;
     bool is_below = !is_diffuse || surface.below;
     if (HAS_GLOSSY) {
         TileSide lobe = tile_side(bounds.lobe, seen);
@@ -211,10 +208,9 @@ Verdict judge_place(TileBounds bounds, TileLight seen, bool two_sided) {
         if (HORIZON == AREALIGHT_HORIZON_BOTH) {
             lobe = TileSide(lobe.above && surface.above, lobe.below || surface.below);
         }
-        is_above = is_above && lobe.above;
         is_below = is_below && lobe.below;
     }
-    return Verdict(!bounds.is_known || !(is_behind || is_below), is_above && bounds.is_known, vec2(0.0, TILE_FAR));
+    return Verdict(!bounds.is_known || !(is_behind || is_below), vec2(0.0, TILE_FAR));
 }
 
 Verdict judge(TileBounds bounds, ArealightGpuLight light) {
@@ -237,9 +233,9 @@ Verdict judge(TileBounds bounds, ArealightGpuLight light) {
     return verdict;
 }
 
-// Whether a tile needs the shapes, and has to clip any.
-Verdict judge_shapes(TileBounds bounds) {
-    Verdict all = Verdict(false, true, vec2(0.0));
+// Whether a tile needs the shapes.
+bool judge_shapes(TileBounds bounds) {
+    bool is_needed = false;
     for (uint index = 0u; index < constants.shape_count; index++) {
         ArealightShape shape = load_shape(index, SHAPE_ANY);
         bool is_ellipse = shape.kind == AREALIGHT_SHAPE_ELLIPSE;
@@ -248,10 +244,9 @@ Verdict judge_shapes(TileBounds bounds) {
         float radius = shape.radius + (is_tube ? sqrt(dot(shape.axis_u, shape.axis_u)) : 0.0);
         // Spheres and tubes have no back
         Verdict verdict = judge_place(bounds, see(bounds, shape.center, radius, normal), shape.two_sided);
-        all.is_needed = all.is_needed || verdict.is_needed;
-        all.is_above = all.is_above && verdict.is_above;
+        is_needed = is_needed || verdict.is_needed;
     }
-    return all;
+    return is_needed;
 }
 
 // What a light may send at most to be left out: so much that those below it together are negligible beside the rest.
@@ -294,16 +289,11 @@ uint write_record(TileBounds bounds, uvec2 tile) {
     uint first = tile_record(tile);
     uint quads = 0u;
     uint total = 0u;
-    Verdict shapes = Verdict(false, true, vec2(0.0));
-    if (HAS_SHAPES) {
-        shapes = judge_shapes(bounds);
-    }
-    bool all_above = shapes.is_above;
+    bool has_shapes = HAS_SHAPES && judge_shapes(bounds);
     float negligible = negligible_reach(bounds);
     for (uint index = 0u; index < constants.light_count; index++) {
         Verdict verdict = judge(bounds, light_record(index));
         if (verdict.is_needed && !(verdict.reach.y < negligible)) {
-            all_above = all_above && verdict.is_above;
             if (total < constants.capacity) {
                 tile_lists[first + TILE_RECORD_HEADER + total] = index;
             }
@@ -317,13 +307,10 @@ uint write_record(TileBounds bounds, uvec2 tile) {
     if (!is_listed) {
         return constants.quad_count < constants.light_count ? CLASS_ANY : CLASS_QUADS;
     }
-    if (total == 0u && !shapes.is_needed) {
+    if (total == 0u && !has_shapes) {
         return CLASS_EMPTY;
     }
-    if (quads == total) {
-        return all_above ? CLASS_QUADS_ABOVE : CLASS_QUADS;
-    }
-    return all_above ? CLASS_ABOVE : CLASS_ANY;
+    return quads == total ? CLASS_QUADS : CLASS_ANY;
 }
 
 // Adds the tile to the list of a class, and a group to the class's dispatch.

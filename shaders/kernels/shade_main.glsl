@@ -18,7 +18,6 @@ layout(push_constant, std430) uniform ShadeConstants {
 
 const bool HAS_LIGHTS = true;
 const bool HAS_OTHERS = (EFFECTS & BEYOND_QUADS) != 0u;
-const bool IS_ABOVE = false;
 
 // The lights of the buffer.
 struct LightList {

@@ -6,7 +6,7 @@
 
 #include "shade_resources.glsl"
 
-layout(constant_id = 12) const uint CLASS = 4u;
+layout(constant_id = 12) const uint CLASS = 2u;
 
 #define TILE_LISTS_BINDING 11
 #define TILE_LISTS_ACCESS readonly
@@ -15,8 +15,7 @@ layout(constant_id = 12) const uint CLASS = 4u;
 const bool HAS_LIGHTS = CLASS != CLASS_EMPTY;
 const bool HAS_QUADS = true;
 const bool HAS_OTHERS = (EFFECTS & BEYOND_QUADS) != 0u
-                     && (CLASS == CLASS_ABOVE || CLASS == CLASS_ANY || CLASS == TILE_NOT_CLASSIFIED);
-const bool IS_ABOVE = CLASS == CLASS_QUADS_ABOVE || CLASS == CLASS_ABOVE;
+                     && (CLASS == CLASS_ANY || CLASS == TILE_NOT_CLASSIFIED);
 
 // The lights of a tile, or those of the buffer.
 struct LightList {

@@ -8,13 +8,11 @@ const int TILE_SIDE = 8;
 
 // The classes of tiles; crates/arealight/src/tiles.rs tells what they are.
 const uint CLASS_EMPTY = 0u;
-const uint CLASS_QUADS_ABOVE = 1u;
-const uint CLASS_QUADS = 2u;
-const uint CLASS_ABOVE = 3u;
-const uint CLASS_ANY = 4u;
+const uint CLASS_QUADS = 1u;
+const uint CLASS_ANY = 2u;
 
 // In the place of a class: all tiles of a frame, none of which was classified.
-const uint TILE_NOT_CLASSIFIED = 5u;
+const uint TILE_NOT_CLASSIFIED = 3u;
 
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
@@ -23,7 +21,7 @@ const uint TILE_NOT_CLASSIFIED = 5u;
 // - for each tile a record: how many of its lights are quads, how many there are in all (or TILE_ALL_LIGHTS twice, for those
 //   of the buffer), and their indices in the order of the buffer, in as many words as the capacity says.
 const uint TILE_CLASS_WORDS = 4u;
-const uint TILE_FIRST_LIST = 20u;
+const uint TILE_FIRST_LIST = 12u;
 const uint TILE_RECORD_HEADER = 2u;
 const uint TILE_ALL_LIGHTS = 0xffffffffu;
 

@@ -13,7 +13,6 @@ const int FUNCTION_COMMON = 1;
 const int FUNCTION_TABLE = 2;
 const int FUNCTION_GGX = 3;
 const int FUNCTION_ARC = 4;
-const int FUNCTION_LIGHT = 5;
 
 #include "arealight/form_factor.glsl"
 #include "arealight/ggx.glsl"
@@ -78,14 +77,8 @@ ProbeResults arc_of(vec3 from, vec3 to, int rung) {
     ArealightVertex b = arealight_vertex(nowhere, to, rung);
     ArealightCrossing crossing = arealight_crossing(nowhere, a, b, rung);
     ArealightVertex on_horizon = arealight_horizon_vertex(nowhere, crossing, a.unit.z > 0.0 ? 1.0 : -1.0, rung);
-    return ProbeResults(vec4(a.unit, arealight_arc(a, b, rung).z), vec4(b.unit, arealight_acute_arc(a, b, rung).z),
+    return ProbeResults(vec4(a.unit, arealight_arc(a, b, rung).z), vec4(b.unit, 0.0),
                         vec4(on_horizon.unit, 0.0), vec4(0.0));
-}
-
-ProbeResults light_of(vec3 center, float extent) {
-    return ProbeResults(vec4(arealight_is_bare(center, extent) ? 1.0 : 0.0, arealight_is_far(center, extent) ? 1.0 : 0.0,
-                             0.0, 0.0),
-                        vec4(0.0), vec4(0.0), vec4(0.0));
 }
 
 void main() {
@@ -103,10 +96,8 @@ void main() {
         result = table_of(given.a.xyz, given.b.xyz, given.a.w);
     } else if (FUNCTION == FUNCTION_GGX) {
         result = ggx_of(given.a.xyz, given.b.xyz, given.a.w, given.c.xy);
-    } else if (FUNCTION == FUNCTION_ARC) {
-        result = arc_of(given.a.xyz, given.b.xyz, int(given.a.w));
     } else {
-        result = light_of(given.a.xyz, given.a.w);
+        result = arc_of(given.a.xyz, given.b.xyz, int(given.a.w));
     }
     results[index] = result;
 }

@@ -24,29 +24,20 @@ pub enum TileClass {
     /// No surface, or no light that reaches it. Its pipeline writes that, where pixels are overwritten; where they are added
     /// to it has none.
     Empty = 0,
-    /// Convex quads without images that are wholly above the horizon of each lobe, at every pixel.
-    QuadsAbove = 1,
-    /// Convex quads without images, some of which have to be clipped.
-    Quads = 2,
-    /// Other lights, of any outline or with images, beside such quads; none of them has to be clipped.
-    Above = 3,
+    /// Convex quads without images.
+    Quads = 1,
     /// Any lights; and all lights, where a tile's list does not hold them.
-    Any = 4,
+    Any = 2,
 }
 
 impl TileClass {
     /// Every class, by number.
-    pub const ALL: [Self; 5] = [Self::Empty, Self::QuadsAbove, Self::Quads, Self::Above, Self::Any];
-
-    /// Whether nothing is clipped.
-    pub fn is_above(self) -> bool {
-        matches!(self, Self::QuadsAbove | Self::Above)
-    }
+    pub const ALL: [Self; 3] = [Self::Empty, Self::Quads, Self::Any];
 
     /// What is left of a frame's effects in its pipeline.
     pub fn effects(self, frame: Effects) -> Effects {
         match self {
-            Self::Above | Self::Any => frame,
+            Self::Any => frame,
             _ => frame - Effects::BEYOND_QUADS,
         }
     }
@@ -55,8 +46,8 @@ impl TileClass {
     pub fn is_called_for(self, frame: Effects, output: Output) -> bool {
         match self {
             Self::Empty => output == Output::Overwrite,
-            Self::QuadsAbove | Self::Quads => true,
-            Self::Above | Self::Any => frame.intersects(Effects::BEYOND_QUADS),
+            Self::Quads => true,
+            Self::Any => frame.intersects(Effects::BEYOND_QUADS),
         }
     }
 
@@ -64,9 +55,7 @@ impl TileClass {
     pub fn name(self) -> &'static str {
         match self {
             Self::Empty => "empty",
-            Self::QuadsAbove => "quads above",
             Self::Quads => "quads",
-            Self::Above => "above",
             Self::Any => "any",
         }
     }
@@ -120,6 +109,6 @@ mod tests {
 
     #[test]
     fn memory_is_that_of_whole_tiles() {
-        assert_eq!(memory([17, 8], 64), (20 + 3 * (5 + 2 + 64)) * 4);
+        assert_eq!(memory([17, 8], 64), (12 + 3 * (3 + 2 + 64)) * 4);
     }
 }

@@ -43,7 +43,7 @@ vec3 arealight_base(ArealightAnchor anchor) {
 
 // The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space.
 ArealightAnchor arealight_anchor(vec3 position, float extent, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
+    if (rung != AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         return ArealightAnchor(position, 0.0, 0.0, false, AREALIGHT_HORIZON_WIDTH);
     }
     float square = dot(position, position);
@@ -69,7 +69,7 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) 
     // must not hang on the last bit
     vertex.unit.z = abs(vertex.unit.z) > anchor.horizon ? vertex.unit.z : 0.0;
     vertex.chord = vertex.unit;
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         float excess = dot(offset, anchor.position + position);
         float shortening = excess * anchor.reciprocal / (anchor.distance + vertex.square * reciprocal + AREALIGHT_TINY);
         vec3 chord = (offset - anchor.position * shortening) * reciprocal;
@@ -78,74 +78,54 @@ ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset, int rung) 
     return vertex;
 }
 
-// s theta / sin(theta) of an arc with y = 2 cos(theta / 2): relative error of exact 7e-8, of fast 2.7e-5, both
-// before rounding. For y from sqrt(AREALIGHT_TINY) to 2.
-vec3 arealight_arc_weight(vec3 s, float y, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
-        return s * (3.1415105 + y * (0.26598448 - y * 0.015983904)) / (y + y * y * 0.40240955);
-    }
+// s theta / sin(theta) of an arc with y = 2 cos(theta / 2): relative error 7e-8 before rounding. For y from
+// sqrt(AREALIGHT_TINY) to 2.
+vec3 arealight_arc_weight(vec3 s, float y) {
     return s * (3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
          / (y + y * y * (0.66850024 + y * 0.096849829));
 }
 
-// s (theta / sin(theta) - 1) of an arc whose chord has the squared length `square`: relative error of exact 1.5e-7,
-// of fast 7e-5.
-vec3 arealight_arc_excess(vec3 s, float y, float square, int rung) {
+// s (theta / sin(theta) - 1) of an arc whose chord has the squared length `square`: relative error 1.5e-7.
+vec3 arealight_arc_excess(vec3 s, float y, float square) {
     vec3 scaled = 0.25 * square * s;
-    if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
-        return scaled * (3.1418085 + y * (-0.15366498 + y * 0.017586168)) / (y + y * y * 0.58923405);
-    }
     return scaled * (3.14159298 + y * (0.806142926 + y * (-0.00320804934 + y * 0.000173867855)))
          / (y + y * y * (0.893227518 + y * 0.192593366));
 }
 
 // The angle from a to b times the unit normal of their plane, radians.
 //
-// Error of the exact rung: 3.6e-7 of one radian or of the angle, whichever is larger; of the fast one 2.7e-5 of the
-// result more. In the difference form, what a x b has from the anchor is left out: it cancels in the sum over a
+// Error: 3.6e-7 of one radian or of the angle, whichever is larger. In the difference form, what a x b has from the anchor is left out: it cancels in the sum over a
 // closed outline, and with it what would be the error of a small one. There the sum's error is relative to the square
 // of the outline's angular size.
 vec3 arealight_arc(ArealightVertex a, ArealightVertex b, int rung) {
     vec3 middle = a.unit + b.unit;
     float y = sqrt(dot(middle, middle) + AREALIGHT_TINY);
     vec3 s = cross(a.unit, middle);
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         vec3 chord = b.chord - a.chord;
-        return cross(a.chord, chord) + arealight_arc_excess(s, y, dot(chord, chord), rung);
+        return cross(a.chord, chord) + arealight_arc_excess(s, y, dot(chord, chord));
     }
-    return arealight_arc_weight(s, y, rung);
+    return arealight_arc_weight(s, y);
 }
 
 // s theta / sin(theta) of an angle of at most a right one with the cosine x: errors as arealight_arc_weight's.
-vec3 arealight_acute_weight(vec3 s, float x, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
-        return s * (1.5707552 + x * (0.26598448 - x * 0.031967809)) / (1.0 + x * 0.80481912);
-    }
+vec3 arealight_acute_weight(vec3 s, float x) {
     return s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
          / (1.0 + x * (1.3370004 + x * 0.38739931));
-}
-
-// As arealight_arc, for an angle of at most a right one. The difference form gains nothing from that, and is the same.
-vec3 arealight_acute_arc(ArealightVertex a, ArealightVertex b, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
-        return arealight_arc(a, b, rung);
-    }
-    return arealight_acute_weight(cross(a.unit, b.unit), dot(a.unit, b.unit), rung);
 }
 
 // The arc along the horizon from a to b, both on it: its z is the angle between them, in (-pi, pi].
 //
 // An obtuse angle is pi less the one to the opposite direction. arealight_arc would have the rounding of their lengths in
-// the y of nearly opposite ends, which for an edge is as if a vertex had moved, but not here. The series is the exact
-// one on every rung: it is taken once.
+// the y of nearly opposite ends, which for an edge is as if a vertex had moved, but not here.
 vec3 arealight_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
     // Seen from a distance no angle is obtuse; else chords are the directions themselves
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0 && anchor.distant) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE && anchor.distant) {
         return arealight_arc(a, b, rung);
     }
     float x = dot(a.unit.xy, b.unit.xy);
     float s = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
-    float acute = arealight_acute_weight(vec3(0.0, 0.0, s), abs(x), AREALIGHT_FORM_FACTOR_EXACT).z;
+    float acute = arealight_acute_weight(vec3(0.0, 0.0, s), abs(x)).z;
     return vec3(0.0, 0.0, x < 0.0 ? (s < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }
 
@@ -159,7 +139,7 @@ struct ArealightCrossing {
 // The crossing of the edge from a to b, one end being above the horizon and the other not: a sum of two vectors, which
 // cancel only where the ends are opposite. There rounding is as if an end had moved by 2^-24 of its distance.
 ArealightCrossing arealight_crossing(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         float base = arealight_base(anchor).z;
         float a_height = a.unit.z == 0.0 ? 0.0 : base + a.offset.z;
         float b_height = b.unit.z == 0.0 ? 0.0 : base + b.offset.z;
@@ -171,7 +151,7 @@ ArealightCrossing arealight_crossing(ArealightAnchor anchor, ArealightVertex a, 
 // The vertex at a crossing. `direction` is +1 for an edge that goes down, -1 for one that comes up.
 ArealightVertex arealight_horizon_vertex(ArealightAnchor anchor, ArealightCrossing crossing, float direction,
                                          int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         vec2 along = crossing.point / (crossing.height == 0.0 ? 1.0 : crossing.height);
         anchor.position = arealight_base(anchor);
         return arealight_vertex(anchor, vec3(along, -anchor.position.z), rung);

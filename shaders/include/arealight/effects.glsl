@@ -16,8 +16,6 @@ const uint AREALIGHT_EFFECT_SPECULAR_INPUT = 8u;
 const uint AREALIGHT_EFFECT_POLYGON = 16u;
 // Some light shows an image.
 const uint AREALIGHT_EFFECT_TEXTURED = 32u;
-// Some light may be far enough for AREALIGHT_FORM_FACTOR_ONE_POINT, which is ignored without.
-const uint AREALIGHT_EFFECT_FAR = 64u;
 // Some light is a disk or an ellipse.
 const uint AREALIGHT_EFFECT_ELLIPSE = 256u;
 // Some light is a sphere.
@@ -29,18 +27,13 @@ const uint AREALIGHT_EFFECT_MESH = 2048u;
 // Some disk or ellipse shows an image; AREALIGHT_EFFECT_ELLIPSE is set then, too.
 const uint AREALIGHT_EFFECT_TEXTURED_ELLIPSE = 4096u;
 
-// Rungs of the form factor, see form_factor.glsl: bits, of which none is the exact rung. The same as
-// arealight::Quality::form_factor_bits.
+// How edges are integrated, see form_factor.glsl. The same as arealight::FormFactor.
 const int AREALIGHT_FORM_FACTOR_EXACT = 0;
-const int AREALIGHT_FORM_FACTOR_FAST = 1;       // short series
-const int AREALIGHT_FORM_FACTOR_DIFFERENCE = 2; // relative precision for small lights
-const int AREALIGHT_FORM_FACTOR_ONE_POINT = 4;  // far lights from their centre alone, where that is precise enough
+const int AREALIGHT_FORM_FACTOR_DIFFERENCE = 1; // relative precision for small lights
 
 // Where polygons are clipped. The same as arealight::Horizon.
 const int AREALIGHT_HORIZON_COSINE = 0; // at the horizon of cosine space
 const int AREALIGHT_HORIZON_BOTH = 1;   // at the surface's horizon too, before the lobe's transform
-const int AREALIGHT_HORIZON_BARE = 2;   // nowhere: the host knows that arealight_is_bare holds, and the result is as COSINE's
-const int AREALIGHT_HORIZON_ABOVE = 3;  // nowhere: the host knows that lights are wholly above, and the result is as COSINE's
 
 // How Schlick's Fresnel term enters. The same as arealight::Fresnel.
 const int AREALIGHT_FRESNEL_BY_F0 = 0; // one integral, of the lobe between the table's two that the reflectance calls for
@@ -58,7 +51,7 @@ const int AREALIGHT_FOOTPRINT_SPLIT_FOUR = 3; // four by four parts
 
 // How a pass shades. Make the fields from specialisation constants or literals.
 struct ArealightQuality {
-    int form_factor; // AREALIGHT_FORM_FACTOR_* bits
+    int form_factor; // one of AREALIGHT_FORM_FACTOR_*
     int horizon;     // one of AREALIGHT_HORIZON_*
     int fresnel;     // one of AREALIGHT_FRESNEL_*
     int lobes;       // one of AREALIGHT_LOBES_*
@@ -67,8 +60,7 @@ struct ArealightQuality {
 
 // The quality of the Lambert lobe: the surface's horizon is that of its cosine space.
 ArealightQuality arealight_diffuse_quality(ArealightQuality quality) {
-    int horizon = quality.horizon == AREALIGHT_HORIZON_BOTH ? AREALIGHT_HORIZON_COSINE : quality.horizon;
-    return ArealightQuality(quality.form_factor, horizon, quality.fresnel, quality.lobes, quality.footprint);
+    return ArealightQuality(quality.form_factor, AREALIGHT_HORIZON_COSINE, quality.fresnel, quality.lobes, quality.footprint);
 }
 
 #endif

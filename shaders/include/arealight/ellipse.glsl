@@ -82,11 +82,8 @@ ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     return ellipse;
 }
 
-// cos(acos(k) / 3), from c = cos(acos(k) / 2) in [0, 1]: relative error of exact 3e-8, of fast 1.2e-5, before rounding.
-float arealight_third_of_angle(float c, int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_FAST) != 0) {
-        return 0.50000591 + c * (0.57696756 + c * (-0.10728466 + c * (0.039634933 - c * 0.0093355536)));
-    }
+// cos(acos(k) / 3), from c = cos(acos(k) / 2) in [0, 1]: relative error 3e-8 before rounding.
+float arealight_third_of_angle(float c) {
     float high = -0.030570029 + c * (0.016541836 + c * (-0.0064513453 + c * 0.0012316345));
     return 0.50000001 + c * (0.5773481 + c * (-0.11105764 + c * (0.052957459 + c * high)));
 }
@@ -96,9 +93,9 @@ float arealight_third_of_angle(float c, int rung) {
 // As a cubic, l^3 + p l^2 + q l - r = 0 with r > 0 has three real roots, one positive. Viete's formula gives the root
 // that is largest in size without cancellation: where p <= 0 it is the one that is wanted, else the other two have a
 // quadratic equation that gives it. The coefficients are differences of squares, taken as products. Relative error in
-// exact arithmetic: 5e-8, by the fast rung 2e-5; what the form factor has of it is less, and rounding is as if the
+// exact arithmetic: 5e-8; what the form factor has of it is less, and rounding is as if the
 // ellipse had moved by 2^-24 of its distance.
-float arealight_confocal_root(ArealightEllipse ellipse, int rung) {
+float arealight_confocal_root(ArealightEllipse ellipse) {
     float x = abs(ellipse.center.x);
     float y = abs(ellipse.center.y);
     float a2 = ellipse.major * ellipse.major;
@@ -116,7 +113,7 @@ float arealight_confocal_root(ArealightEllipse ellipse, int rung) {
     float radius = sqrt(radius_square);
     float cube = (size * (2.0 * p * p - 9.0 * q) + (p > 0.0 ? -27.0 : 27.0) * r) * (1.0 / 54.0);
     float k = clamp(cube / max(radius_square * radius, 1e-37), -1.0, 1.0);
-    float largest = 2.0 * radius * arealight_third_of_angle(sqrt(0.5 + 0.5 * k), rung) + size * (1.0 / 3.0);
+    float largest = 2.0 * radius * arealight_third_of_angle(sqrt(0.5 + 0.5 * k)) + size * (1.0 / 3.0);
     // Where that is negative, the others' quadratic equation l^2 - sum l - product = 0
     float reciprocal = 1.0 / max(largest, 1e-37);
     float product = r * reciprocal;
@@ -138,16 +135,7 @@ vec3 arealight_ellipse_cone_axis(ArealightEllipse ellipse, float root) {
     return vec3(ellipse.center.xy * (root * arealight_confocal_reciprocals(ellipse, root)), ellipse.center.z);
 }
 
-// The integral of the direction over pi, over the directions that the ellipse covers, in its frame: a vector whose
-// product with any unit normal above whose horizon all of the ellipse lies is the form factor.
-vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
-    vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
-    float area = ellipse.center.z * ellipse.major * ellipse.minor;
-    return axis * (area * sqrt(reciprocals.x) * sqrt(reciprocals.y) / dot(axis, axis));
-}
-
-// The form factor of an ellipse that lies wholly above the horizon, of either side; see arealight_ellipse_bare.
+// The form factor of an ellipse that lies wholly above the horizon, of either side.
 float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     float a2 = ellipse.major * ellipse.major;
     float b2 = ellipse.minor * ellipse.minor;
@@ -158,25 +146,6 @@ float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     float height = root > a2 ? ellipse.height - dot(less, up.xy) : dot(axis, up);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
     return height * (area * inversesqrt((a2 + root) * (b2 + root)) / dot(axis, axis));
-}
-
-// The form factor of an ellipse that lies wholly above the horizon, in [0, 1]; one-sided: 0 for one seen from its back.
-// All vectors in a space whose z axis is the normal, the center from the shading point, in any unit. For any bits the
-// result is a finite number in [0, 1].
-//
-// Error of the exact rung: 4e-7, relative 2e-6 at any distance, for an ellipse as it rounds: its center and axes are as if
-// moved by 4 x 2^-24 of their lengths. The fast rung adds 3e-5 of the result.
-float arealight_ellipse_bare(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided, int rung) {
-    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    float form_factor = arealight_whole_ellipse(ellipse, arealight_confocal_root(ellipse, rung));
-    return arealight_guarded_form_factor(two_sided || ellipse.front ? form_factor : 0.0, ellipse.square);
-}
-
-// The vector form factor of a whole ellipse, in the space that it is given in: the integral of the direction over pi, of
-// length at most 1. Its direction is the cone's axis. Not clipped, and whatever side is seen; NaN where an input is.
-vec3 arealight_ellipse_vector_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, int rung) {
-    ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    return ellipse.frame * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse, rung));
 }
 
 #endif

@@ -89,13 +89,13 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc, int rung) 
     vec3 integral;
     // Along the axis: an angle that is more than pi for more than half of the outline
     float pq_reciprocal = inversesqrt(max(p * q, 1e-37));
-    float turn = arealight_arctangent(2.0 * sh * ch * (p * q * pq_reciprocal), p * cos_cos + q * sin_sin, rung);
+    float turn = arealight_arctangent(2.0 * sh * ch * (p * q * pq_reciprocal), p * cos_cos + q * sin_sin);
     turn = ch < 0.0 ? turn + 2.0 * AREALIGHT_PI : turn;
     integral.z = a * b * turn * pq_reciprocal;
     // Along the shorter axis: an arctangent over its own argument, which vanishes for a round cone
     float eq = sqrt(e * q);
     float denominator = q + e * cos_cos;
-    float lean = arealight_arctangent(-2.0 * ss * sh * eq, denominator, rung);
+    float lean = arealight_arctangent(-2.0 * ss * sh * eq, denominator);
     integral.y = a * c * (eq > 1e-6 * q ? lean / eq : -2.0 * ss * sh / denominator);
     // Along the longer axis: a hyperbolic arctangent over its own argument
     float sum = q + e * (cs * cs + sh * sh);
@@ -127,7 +127,7 @@ vec4 arealight_cone_contour_above_horizon(ArealightCone cone, vec3 normal, int r
     float cos_cos = (arc.middle.x * cosine - arc.middle.y * sine) * (arc.middle.x * cosine + arc.middle.y * sine);
     float sin_sin = (arc.middle.y * cosine - arc.middle.x * sine) * (arc.middle.y * cosine + arc.middle.x * sine);
     float closing = arealight_arctangent(2.0 * cone.a * cone.b * cone.c * sine * reciprocal,
-                                         cone.c * cone.c + cone.a * cone.a * cos_cos + cone.b * cone.b * sin_sin, rung);
+                                         cone.c * cone.c + cone.a * cone.a * cos_cos + cone.b * cone.b * sin_sin);
     return vec4(integral, closing);
 }
 
@@ -149,7 +149,7 @@ ArealightEllipseSegment arealight_ellipse_segment(ArealightEllipse ellipse, vec3
     // Half the arc above the horizon
     float cosine = clamp(-ellipse.height * reciprocal, -1.0, 1.0);
     float sine = sqrt(max((ellipse.rise - ellipse.height) * (ellipse.rise + ellipse.height), 0.0)) * reciprocal;
-    float angle = arealight_arctangent(sine, cosine, rung);
+    float angle = arealight_arctangent(sine, cosine);
     float w = angle * angle;
     // The moment, and the mean height, weighed with the height, over the rise
     float moment;
@@ -188,12 +188,12 @@ bool arealight_is_small_ellipse(ArealightEllipse ellipse) {
 // vectors in a space whose z axis is the normal, the center from the shading point, in any unit. For any bits the result
 // is a finite number in [0, 1].
 //
-// Exact rung: within 6e-7 of the interval of values of the ellipses whose center and axes differ by 4 x 2^-24 of their
-// lengths. The fast one adds 1e-5. With the difference form a far ellipse that crosses the horizon keeps relative
+// Error: within 6e-7 of the interval of values of the ellipses whose center and axes differ by 4 x 2^-24 of their
+// lengths. With the difference form a far ellipse that crosses the horizon keeps relative
 // precision too: 3e-6 + 2 (size / distance)^2; one that does not has it anyway.
 float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided, int rung) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    float root = arealight_confocal_root(ellipse, rung);
+    float root = arealight_confocal_root(ellipse);
     vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
     float form_factor;
     // An ellipse in the horizon's plane is below it
@@ -201,7 +201,7 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
         form_factor = 0.0;
     } else if (ellipse.height >= ellipse.rise) {
         form_factor = arealight_whole_ellipse(ellipse, root);
-    } else if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0 && arealight_is_small_ellipse(ellipse)) {
+    } else if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE && arealight_is_small_ellipse(ellipse)) {
         form_factor = arealight_small_ellipse_crossing(ellipse, up, rung);
     } else {
         ArealightCone cone = arealight_ellipse_cone(ellipse, root);
@@ -214,7 +214,7 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
 // arealight_ellipse_form_factor integrates, and of the same arguments. Below the horizon, and for NaN, anything.
 vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v, int rung) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    float root = arealight_confocal_root(ellipse, rung);
+    float root = arealight_confocal_root(ellipse);
     vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
     vec3 direction;
     if (ellipse.height >= ellipse.rise || ellipse.height <= -ellipse.rise) {

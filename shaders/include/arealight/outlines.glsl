@@ -59,15 +59,7 @@ void arealight_outline_to(inout ArealightSurfaceWalk outline, ArealightLobeView 
         return;
     }
     ArealightVertex to = arealight_vertex(view.anchor, offset, rung);
-    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
-        outline.walk.sum += arealight_acute_arc(outline.last, to, rung);
-        outline.walk.squares += to.square;
-    } else if (quality.horizon == AREALIGHT_HORIZON_ABOVE) {
-        outline.walk.sum += arealight_arc(outline.last, to, rung);
-        outline.walk.squares += to.square;
-    } else {
-        arealight_walk_edge(outline.walk, view.anchor, outline.last, to, rung);
-    }
+    arealight_walk_edge(outline.walk, view.anchor, outline.last, to, rung);
     outline.last = to;
 }
 
@@ -83,9 +75,6 @@ void arealight_outline_pass(inout ArealightSurfaceWalk outline, ArealightLobeVie
 ArealightArcs arealight_outline_end(ArealightSurfaceWalk outline, ArealightLobeView view, ArealightQuality quality) {
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         return arealight_surface_walk_end(outline, view.anchor, quality.form_factor);
-    }
-    if (quality.horizon == AREALIGHT_HORIZON_BARE || quality.horizon == AREALIGHT_HORIZON_ABOVE) {
-        return ArealightArcs(outline.walk.sum, outline.walk.squares);
     }
     return arealight_walk_end(outline.walk, view.anchor, quality.form_factor);
 }

@@ -13,12 +13,6 @@ ArealightArcs arealight_lobe_quad(ArealightLobeView view, ArealightQuad quad, Ar
     mat3 transform = view.transform;
     ArealightQuad cosine =
         ArealightQuad(transform * quad.v0, transform * quad.v1, transform * quad.v2, transform * quad.v3);
-    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
-        return arealight_quad_bare(view.anchor, cosine, quality.form_factor);
-    }
-    if (quality.horizon == AREALIGHT_HORIZON_ABOVE) {
-        return arealight_quad_above(view.anchor, cosine, quality.form_factor);
-    }
     if (quality.horizon == AREALIGHT_HORIZON_BOTH) {
         vec4 height = vec4(arealight_vertex_height(view, quad.v0), arealight_vertex_height(view, quad.v1),
                            arealight_vertex_height(view, quad.v2), arealight_vertex_height(view, quad.v3));
@@ -35,29 +29,9 @@ ArealightQuad arealight_light_quad(ArealightPolygonLight light) {
                          arealight_bridge_vertex(light.first_vertex + last));
 }
 
-// Whether one point stands for a light.
-bool arealight_is_one_point(ArealightLobeView view, ArealightSeenLight seen, ArealightPolygonLight light, uint effects,
-                            ArealightQuality quality) {
-    if ((effects & AREALIGHT_EFFECT_FAR) == 0u || (quality.form_factor & AREALIGHT_FORM_FACTOR_ONE_POINT) == 0) {
-        return false;
-    }
-#if AREALIGHT_LIGHT_MESHES
-    if (arealight_is_mesh(light, effects)) {
-        return false;
-    }
-#endif
-    // A far light of which the surface hides a part is no matter of one point
-    bool is_whole = quality.horizon != AREALIGHT_HORIZON_BOTH || view.normal_height > seen.radius;
-    return is_whole && arealight_is_far(view.center, view.extent);
-}
-
 // The arcs around a polygon light in a lobe's cosine space: `walked` with AREALIGHT_EFFECT_POLYGON, around `quad` without.
-ArealightArcs arealight_lobe_arcs(ArealightLobe lobe, ArealightLobeView view, ArealightSeenLight seen,
-                                  ArealightPolygonLight light, ArealightArcs walked, ArealightQuad quad, uint effects,
+ArealightArcs arealight_lobe_arcs(ArealightLobeView view, ArealightArcs walked, ArealightQuad quad, uint effects,
                                   ArealightQuality quality) {
-    if (arealight_is_one_point(view, seen, light, effects, quality)) {
-        return arealight_one_point(view.center, seen.facing * lobe.space.determinant);
-    }
     if ((effects & AREALIGHT_EFFECT_POLYGON) != 0u) {
         return walked;
     }
@@ -157,7 +131,7 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, ArealightLobeView view, Arealigh
         return lobe.albedo * arealight_lobe_parts(view, lobe.gain, image, light, seen, quad, effects, quality);
     }
 #endif
-    ArealightArcs arcs = arealight_lobe_arcs(lobe, view, seen, light, walked, quad, effects, quality);
+    ArealightArcs arcs = arealight_lobe_arcs(view, walked, quad, effects, quality);
     vec3 color = vec3(min(arealight_form_factor(arcs, light.two_sided) * lobe.gain, 1.0));
 #if AREALIGHT_LIGHT_TEXTURES
     if (textured) {
@@ -167,25 +141,16 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, ArealightLobeView view, Arealigh
     return lobe.albedo * color;
 }
 
-// Whether the outline of a light is walked for some lobe: not where one point stands for it in all, nor where its image is
-// looked at by parts.
-bool arealight_is_walked(ArealightLobeViews views, ArealightSeenLight seen, ArealightPolygonLight light, uint effects,
-                         ArealightQuality quality) {
+// Whether the outline of a light is walked: not where its image is looked at by parts.
+bool arealight_is_walked(ArealightPolygonLight light, uint effects, ArealightQuality quality) {
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         return false;
     }
 #if AREALIGHT_LIGHT_TEXTURES
-    if (quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && arealight_shows_image(light, effects)) {
-        return false;
-    }
+    return !(quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && arealight_shows_image(light, effects));
+#else
+    return true;
 #endif
-    bool glossy = (effects & AREALIGHT_EFFECT_GLOSSY) != 0u
-               && !arealight_is_one_point(views.glossy, seen, light, effects, quality);
-    bool schlick = arealight_has_schlick(effects, quality)
-                && !arealight_is_one_point(views.schlick, seen, light, effects, quality);
-    bool diffuse = (effects & AREALIGHT_EFFECT_DIFFUSE) != 0u
-                && !arealight_is_one_point(views.diffuse, seen, light, effects, arealight_diffuse_quality(quality));
-    return glossy || schlick || diffuse;
 }
 
 // What a surface reflects of one polygon light of unit radiance towards the viewer, without visibility, lobe by lobe; a
@@ -206,7 +171,7 @@ ArealightReflected arealight_polygon_reflected(ArealightShadingPoint point, Area
         quad = arealight_light_quad(light);
     }
     ArealightLobeArcs walked = arealight_no_arcs();
-    if (arealight_is_walked(views, seen, light, effects, quality)) {
+    if (arealight_is_walked(light, effects, quality)) {
         walked = arealight_walk_light(views, light, effects, quality);
     }
 

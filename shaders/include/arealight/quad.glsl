@@ -81,29 +81,4 @@ ArealightArcs arealight_quad_clipped(ArealightAnchor anchor, ArealightQuad quad,
     return ArealightArcs(sum, squares);
 }
 
-// A quad that is wholly above the horizon, convex or not: what arealight_quad_clipped sums there, arc by arc.
-ArealightArcs arealight_quad_above(ArealightAnchor anchor, ArealightQuad quad, int rung) {
-    ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
-    ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
-    ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
-    ArealightVertex v3 = arealight_vertex(anchor, quad.v3, rung);
-    vec3 sum = arealight_arc(v0, v1, rung) + arealight_arc(v1, v2, rung) + arealight_arc(v2, v3, rung)
-             + arealight_arc(v3, v0, rung);
-    float squares = v0.square + v1.square + v2.square + v3.square;
-    return ArealightArcs(sum, squares);
-}
-
-// A quad that is wholly above the horizon and has no edge that subtends more than a right angle,
-// convex or not: arealight_is_bare tells where that is so.
-ArealightArcs arealight_quad_bare(ArealightAnchor anchor, ArealightQuad quad, int rung) {
-    ArealightVertex v0 = arealight_vertex(anchor, quad.v0, rung);
-    ArealightVertex v1 = arealight_vertex(anchor, quad.v1, rung);
-    ArealightVertex v2 = arealight_vertex(anchor, quad.v2, rung);
-    ArealightVertex v3 = arealight_vertex(anchor, quad.v3, rung);
-    vec3 sum = arealight_acute_arc(v0, v1, rung) + arealight_acute_arc(v1, v2, rung)
-             + arealight_acute_arc(v2, v3, rung) + arealight_acute_arc(v3, v0, rung);
-    float squares = v0.square + v1.square + v2.square + v3.square;
-    return ArealightArcs(sum, squares);
-}
-
 #endif

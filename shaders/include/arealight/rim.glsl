@@ -50,7 +50,7 @@ ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform, int rung) {
     vec3 side = transform * rim.side;
     ArealightEllipse ellipse = arealight_ellipse(center, middle, side);
     arc.square = ellipse.square;
-    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse, rung));
+    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
     mat3 frame = ellipse.frame * arc.cone.frame;
     frame[1] = dot(cross(frame[0], frame[1]), frame[2]) < 0.0 ? -frame[1] : frame[1];
     arc.cone.frame = frame;
@@ -157,7 +157,7 @@ float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec
         return 0.0;
     }
     // The rim above the surface, about its highest point, and the edge between its ends
-    rung &= ~AREALIGHT_FORM_FACTOR_DIFFERENCE;
+    rung = AREALIGHT_FORM_FACTOR_EXACT;
     vec2 top = heights.yz / rise;
     float cosine = clamp(-heights.x / rise, -1.0, 1.0);
     float sine = sqrt((1.0 - cosine) * (1.0 + cosine));

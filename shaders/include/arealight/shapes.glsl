@@ -93,17 +93,6 @@ float arealight_lobe_ellipse(ArealightLobe lobe, vec3 normal, ArealightSeenShape
     vec3 axis_u = lobe.space.to_cosine * seen.axis_u;
     vec3 axis_v = lobe.space.to_cosine * seen.axis_v;
     int rung = quality.form_factor;
-    if ((rung & AREALIGHT_FORM_FACTOR_ONE_POINT) != 0) {
-        float extent = lobe.space.stretch * seen.radius;
-        bool whole = quality.horizon != AREALIGHT_HORIZON_BOTH || dot(normal, seen.center) > seen.radius;
-        if (whole && arealight_is_far(center, extent)) {
-            float facing = -AREALIGHT_PI * dot(cross(seen.axis_u, seen.axis_v), seen.center) * lobe.space.determinant;
-            return arealight_form_factor(arealight_one_point(center, facing), two_sided);
-        }
-    }
-    if (quality.horizon == AREALIGHT_HORIZON_BARE) {
-        return arealight_ellipse_bare(center, axis_u, axis_v, two_sided, rung);
-    }
     // Whether a light in the surface's plane is above or below must not hang on the last bit
     float horizon = AREALIGHT_HORIZON_WIDTH * lobe.space.flatness;
     float across = arealight_max_component(axis_u) + arealight_max_component(axis_v);
@@ -137,9 +126,7 @@ vec3 arealight_lobe_ellipse_image(ArealightLobe lobe, ArealightSeenShape seen, A
     vec3 axis_u = transform * seen.axis_u;
     vec3 axis_v = transform * seen.axis_v;
     vec3 center = transform * seen.center;
-    vec3 direction = quality.horizon == AREALIGHT_HORIZON_BARE
-        ? arealight_ellipse_vector_form_factor(center, axis_u, axis_v, quality.form_factor)
-        : arealight_ellipse_mean_direction(center, axis_u, axis_v, quality.form_factor);
+    vec3 direction = arealight_ellipse_mean_direction(center, axis_u, axis_v, quality.form_factor);
     shape.axis_u = seen.axis_u;
     shape.axis_v = seen.axis_v;
     ArealightSeenImage image = arealight_see_image(arealight_ellipse_image(shape), center, transform);

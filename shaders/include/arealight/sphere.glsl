@@ -34,9 +34,9 @@ float arealight_sphere_form_factor(vec3 center, float radius, bool two_sided, in
     if (abs(z) < sine) {
         float q = sqrt((sine - z) * (sine + z));
         float across = q * q + cosine * cosine;
-        float angle = arealight_arctangent(q, cosine, rung);
+        float angle = arealight_arctangent(q, cosine);
         float part = cosine / max(across, 1e-37);
-        float beyond = form_factor * arealight_arctangent(q, -cosine * z, rung) + q * part * z * z;
+        float beyond = form_factor * arealight_arctangent(q, -cosine * z) + q * part * z * z;
         form_factor = (beyond + arealight_circle_segment(angle, q * part)) * AREALIGHT_INVERSE_PI;
     }
     form_factor = distance > radius ? form_factor : two_sided ? 1.0 : 0.0;

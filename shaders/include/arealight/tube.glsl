@@ -32,13 +32,13 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
         return arealight_ellipse_form_factor(transform * rim.center, transform * rim.middle, transform * rim.side, true,
                                              rung);
     }
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) != 0) {
+    if (rung == AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         bool is_small;
         float form_factor = arealight_small_tube(tube, transform, horizon, rung, is_small);
         if (is_small) {
             return form_factor;
         }
-        rung &= ~AREALIGHT_FORM_FACTOR_DIFFERENCE;
+        rung = AREALIGHT_FORM_FACTOR_EXACT;
     }
     ArealightAnchor anchor = arealight_anchor(vec3(0.0), 0.0, rung);
     ArealightWalk walk = arealight_walk_begin();

@@ -107,7 +107,7 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
     if (!tube.seen) {
         return 0.0;
     }
-    rung &= ~AREALIGHT_FORM_FACTOR_DIFFERENCE;
+    rung = AREALIGHT_FORM_FACTOR_EXACT;
     if (!tube.outside) {
         ArealightRim rim = tube.rims[0];
         vec3 heights = vec3(dot(normal, rim.center), dot(normal, rim.middle), dot(normal, rim.side));

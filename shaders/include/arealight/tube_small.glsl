@@ -35,7 +35,7 @@ float arealight_small_segment(vec3 center, vec3 middle, vec3 side, ArealightArcS
     vec3 along = arc.middle.x * middle + arc.middle.y * side;
     vec3 across = arc.middle.x * side - arc.middle.y * middle;
     // The segment of the unit disk: its area, where its centroid is, and its second moments about that
-    float angle = arealight_arctangent(sine, cosine, rung);
+    float angle = arealight_arctangent(sine, cosine);
     float area = max(angle - sine * cosine, 0.0);
     float mean = clamp(0.66666667 * sine * sine * sine / max(area, 1e-37), cosine, 1.0);
     float moment = 0.25 * (angle - sine * cosine * (2.0 * cosine * cosine - 1.0)) - mean * mean * area;
@@ -141,7 +141,7 @@ float arealight_line_form_factor(vec3 start, vec3 along, float width, int rung) 
     float distance = square * reciprocal;
     // Differences of the antiderivative, as products
     float both = 1.0 / ((square + begin * begin) * (square + finish * finish));
-    float turn = arealight_arctangent(distance * extent, square + begin * finish, rung);
+    float turn = arealight_arctangent(distance * extent, square + begin * finish);
     float across = 0.5 * foot.z * (extent * (square - begin * finish) * both * reciprocal + turn / square);
     float slope = 0.5 * axis.z * distance * extent * (begin + finish) * both;
     return 2.0 * width * AREALIGHT_INVERSE_PI * (across + slope);

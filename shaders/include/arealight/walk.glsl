@@ -32,7 +32,7 @@ ArealightWalk arealight_walk_begin() {
 // of crossings. The difference form needs each arc by itself.
 void arealight_walk_close(inout ArealightWalk walk, ArealightAnchor anchor, ArealightVertex crossing, bool exits,
                           int rung) {
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
+    if (rung != AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         vec2 turn = vec2(crossing.unit.x, exits ? -crossing.unit.y : crossing.unit.y);
         walk.turn = vec2(walk.turn.x * turn.x - walk.turn.y * turn.y, walk.turn.x * turn.y + walk.turn.y * turn.x);
     } else if (exits) {
@@ -64,7 +64,7 @@ void arealight_walk_edge(inout ArealightWalk walk, ArealightAnchor anchor, Areal
 // Ends the walk: the arcs around the whole outline.
 ArealightArcs arealight_walk_end(ArealightWalk walk, ArealightAnchor anchor, int rung) {
     vec3 sum = walk.sum;
-    if ((rung & AREALIGHT_FORM_FACTOR_DIFFERENCE) == 0) {
+    if (rung != AREALIGHT_FORM_FACTOR_DIFFERENCE) {
         ArealightVertex begin = walk.exit;
         ArealightVertex end = walk.exit;
         begin.unit = vec3(1.0, 0.0, 0.0);

@@ -63,7 +63,7 @@ impl TiledView {
         let record = (tiles::RECORD_HEADER + self.pass.tile_options().capacity) as usize;
         let first_record = tiles::FIRST_LIST as usize + TileClass::ALL.len() * tile_count;
         let mut lights = 0;
-        for (place, found) in found.iter().enumerate().skip(TileClass::QuadsAbove as usize) {
+        for (place, found) in found.iter().enumerate().skip(TileClass::Quads as usize) {
             let list = &words[tiles::FIRST_LIST as usize + place * tile_count..][..found.tile_count as usize];
             for &tile in list {
                 let [column, row] = tiles::unpack(tile);
