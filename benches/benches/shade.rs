@@ -48,14 +48,11 @@ fn shade(criterion: &mut Criterion) {
     group.sample_size(10).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
     for (name, effects, quality) in [
         ("exact", effects, exact),
-        ("fast", effects, Quality { form_factor: FormFactor::Fast, ..exact }),
-        ("exact, difference", effects, Quality { form_factor: FormFactor::ExactDifference, ..exact }),
-        ("exact, bare", effects, Quality { horizon: Horizon::Bare, ..exact }),
+        ("difference", effects, Quality { form_factor: FormFactor::Difference, ..exact }),
         ("exact, both horizons", effects, Quality { horizon: Horizon::Both, ..exact }),
         ("exact, split", effects, Quality { fresnel: Fresnel::Split, ..exact }),
         // The difference is what the table's lookup costs
         ("exact, lobes by formula", effects, Quality { lobes: Lobes::Formula, ..exact }),
-        ("exact, one point", effects, Quality { one_point: true, ..exact }),
         ("exact, diffuse only", effects - Effects::GLOSSY, exact),
         ("exact, every effect", Effects::all(), exact),
     ] {

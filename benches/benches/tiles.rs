@@ -88,19 +88,6 @@ fn frame(
     Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
 }
 
-/// Frames of disks that are wholly above.
-fn disk_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
-    let mut frames = vec![];
-    for count in DISKS {
-        let mut scene = floor(FLOORS[0].1)?;
-        scene.shapes = disks(count, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
-        let against = (TileOptions::default(), Baseline::Bare);
-        let name = format!("disks: {count}");
-        frames.push(frame(engine, (&name, &scene), SIZE, Quality::default(), against, rounds)?);
-    }
-    Ok(frames)
-}
-
 /// Frames of disks that show an image, by one fetch and by four.
 fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let mut frames = vec![];
@@ -177,7 +164,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     if wanted("disks") {
         println!("## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
-        println!("{}", markdown(&disk_frames(&engine, rounds)?));
         pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
         println!("{}", markdown(&image_frames(&engine, rounds)?));
     }

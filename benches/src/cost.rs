@@ -37,18 +37,13 @@ pub struct CostMethod {
 }
 
 const QUAD: u32 = 0;
-const BARE: u32 = 4;
 const BOTH: u32 = 8;
 const WALK: u32 = 12;
 
 const fn rung(name: &'static str, shape: u32, rung: FormFactor) -> CostMethod {
     let promise = match rung {
         FormFactor::Exact => "1e-6",
-        FormFactor::Fast => "1e-6 + 2.7e-5 of each edge's share",
-        FormFactor::ExactDifference => "1e-6, of small lights relative",
-        FormFactor::FastDifference => {
-            "1e-6, of small lights relative, + 7e-5 of each edge's share times its angle squared"
-        }
+        FormFactor::Difference => "1e-6, of small lights relative",
     };
     CostMethod { name, promise, id: shape | rung as u32 }
 }
@@ -65,19 +60,12 @@ pub static METHODS: &[CostMethod] = &[
     yardstick(PRACTICE, 17),
     yardstick("textbook", 18),
     yardstick("an empty loop", 16),
-    rung("bare, exact", BARE, FormFactor::Exact),
-    rung("bare, fast", BARE, FormFactor::Fast),
-    rung("bare, exact, difference", BARE, FormFactor::ExactDifference),
     rung("quad, exact", QUAD, FormFactor::Exact),
-    rung("quad, fast", QUAD, FormFactor::Fast),
-    rung("quad, exact, difference", QUAD, FormFactor::ExactDifference),
-    rung("quad, fast, difference", QUAD, FormFactor::FastDifference),
+    rung("quad, difference", QUAD, FormFactor::Difference),
     rung("any outline, exact", WALK, FormFactor::Exact),
-    rung("any outline, fast", WALK, FormFactor::Fast),
-    rung("any outline, exact, difference", WALK, FormFactor::ExactDifference),
+    rung("any outline, difference", WALK, FormFactor::Difference),
     rung("both horizons, quad, exact", BOTH, FormFactor::Exact),
-    rung("both horizons, quad, fast", BOTH, FormFactor::Fast),
-    rung("both horizons, quad, exact, difference", BOTH, FormFactor::ExactDifference),
+    rung("both horizons, quad, difference", BOTH, FormFactor::Difference),
 ];
 
 /// A method's cost.

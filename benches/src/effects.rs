@@ -86,22 +86,18 @@ fn runs() -> Vec<Run> {
     let shade = |effects, quality| Method::Pass { effects, quality };
     let both = Effects::DIFFUSE | Effects::GLOSSY;
     let exact = Quality::default();
-    let one_point = Quality { one_point: true, ..exact };
     let mut runs = vec![
         run("both lobes, stripped by hand".into(), Method::Stripped { diffuse_only: false }, 0),
         run(both.to_string(), shade(both, exact), 0),
         run("diffuse lobe, stripped by hand".into(), Method::Stripped { diffuse_only: true }, 2),
         run(Effects::DIFFUSE.to_string(), shade(Effects::DIFFUSE, exact), 2),
-        run(format!("{both}; one point without far"), shade(both, one_point), 1),
     ];
     for added in (Effects::all() - both).iter() {
-        let quality = if added == Effects::FAR { one_point } else { exact };
-        let note = if added == Effects::FAR { "; one point" } else { "" };
-        let (effects, name) = (both | added, format!("{}{note}", both | added));
-        runs.push(run(format!("{name}, compiled in"), Method::Kernel { effects, quality }, 1));
-        runs.push(run(name, shade(effects, quality), 1));
+        let (effects, name) = (both | added, (both | added).to_string());
+        runs.push(run(format!("{name}, compiled in"), Method::Kernel { effects, quality: exact }, 1));
+        runs.push(run(name, shade(effects, exact), 1));
     }
-    runs.push(run("every effect; one point".into(), shade(Effects::all(), one_point), 1));
+    runs.push(run("every effect".into(), shade(Effects::all(), exact), 1));
     runs
 }
 

@@ -303,7 +303,7 @@ fn far(engine: &Engine, truth: &dyn Fn(Quality, &EvalPoint) -> DVec3) -> Result<
     let lambert = Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 };
     let glossy = Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: 0.25 };
     // An absolute error of 1e-6 would be as much as these lights are
-    let quality = Quality { form_factor: FormFactor::ExactDifference, ..Quality::default() };
+    let quality = Quality { form_factor: FormFactor::Difference, ..Quality::default() };
 
     let mut rows = Vec::new();
     for (picture, layer) in [("noise", NOISE), (SPOT_PICTURE, SPOT), ("framed", FRAMED)] {

@@ -23,7 +23,7 @@ pub use timing::{Spread, Time};
 
 use crate::instructions::Instructions;
 use crate::textures::is_software;
-use arealight::{Effects, Horizon, LightTable, Profile, ProfileRung, Quality};
+use arealight::{Effects, LightTable, Profile, ProfileRung, Quality};
 use arealight_engine::{Engine, EngineError, GBuffer};
 use arealight_host::Host;
 use arealight_oracle::texture::Texture;
@@ -178,7 +178,7 @@ impl Ladder {
             };
             let quality = names.quality()?;
             let is_judged = row.errors.all.points > 0 && row.errors.all.not_finite == 0;
-            if quality.horizon != Horizon::Bare && is_judged {
+            if is_judged {
                 let (error, Time { fixed, per_light, .. }) = (row.errors.all.rmse, row.time);
                 rungs.push(ProfileRung { quality, textured, error, fixed, per_light });
             }
@@ -334,11 +334,7 @@ fn time(
     });
     let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
     let first = &frames[0];
-    // The one-point form is what far lights call for
-    let changed = |effect: &Effects| Method::Rung {
-        effects: LOBES ^ *effect,
-        quality: Quality { one_point: *effect == Effects::FAR, ..Quality::default() },
-    };
+    let changed = |effect: &Effects| Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
 
     let mut timed: Vec<(&Frame<'_>, Method)> = vec![];
     for (workload, frame) in workloads.iter().zip(&frames) {

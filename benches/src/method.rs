@@ -28,20 +28,13 @@ pub struct Method {
 enum Shape {
     Walk = 0,
     Quad = 8,
-    BareQuad = 16,
-    BareWalk = 24,
 }
-
-/// The bit of the one-point form, `AREALIGHT_FORM_FACTOR_ONE_POINT`.
-const ONE_POINT: u32 = 4;
 
 /// What each rung promises.
 pub const fn promises(rung: FormFactor) -> Promises {
     match rung {
         FormFactor::Exact => Promises::EXACT,
-        FormFactor::Fast => Promises::FAST,
-        FormFactor::ExactDifference => Promises::EXACT_DIFFERENCE,
-        FormFactor::FastDifference => Promises::FAST_DIFFERENCE,
+        FormFactor::Difference => Promises::DIFFERENCE,
     }
 }
 
@@ -52,21 +45,14 @@ impl Method {
             description,
             promises: promises(rung),
             is_yardstick: false,
-            quads_only: matches!(shape, Shape::Quad | Shape::BareQuad),
+            quads_only: matches!(shape, Shape::Quad),
             id: shape as u32 | rung as u32,
         }
     }
 
     const fn yardstick(name: &'static str, description: &'static str, id: u32) -> Self {
-        let promises = Promises::EXACT_DIFFERENCE;
+        let promises = Promises::DIFFERENCE;
         Self { name, description, promises, is_yardstick: true, quads_only: false, id }
-    }
-
-    const fn one_point() -> Self {
-        let promises = Promises { of_form_factor: 1e-4, ..Promises::EXACT_DIFFERENCE };
-        let description = "convex, exact, difference form; far lights from their centre alone";
-        let rung = Self::rung("quad-one-point", description, Shape::Quad, FormFactor::ExactDifference);
-        Self { promises, id: rung.id | ONE_POINT, ..rung }
     }
 
     /// The method of that name.
@@ -86,58 +72,9 @@ impl Method {
 /// Every method, the yardsticks last.
 pub static METHODS: &[Method] = &[
     Method::rung("walk-exact", "any outline, exact", Shape::Walk, FormFactor::Exact),
-    Method::rung("walk-fast", "any outline, fast", Shape::Walk, FormFactor::Fast),
-    Method::rung(
-        "walk-exact-difference",
-        "any outline, exact, difference form",
-        Shape::Walk,
-        FormFactor::ExactDifference,
-    ),
-    Method::rung(
-        "walk-fast-difference",
-        "any outline, fast, difference form",
-        Shape::Walk,
-        FormFactor::FastDifference,
-    ),
+    Method::rung("walk-difference", "any outline, difference form", Shape::Walk, FormFactor::Difference),
     Method::rung("quad-exact", "convex, exact", Shape::Quad, FormFactor::Exact),
-    Method::rung("quad-fast", "convex, fast", Shape::Quad, FormFactor::Fast),
-    Method::rung(
-        "quad-exact-difference",
-        "convex, exact, difference form",
-        Shape::Quad,
-        FormFactor::ExactDifference,
-    ),
-    Method::rung(
-        "quad-fast-difference",
-        "convex, fast, difference form",
-        Shape::Quad,
-        FormFactor::FastDifference,
-    ),
-    Method::rung(
-        "bare-quad-exact",
-        "convex, exact; without clip where the library's test allows",
-        Shape::BareQuad,
-        FormFactor::Exact,
-    ),
-    Method::rung(
-        "bare-quad-fast",
-        "convex, fast; without clip where the library's test allows",
-        Shape::BareQuad,
-        FormFactor::Fast,
-    ),
-    Method::rung(
-        "bare-walk-exact",
-        "any outline, exact; without clip where the library's test allows",
-        Shape::BareWalk,
-        FormFactor::Exact,
-    ),
-    Method::rung(
-        "bare-walk-fast",
-        "any outline, fast; without clip where the library's test allows",
-        Shape::BareWalk,
-        FormFactor::Fast,
-    ),
-    Method::one_point(),
+    Method::rung("quad-difference", "convex, difference form", Shape::Quad, FormFactor::Difference),
     Method::yardstick("textbook", "clipped, acos(clamp(x, -.9999, .9999)), normalised cross products", 32),
     Method::yardstick("practice", "rational theta / sin(theta), guarded; a sphere's horizon, no clip", 33),
 ];

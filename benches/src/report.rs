@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 const HEADS: [&str; 6] = ["family", "error", "backward", "small light", "not finite", "verdict"];
 
 /// The methods that stand side by side in the document's first table.
-const OVERVIEW: [&str; 5] = ["walk-exact", "quad-exact", "quad-exact-difference", "textbook", "practice"];
+const OVERVIEW: [&str; 5] = ["walk-exact", "quad-exact", "quad-difference", "textbook", "practice"];
 
 /// The document's words on the first table.
 const PROMISES: &str = "\
@@ -20,10 +20,9 @@ horizon). The bits of each result are judged against a reference of 106 bits:
 1. A finite number in [0, 1]; exactly 0 where a vertex is NaN or infinite.
 2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most 4 x 2^-24 of their distance.
 3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its farthest vertex.
-4. *Small light*, of the rungs with the difference form: error at most 1e-6 of area / (pi distance^2), out to any distance.
+4. *Small light*, of the difference form: error at most 1e-6 of area / (pi distance^2), out to any distance.
 
-The fast rungs may add 2.7e-5 of each edge's angle over 2 pi, the one-point form 1e-4 of the result. The yardsticks are held to the \
-best rung's promises.
+The yardsticks are held to the promises of the difference form.
 
 The table gives the largest backward error; **bold** is a promise broken, any of the four. A forward error near 1 \
 beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 vertex says on which side it is.

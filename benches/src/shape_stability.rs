@@ -22,7 +22,7 @@ const BACKWARD: f64 = 1e-6;
 /// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
 const RELATIVE: f64 = 1e-5;
 /// The difference form's rung.
-const DIFFERENCE: u32 = 2;
+const DIFFERENCE: u32 = 1;
 
 /// A shape of a family.
 #[derive(Debug, Clone, Copy)]

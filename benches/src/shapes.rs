@@ -25,33 +25,29 @@ pub static SHAPES: Kernel = Kernel {
 pub enum ShapeFunction {
     /// `arealight_ellipse_form_factor` of a center a and axes b and c, two-sided where d.w is not 0.
     Ellipse = 0,
-    /// `arealight_ellipse_bare`, likewise.
-    EllipseBare = 1,
-    /// `arealight_ellipse_vector_form_factor` of a center a and axes b and c.
-    EllipseVector = 2,
     /// `arealight_sphere_form_factor` of a center a and a radius a.w, two-sided where d.w is not 0.
-    Sphere = 3,
+    Sphere = 1,
     /// The form factor of the silhouette of a sphere of a center a and a radius a.w, under the matrix of columns b, c and d.
-    Silhouette = 4,
+    Silhouette = 2,
     /// `arealight_arctangent` of a.y and a.x.
-    Arctangent = 5,
+    Arctangent = 3,
     /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The rung is
     /// whether its discriminant is clamped.
-    Published = 6,
+    Published = 4,
     /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth
     /// components of c, d and b.
-    Tube = 7,
+    Tube = 5,
     /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center and the radius b.x:
     /// see the kernel for the lobe's matrix.
-    Lobe = 8,
+    Lobe = 6,
     /// As `Published`, with the cheap horizon alone.
-    PublishedCheap = 9,
+    PublishedCheap = 7,
     /// The whole ellipse, exactly, with a sphere's horizon.
-    SphereHorizon = 10,
+    SphereHorizon = 8,
     /// A polygon of the ellipse's area, whose number of vertices is the third specialisation constant.
-    Polygon = 11,
+    Polygon = 9,
     /// None: what the kernel itself costs.
-    Nothing = 12,
+    Nothing = 10,
 }
 
 /// What a call is given.

@@ -9,7 +9,7 @@ use crate::table::Table;
 use crate::textures::{clocked, is_software};
 use arealight::kernels::{Kernel, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
-use arealight::{Effects, Horizon, PolygonLight, Quality, Shape, ShapeLight, TileClass};
+use arealight::{Effects, PolygonLight, Shape, ShapeLight, TileClass};
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
 use arealight_host::Host;
 use glam::{DVec3, Vec3, Vec4};
@@ -23,8 +23,6 @@ const METHODS: usize = 3;
 pub enum Baseline {
     /// Polygons without images as others shade them: nothing clipped.
     Practice,
-    /// The shade kernel specialised by hand for shapes that are wholly above every pixel's horizons.
-    Bare,
     /// The shade kernel over the same shapes without the images that they show.
     Plain,
 }
@@ -34,7 +32,6 @@ impl Baseline {
     fn name(self) -> &'static str {
         match self {
             Self::Practice => "practice",
-            Self::Bare => "bare",
             Self::Plain => "no image",
         }
     }
@@ -46,10 +43,6 @@ impl Baseline {
             Self::Practice => {
                 let practice = Yardstick::Practice as u32;
                 (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, practice)])
-            }
-            Self::Bare => {
-                let quality = Quality { horizon: Horizon::Bare, ..options.quality };
-                (shade, shade_specialization(ShadeOptions { quality, ..options }))
             }
             Self::Plain => {
                 let effects = options.effects - Effects::TEXTURED_ELLIPSE;

@@ -61,11 +61,8 @@ pub enum Function {
     /// `arealight_ggx_*` of a view a, a light b, an alpha a.w and two random numbers c: f cos with density; half vector with
     /// distribution; sample with visibility.
     Ggx = 3,
-    /// `arealight_arc` of vertices a and b by a rung a.w: their directions, with the arc and the acute arc, and where it
-    /// crosses the horizon.
+    /// `arealight_arc` of vertices a and b by a form a.w: their directions, with the arc, and where it crosses the horizon.
     Arc = 4,
-    /// `arealight_is_bare` and `arealight_is_far` of a center a and an extent a.w.
-    Light = 5,
 }
 
 impl TestEngine {

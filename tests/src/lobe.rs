@@ -216,21 +216,10 @@ impl Seen {
 
     /// What is known of the light before any rung.
     pub fn judge(&self) -> Judge {
-        let outline: Vec<[f64; 3]> = self.outline().iter().map(DVec3::to_array).collect();
-        let walked = walk::<f64>([0.0; 3], &outline);
         let form_factor = self.form_factor();
         let Lobe { albedo, albedo_reach, above_surface, .. } = self.lobe;
         let share = if self.horizon == Horizon::Both { above_surface } else { 1.0 };
-        Judge {
-            albedo,
-            albedo_reach,
-            share,
-            gain: share.recip(),
-            form_factor,
-            reach: self.reach(),
-            arcs: walked.share,
-            arcs_by_angle: walked.share_by_angle,
-        }
+        Judge { albedo, albedo_reach, share, gain: share.recip(), form_factor, reach: self.reach() }
     }
 }
 
@@ -249,8 +238,6 @@ pub struct Judge {
     pub form_factor: f64,
     /// How far roundings move it.
     pub reach: f64,
-    arcs: f64,
-    arcs_by_angle: f64,
 }
 
 impl Judge {
@@ -266,10 +253,7 @@ impl Judge {
 
     /// How far a rung's answer may be from it.
     pub fn bound(&self, rung: Rung) -> f64 {
-        let one_point = if rung.quality.one_point { 1e-4 * self.form_factor } else { 0.0 };
-        let promises = rung.promises();
-        let series = promises.of_share * self.arcs + promises.of_share_by_angle * self.arcs_by_angle;
-        let walk = promises.backward + series + one_point;
+        let walk = rung.promises().backward;
         // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are multiplied
         let factors = self.albedo_reach + 4e-7 + 8.0 * UNIT;
         self.albedo * self.gain * (walk + self.reach) + factors * self.gain * self.form_factor

@@ -25,18 +25,16 @@ pub struct Rung {
 
 impl std::fmt::Display for Rung {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Quality { form_factor, horizon, one_point, .. } = self.quality;
-        write!(f, "{:?} {form_factor:?} {horizon:?}", self.path)?;
-        if one_point { f.write_str(" one point") } else { Ok(()) }
+        let Quality { form_factor, horizon, .. } = self.quality;
+        write!(f, "{:?} {form_factor:?} {horizon:?}", self.path)
     }
 }
 
-/// Every series for the arcs.
-pub const FORM_FACTORS: [FormFactor; 4] =
-    [FormFactor::Exact, FormFactor::Fast, FormFactor::ExactDifference, FormFactor::FastDifference];
+/// Every way to integrate edges.
+pub const FORM_FACTORS: [FormFactor; 2] = [FormFactor::Exact, FormFactor::Difference];
 
 impl Rung {
-    /// The rungs of these paths and horizons, with every series, without the one-point form.
+    /// The quality levels of these paths and horizons.
     pub fn of(paths: &[Path], horizons: &[Horizon]) -> Vec<Self> {
         let mut rungs = Vec::new();
         for &path in paths {
@@ -52,7 +50,7 @@ impl Rung {
 
     /// The effects of a pass on this path that has these lobes.
     pub fn effects(self, lobes: Effects) -> Effects {
-        let effects = lobes | Effects::TWO_SIDED | Effects::FAR;
+        let effects = lobes | Effects::TWO_SIDED;
         match self.path {
             Path::Quad => effects,
             Path::Walk => effects | Effects::POLYGON,
@@ -64,16 +62,7 @@ impl Rung {
     pub fn promises(self) -> Promises {
         match self.quality.form_factor {
             FormFactor::Exact => Promises::EXACT,
-            FormFactor::Fast => Promises::FAST,
-            FormFactor::ExactDifference => Promises::EXACT_DIFFERENCE,
-            FormFactor::FastDifference => Promises::FAST_DIFFERENCE,
+            FormFactor::Difference => Promises::DIFFERENCE,
         }
-    }
-
-    /// The same, with the one-point form.
-    #[must_use]
-    pub fn with_one_point(mut self) -> Self {
-        self.quality.one_point = true;
-        self
     }
 }

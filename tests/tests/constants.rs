@@ -3,9 +3,7 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{
-    Effects, FormFactor, Fresnel, Horizon, Lobes, Quality, ShapeKind, TileClass, TubeEnds, tiles,
-};
+use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -112,22 +110,10 @@ fn flags_have_the_same_bits_in_glsl() {
 #[test]
 fn choices_have_the_same_numbers_in_glsl() {
     let number = |value: u32| f64::from(value);
-    let one_point = Quality { one_point: true, ..Quality::default() };
-    let rungs = [
-        ("EXACT", number(FormFactor::Exact as u32)),
-        ("FAST", number(FormFactor::Fast as u32)),
-        ("DIFFERENCE", number(FormFactor::ExactDifference as u32)),
-        ("ONE_POINT", number(one_point.form_factor_bits())),
-    ];
+    let rungs =
+        [("EXACT", number(FormFactor::Exact as u32)), ("DIFFERENCE", number(FormFactor::Difference as u32))];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_FORM_FACTOR_", &rungs);
-    let both = FormFactor::FastDifference as u32;
-    assert_eq!(both, FormFactor::Fast as u32 | FormFactor::ExactDifference as u32, "they are bits");
-    let horizons = [
-        ("COSINE", number(Horizon::Cosine as u32)),
-        ("BOTH", number(Horizon::Both as u32)),
-        ("BARE", number(Horizon::Bare as u32)),
-        ("ABOVE", number(Horizon::Above as u32)),
-    ];
+    let horizons = [("COSINE", number(Horizon::Cosine as u32)), ("BOTH", number(Horizon::Both as u32))];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
     let fresnel = [("BY_F0", number(Fresnel::ByF0 as u32)), ("SPLIT", number(Fresnel::Split as u32))];
     assert_constants(EFFECTS_GLSL, "AREALIGHT_FRESNEL_", &fresnel);
@@ -138,9 +124,7 @@ fn choices_have_the_same_numbers_in_glsl() {
     let classes = TileClass::ALL.map(|class| {
         let name = match class {
             TileClass::Empty => "EMPTY",
-            TileClass::QuadsAbove => "QUADS_ABOVE",
             TileClass::Quads => "QUADS",
-            TileClass::Above => "ABOVE",
             TileClass::Any => "ANY",
         };
         (name, number(class as u32))

@@ -63,9 +63,9 @@ fn an_effect_that_no_light_calls_for_changes_no_bit() {
     let scene = scene("sweep.glb");
     let view = View::new(&engine, &scene);
     let required = scene.effects();
-    let one_point = Quality { one_point: true, ..Quality::default() };
-    let expected = view.shade(required, one_point);
-    let (pixels, largest) = difference(&expected, &view.shade(Effects::all(), one_point));
+    let plain = Quality::default();
+    let expected = view.shade(required, plain);
+    let (pixels, largest) = difference(&expected, &view.shade(Effects::all(), plain));
     assert_eq!(pixels, 0, "{largest:e} at most");
     // The twin: one that pixels use changes most of them
     let (pixels, _) = difference(
@@ -83,16 +83,16 @@ fn code_that_no_light_calls_for_changes_no_bit() {
     let required = scene.effects();
     // Those of shapes have tests of their own, and pipelines that take long to make
     let unused = Effects::all() - Effects::SHAPES - required;
-    let one_point = Quality { one_point: true, ..Quality::default() };
+    let plain = Quality::default();
     let dear = Quality {
-        form_factor: FormFactor::ExactDifference,
+        form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
         fresnel: Fresnel::Split,
         footprint: Footprint::Ellipse,
         ..Quality::default()
     };
     // Pipelines take their time: each effect once, and all but one of them at once on rungs that bring code of their own
-    let mut sets: Vec<_> = unused.iter().map(|effect| (effect, one_point)).collect();
+    let mut sets: Vec<_> = unused.iter().map(|effect| (effect, plain)).collect();
     sets.push((unused - Effects::POLYGON, dear));
     let wrong = sets.into_iter().filter_map(|(added, quality)| {
         let (pixels, largest) =
@@ -112,7 +112,7 @@ fn the_set_of_every_polygon_effect_shows_what_the_required_one_does() {
     // With shapes too: shape_frames.rs
     let all = Effects::all() - Effects::SHAPES;
     assert!(required != all && required.contains(Effects::POLYGON | Effects::TWO_SIDED), "{required}");
-    let quality = Quality { one_point: true, ..Quality::default() };
+    let quality = Quality::default();
     let (pixels, largest) = difference(&view.shade(required, quality), &view.shade(all, quality));
     assert_eq!(pixels, 0, "{largest:e}");
 }

@@ -1,21 +1,15 @@
 //! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
 
 use arealight::plan::{Output, RadianceFormat, RadianceImages, ShadeOptions};
-use arealight::{Effects, Horizon, PolygonLight, Quality};
+use arealight::{Effects, PolygonLight};
 use arealight_tests::TestEngine;
-use arealight_tests::one_pixel::{self, BEFORE, OnePixel, lamp};
+use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp, options};
 use arealight_vk::{Error, Resource, ShadePass, ShadeResources};
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
 use half::f16;
 
 const CAMERA: Vec3 = Vec3::new(0.0, -1.0, 1.0);
-
-/// Nothing is clipped, as the lamp is above the surface.
-fn options() -> ShadeOptions {
-    let quality = Quality { horizon: Horizon::Bare, ..Quality::default() };
-    ShadeOptions { quality, ..one_pixel::options() }
-}
 
 fn surface(engine: &TestEngine) -> OnePixel<'_> {
     OnePixel::new(engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5)

@@ -114,20 +114,6 @@ fn glossy_lobes_clipped_twice_keep_every_property() {
     horizons::clipping_twice_is_no_brighter(&engine);
 }
 
-#[test]
-fn the_bare_rung_is_as_good_where_it_is_enough() {
-    let Some(engine) = TestEngine::new() else { return };
-    let rungs = Rung::of(&PATHS, &[Horizon::Bare]);
-    horizons::bare_is_as_clipped_where_it_is_enough(&engine, &rungs);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, None, &rungs);
-}
-
-#[test]
-fn far_lights_are_taken_from_their_center() {
-    let Some(engine) = TestEngine::new() else { return };
-    switches::the_one_point_form_begins_without_a_jump(&engine);
-}
-
 /// Lambert's, or the table's with a random roughness.
 fn random_point(random: &mut Random, table: Option<&LightTable>, vertices: Vec<DVec3>) -> EvalPoint {
     let surface = match table {

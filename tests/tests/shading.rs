@@ -129,19 +129,6 @@ fn fresnel_and_both_lobes_add_up() {
 }
 
 #[test]
-fn the_fast_rung_is_within_its_error_and_no_better_than_it_says() {
-    let points = lights(4, |_| lambert_surface());
-    let quality = Quality { form_factor: FormFactor::Fast, ..Quality::default() };
-    // 2.7e-5 of each edge's share, and the shares of a polygon's edges, signs aside, add up to at most 1 for
-    // every horizon they circle: concave outlines of this family reach 2.
-    let Some(comparison) = compare("fast Lambert", &points, quality, |_| 5.4e-5 + rounding(1.0)) else {
-        return;
-    };
-    assert!(comparison.largest() > 5e-6, "the fast series was not used");
-    comparison.assert_all();
-}
-
-#[test]
 fn every_way_to_the_glossy_lobe_follows_its_twin() {
     // Rough enough that the part of a lobe above the surface, which both horizons divide by, is not small
     let points = lights(9, |random| arealight::Surface {
@@ -192,7 +179,7 @@ fn a_mirror_sees_a_ceiling_of_any_size() {
             point(glossy_surface(alpha), DVec3::new(0.3, 0.0, 0.954), ceiling(size, 1.0), false)
         })
         .collect();
-    for form_factor in [FormFactor::Exact, FormFactor::ExactDifference] {
+    for form_factor in [FormFactor::Exact, FormFactor::Difference] {
         let quality = Quality { form_factor, ..Quality::default() };
         // Beyond a size of 1e4 / alpha the ceiling's own edges are in the rounding of its height
         let bound = |point: &EvalPoint| {
@@ -217,7 +204,7 @@ fn a_far_light_below_the_surface_sends_nothing_with_both_horizons() {
         })
         .collect();
     let Some(engine) = TestEngine::new() else { return };
-    let quality = Quality { one_point: true, ..Quality::default() };
+    let quality = Quality::default();
     let answers = engine.eval(&points, Quality { horizon: Horizon::Both, ..quality }).unwrap();
     assert!(answers.iter().all(|answer| *answer == glam::Vec3::ZERO), "{answers:?}");
     // The twin: clipped at the lobe's horizon alone, they do

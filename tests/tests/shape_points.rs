@@ -67,7 +67,7 @@ fn moved(shape: &Shape, offset: DVec3) -> Shape {
 }
 
 fn precise() -> Quality {
-    Quality { form_factor: FormFactor::ExactDifference, fresnel: Fresnel::Split, ..Quality::default() }
+    Quality { form_factor: FormFactor::Difference, fresnel: Fresnel::Split, ..Quality::default() }
 }
 
 fn widened(radiance: Vec3) -> [f64; 3] {

@@ -111,7 +111,7 @@ fn qualities() -> [Quality; 5] {
     let rung = |footprint| Quality { footprint, ..Quality::default() };
     let [round, ellipse, two, four] = FOOTPRINTS.map(rung);
     let dear = Quality {
-        form_factor: FormFactor::ExactDifference,
+        form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,
         horizon: Horizon::Both,
         ..four
@@ -164,7 +164,7 @@ fn lookups_are_those_of_their_float64_twins() {
     given.retain(|point| point.surface == lambert_surface());
     for footprint in FOOTPRINTS {
         // Relative precision, as lights may be small
-        let quality = Quality { form_factor: FormFactor::ExactDifference, footprint, ..Quality::default() };
+        let quality = Quality { form_factor: FormFactor::Difference, footprint, ..Quality::default() };
         let answers = engine.eval(&given, quality).unwrap();
         let mut comparison = Comparison::new(format!("{footprint:?}"));
         let mut twin = 0;
@@ -368,7 +368,7 @@ fn far_light(engine: &TestEngine, surface: Surface, footprint: Footprint) -> Vec
     let corner = |x: f64, y: f64| DVec3::new(x, y, 1e3);
     let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
     let mut far = point(surface, DVec3::Z, vertices, false);
-    let quality = Quality { form_factor: FormFactor::ExactDifference, footprint, ..Quality::default() };
+    let quality = Quality { form_factor: FormFactor::Difference, footprint, ..Quality::default() };
     let plain = engine.eval(&[far.clone()], quality).unwrap()[0];
     let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
     far.light.texture = Some(LightTexture { layer: SPLIT, uvs });

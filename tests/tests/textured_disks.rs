@@ -80,7 +80,7 @@ fn showing(points: &[ShapePoint], texture: Option<u32>) -> Vec<ShapePoint> {
 /// One fetch; and four along an axis, of what both horizons leave. A software driver takes seconds for each pipeline.
 fn qualities() -> [Quality; 2] {
     let four = Quality {
-        form_factor: FormFactor::ExactDifference,
+        form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
         footprint: Footprint::SplitFour,
         ..Quality::default()

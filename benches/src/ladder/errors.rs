@@ -9,7 +9,7 @@ use arealight_oracle::cubature::Settings;
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::shading::{RelativeLight, ltc_on, truth};
 use arealight_oracle::texture::Texture;
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -143,32 +143,29 @@ impl Known {
             Method::Rung { quality, .. } => quality,
             Method::Yardstick { .. } | Method::Samples { .. } => Quality::default(),
         };
-        let judged: Vec<usize> =
-            (0..self.points.len()).filter(|index| is_right(quality, self, *index, table)).collect();
         let integrand = Integrand {
             both_horizons: quality.horizon == Horizon::Both,
             fresnel: quality.fresnel,
             lobes: Some(quality.lobes),
         };
-        let at_judged = |all: &[DVec3]| -> Vec<DVec3> { judged.iter().map(|index| all[*index]).collect() };
-        let of_table = at_judged(self.integrals(integrand, table));
-        let of_fit = at_judged(self.integrals(Integrand { lobes: None, ..integrand }, table));
-        let (truths, found) = (at_judged(&self.truths), at_judged(found));
+        let of_table = self.integrals(integrand, table).to_vec();
+        let of_fit = self.integrals(Integrand { lobes: None, ..integrand }, table).to_vec();
+        let truths = &self.truths;
 
-        let all = Errors::of(found.iter().zip(&truths));
+        let all = Errors::of(found.iter().zip(truths));
         // Parts are over the mean of the truth as the whole is
         let mean: f64 = truths.iter().map(|truth| truth.element_sum()).sum();
         let part = |found: &[DVec3], expected: &[DVec3]| {
             let finite = found.iter().zip(expected).filter(|(found, _)| found.is_finite());
-            let count = judged.len().max(1) as f64 * 3.0;
+            let count = truths.len().max(1) as f64 * 3.0;
             let square: f64 = finite.map(|(found, expected)| (*found - *expected).length_squared()).sum();
             (square / count).sqrt() / (mean / count)
         };
         SplitErrors {
             all,
-            fit: part(&of_fit, &truths),
+            fit: part(&of_fit, truths),
             table: part(&of_table, &of_fit),
-            integral: part(&found, &of_table),
+            integral: part(found, &of_table),
         }
     }
 
@@ -201,29 +198,6 @@ impl Known {
     pub fn noise(&self, answers: &[Vec<DVec3>]) -> Errors {
         Errors::of(answers.iter().flat_map(|found| found.iter().zip(&self.truths)))
     }
-}
-
-/// Whether a rung is for a point: the bare one asks for lights wholly above each lobe's horizon, without obtuse edges.
-fn is_right(quality: Quality, known: &Known, index: usize, table: &LightTable) -> bool {
-    if quality.horizon != Horizon::Bare {
-        return true;
-    }
-    let point = &known.points[index];
-    let surface = point.surface();
-    let frame = SurfaceFrame::new(point.normal.as_dvec3(), point.view());
-    let sample = table.lookup(surface.alpha.sqrt(), frame.cos_view());
-    let mean = surface.f0.element_sum() / 3.0;
-    let lobes = match quality.fresnel {
-        Fresnel::ByF0 => vec![DMat3::IDENTITY, sample.inverse_by_f0(mean, surface.f90)],
-        Fresnel::Split => vec![DMat3::IDENTITY, sample.inverse, sample.schlick_inverse],
-    };
-    known.relative[index].iter().all(|light| {
-        lobes.iter().all(|lobe| {
-            let vertices: Vec<DVec3> = light.vertices.iter().map(|v| *lobe * frame.to_surface(*v)).collect();
-            let next = vertices.iter().cycle().skip(1);
-            vertices.iter().zip(next).all(|(a, b)| a.z > 0.0 && a.dot(*b) > 0.0)
-        })
-    })
 }
 
 /// The images that the textured lights show: those that [lookups are judged by](crate::footprints), and noise again.

@@ -90,21 +90,16 @@ const EXACT: Quality = Quality {
     horizon: Horizon::Cosine,
     fresnel: Fresnel::ByF0,
     lobes: Lobes::Table,
-    one_point: false,
     footprint: Footprint::Round,
 };
-const DIFFERENCE: Quality = Quality { form_factor: FormFactor::ExactDifference, ..EXACT };
+const DIFFERENCE: Quality = Quality { form_factor: FormFactor::Difference, ..EXACT };
 
 /// Every workload; the first has the whole ladder.
 pub fn workloads() -> Vec<Workload> {
     let rung = |name, description, effects: Effects, quality: Quality| Named {
         name,
         description,
-        // The one-point form is in the far effect's code
-        method: Method::Rung {
-            effects: LOBES | effects | if quality.one_point { Effects::FAR } else { Effects::empty() },
-            quality,
-        },
+        method: Method::Rung { effects: LOBES | effects, quality },
     };
     let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
     let yardstick = |name, description, which| Named {
@@ -118,19 +113,11 @@ pub fn workloads() -> Vec<Workload> {
     let ladder = vec![
         practice(),
         yardstick("textbook", "clip, normalise, arc cosines", Yardstick::Textbook),
-        plain("bare", "no clipping, where that is right", Quality { horizon: Horizon::Bare, ..EXACT }),
-        plain("fast", "a shorter series for arcs", Quality { form_factor: FormFactor::Fast, ..EXACT }),
         plain(DEFAULT, "the default: clipped in cosine space", EXACT),
-        plain("one point", "far lights from their centre", Quality { one_point: true, ..EXACT }),
         plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
         plain("split", "a lobe each for F0 and Schlick's part", Quality { fresnel: Fresnel::Split, ..EXACT }),
         plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
         plain("difference", "precise for small lights", DIFFERENCE),
-        plain(
-            "fast difference",
-            "the same by the shorter series",
-            Quality { form_factor: FormFactor::FastDifference, ..EXACT },
-        ),
         plain(
             "split + both",
             "split, at both horizons",
@@ -145,9 +132,7 @@ pub fn workloads() -> Vec<Workload> {
     let far = vec![
         practice(),
         plain(DEFAULT, "absolute precision", EXACT),
-        plain("one point", "from the centre where enough", Quality { one_point: true, ..EXACT }),
         plain("difference", "relative precision", DIFFERENCE),
-        plain("difference, one point", "both", Quality { one_point: true, ..DIFFERENCE }),
     ];
     let textured = |name, description, footprint| {
         rung(name, description, Effects::TEXTURED, Quality { footprint, ..EXACT })

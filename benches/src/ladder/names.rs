@@ -8,14 +8,12 @@ use serde::{Deserialize, Serialize};
 pub struct RungNames {
     /// `--form-factor`
     pub form_factor: String,
-    /// `--horizon`, or `bare`
+    /// `--horizon`
     pub horizon: String,
     /// `--fresnel`
     pub fresnel: String,
     /// `--lobes`
     pub lobes: String,
-    /// `--one-point`
-    pub one_point: bool,
     /// `--footprint`
     pub footprint: String,
 }
@@ -32,14 +30,9 @@ pub struct UnknownRung {
     pub known: Vec<&'static str>,
 }
 
-const FORM_FACTORS: [(&str, FormFactor); 4] = [
-    ("exact", FormFactor::Exact),
-    ("fast", FormFactor::Fast),
-    ("exact-difference", FormFactor::ExactDifference),
-    ("fast-difference", FormFactor::FastDifference),
-];
-const HORIZONS: [(&str, Horizon); 3] =
-    [("cosine", Horizon::Cosine), ("both", Horizon::Both), ("bare", Horizon::Bare)];
+const FORM_FACTORS: [(&str, FormFactor); 2] =
+    [("exact", FormFactor::Exact), ("difference", FormFactor::Difference)];
+const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Horizon::Both)];
 const FRESNELS: [(&str, Fresnel); 2] = [("by-f0", Fresnel::ByF0), ("split", Fresnel::Split)];
 const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
 const FOOTPRINTS: [(&str, Footprint); 4] = [
@@ -60,7 +53,6 @@ impl From<Quality> for RungNames {
             horizon: name(&HORIZONS, quality.horizon),
             fresnel: name(&FRESNELS, quality.fresnel),
             lobes: name(&LOBES, quality.lobes),
-            one_point: quality.one_point,
             footprint: name(&FOOTPRINTS, quality.footprint),
         }
     }
@@ -86,7 +78,6 @@ impl RungNames {
             horizon: find(&HORIZONS, "horizon", &self.horizon)?,
             fresnel: find(&FRESNELS, "fresnel", &self.fresnel)?,
             lobes: find(&LOBES, "lobes", &self.lobes)?,
-            one_point: self.one_point,
             footprint: find(&FOOTPRINTS, "footprint", &self.footprint)?,
         })
     }

@@ -62,7 +62,7 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
         ("exact", rung(exact)),
         ("split", rung(Quality { fresnel: Fresnel::Split, ..exact })),
         ("both horizons", rung(Quality { horizon: Horizon::Both, ..exact })),
-        ("everything", rung(Quality { form_factor: FormFactor::ExactDifference, ..both })),
+        ("everything", rung(Quality { form_factor: FormFactor::Difference, ..both })),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
         ("Monte Carlo, 16 samples", Method::Samples { count: 16 }),
     ];

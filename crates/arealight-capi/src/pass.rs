@@ -115,15 +115,10 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         Failure::argument(format!("options.effects: {unknown:#x} are no AREALIGHT_EFFECT_*"))
     })?;
     let quality = Quality {
-        form_factor: rung(
-            options.form_factor,
-            &[FormFactor::Exact, FormFactor::Fast, FormFactor::ExactDifference, FormFactor::FastDifference],
-            "form_factor",
-        )?,
-        horizon: rung(options.horizon, &[Horizon::Cosine, Horizon::Both, Horizon::Bare], "horizon")?,
+        form_factor: rung(options.form_factor, &[FormFactor::Exact, FormFactor::Difference], "form_factor")?,
+        horizon: rung(options.horizon, &[Horizon::Cosine, Horizon::Both], "horizon")?,
         fresnel: rung(options.fresnel, &[Fresnel::ByF0, Fresnel::Split], "fresnel")?,
         lobes: rung(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
-        one_point: rung(options.one_point, &[false, true], "one_point")?,
         footprint: rung(
             options.footprint,
             &[Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour],
@@ -392,7 +387,6 @@ mod tests {
             (c::AREALIGHT_EFFECT_SPECULAR_INPUT, Effects::SPECULAR_INPUT),
             (c::AREALIGHT_EFFECT_POLYGON, Effects::POLYGON),
             (c::AREALIGHT_EFFECT_TEXTURED, Effects::TEXTURED),
-            (c::AREALIGHT_EFFECT_FAR, Effects::FAR),
             (c::AREALIGHT_EFFECT_ELLIPSE, Effects::ELLIPSE),
             (c::AREALIGHT_EFFECT_SPHERE, Effects::SPHERE),
             (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
@@ -409,14 +403,12 @@ mod tests {
             ..ArealightPassOptions::default()
         };
         let made = |options: ArealightPassOptions| shade_options(&options).unwrap().quality;
-        let quality = made(options(c::AREALIGHT_FORM_FACTOR_FAST, c::AREALIGHT_HORIZON_BOTH, 0));
-        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Fast, Horizon::Both));
         let quality = made(options(
-            c::AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE,
-            c::AREALIGHT_HORIZON_BARE,
+            c::AREALIGHT_FORM_FACTOR_DIFFERENCE,
+            c::AREALIGHT_HORIZON_BOTH,
             c::AREALIGHT_FOOTPRINT_SPLIT_FOUR,
         ));
-        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::FastDifference, Horizon::Bare));
+        assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Difference, Horizon::Both));
         assert_eq!(quality.footprint, Footprint::SplitFour);
         // Zero is the default of everything
         assert_eq!(made(ArealightPassOptions::default()), Quality::default());
@@ -430,11 +422,10 @@ mod tests {
         assert_eq!((tile_options(&tiles), tile_options(&zero)), (Some(expected), None));
         for (wrong, field) in [
             (ArealightPassOptions { effects: 1 << 30, ..zero }, "options.effects"),
-            (ArealightPassOptions { form_factor: 4, ..zero }, "options.form_factor"),
-            (ArealightPassOptions { horizon: 3, ..zero }, "options.horizon"),
+            (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),
+            (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { fresnel: 2, ..zero }, "options.fresnel"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
-            (ArealightPassOptions { one_point: 2, ..zero }, "options.one_point"),
             (ArealightPassOptions { footprint: 4, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),
             (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),

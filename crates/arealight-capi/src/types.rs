@@ -17,8 +17,6 @@ pub const AREALIGHT_EFFECT_SPECULAR_INPUT: u32 = 8;
 pub const AREALIGHT_EFFECT_POLYGON: u32 = 16;
 /// Some light shows an image: ArealightResources.light_textures is read.
 pub const AREALIGHT_EFFECT_TEXTURED: u32 = 32;
-/// Some light may be so far that its center alone stands for it: ArealightPassOptions.one_point counts only with this.
-pub const AREALIGHT_EFFECT_FAR: u32 = 64;
 /// Some light is a disk or an ellipse.
 pub const AREALIGHT_EFFECT_ELLIPSE: u32 = 256;
 /// Some light is a sphere.
@@ -30,23 +28,17 @@ pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
 /// Some disk or ellipse shows an image: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
 pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 /// Every effect: right for any lights, at the highest cost.
-pub const AREALIGHT_EFFECTS_ALL: u32 = 8063;
+pub const AREALIGHT_EFFECTS_ALL: u32 = 7999;
 
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
-/// 2.7e-5 of each edge's share, fewer instructions.
-pub const AREALIGHT_FORM_FACTOR_FAST: u32 = 1;
 /// As EXACT, and relative precision for lights that look small.
-pub const AREALIGHT_FORM_FACTOR_EXACT_DIFFERENCE: u32 = 2;
-/// As FAST, likewise.
-pub const AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE: u32 = 3;
+pub const AREALIGHT_FORM_FACTOR_DIFFERENCE: u32 = 1;
 
 /// Polygons are clipped at the horizon of the lobe's cosine space.
 pub const AREALIGHT_HORIZON_COSINE: u32 = 0;
 /// And at the surface's horizon: nothing leaks from behind the surface.
 pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
-/// Nowhere: the host knows that it need not be.
-pub const AREALIGHT_HORIZON_BARE: u32 = 2;
 
 /// One integral a glossy lobe.
 pub const AREALIGHT_FRESNEL_BY_F0: u32 = 0;
@@ -206,7 +198,7 @@ pub struct ArealightUpload {
     pub command_buffer: *mut c_void,
 }
 
-/// What a pass is specialised for. All zero is the exact rung without an effect.
+/// What a pass is specialised for. All zero is exact without an effect.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
@@ -220,8 +212,6 @@ pub struct ArealightPassOptions {
     pub fresnel: u32,
     /// One of AREALIGHT_LOBES_*.
     pub lobes: u32,
-    /// 1: far lights are taken from their center alone where that is within 1e-4. With AREALIGHT_EFFECT_FAR.
-    pub one_point: u32,
     /// One of AREALIGHT_FOOTPRINT_*.
     pub footprint: u32,
     /// One of AREALIGHT_POSITION_*.

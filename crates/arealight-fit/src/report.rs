@@ -165,7 +165,7 @@ fn radiance(sample: &TableSample, rung: Rung, f0: DVec3, quad: &[DVec3; 4]) -> D
 /// The integral of a lobe over a quad, seen from its front.
 fn integral(inverse: &DMat3, horizon: Horizon, quad: &[DVec3; 4]) -> f64 {
     match horizon {
-        Horizon::Cosine | Horizon::Bare | Horizon::Above => transformed_form_factor(inverse, quad).max(0.0),
+        Horizon::Cosine => transformed_form_factor(inverse, quad).max(0.0),
         Horizon::Both => {
             let form_factor = transformed_form_factor(inverse, &above_horizon(quad)).max(0.0);
             form_factor / share_above_surface(inverse)

@@ -227,8 +227,8 @@ pub fn ltc(
 }
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
-/// `arealight_polygon_radiance`. Of `quality` it takes the horizon, the Fresnel rung and where the lobes come from; it integrates exactly on
-/// every rung of the form factor, and [`Horizon::Bare`] is clipped at the lobe's horizon.
+/// `arealight_polygon_radiance`. Of `quality` it takes the horizon, how the Fresnel term enters, and where the lobes come from; it integrates
+/// exactly.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn ltc_on(

@@ -2,7 +2,7 @@
 
 use crate::{Scene, SceneMaterial};
 use arealight::Effects;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// An effect, and who in the scene calls for it.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +40,6 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         material(Effects::SPECULAR_INPUT, has_specular_input),
         light(Effects::POLYGON),
         light(Effects::TEXTURED),
-        far_light(scene),
         light(Effects::ELLIPSE),
         light(Effects::SPHERE),
         light(Effects::TUBE),
@@ -55,14 +54,6 @@ impl Scene {
     pub fn effects(&self) -> Effects {
         required_effects(self).iter().map(|call| call.effect).collect()
     }
-}
-
-/// The first light that some surface may see as far: one in the farthest corner of the scene's box.
-fn far_light(scene: &Scene) -> Option<Call> {
-    let corners = scene.bounds.corners();
-    let reach = |from: DVec3| corners.iter().map(|corner| corner.distance(from)).fold(0.0, f64::max);
-    let far = scene.lights.iter().find(|light| light.may_be_far(reach(light.center())))?;
-    Some(Call { effect: Effects::FAR, reason: format!("light '{}'", far.name) })
 }
 
 /// Textures multiply: a metalness texture can make any metal a dielectric somewhere.

@@ -113,12 +113,6 @@ impl SceneBuffers {
         })
     }
 
-    /// The box about all surfaces, from its smallest corner to its largest, relative to the origin: that of the hierarchy's root.
-    /// None without surfaces.
-    pub fn bounds(&self) -> Option<[Vec3; 2]> {
-        self.nodes.first().map(|root| [root.min, root.max].map(Vec3::from_array))
-    }
-
     /// Push constants of the visibility kernel for `camera`, in an image of `size` pixels; `background` is
     /// the radiance where nothing is hit.
     pub fn constants(&self, camera: &Camera, size: [u32; 2], background: Vec3) -> VisibilityConstants {

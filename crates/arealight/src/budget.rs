@@ -29,7 +29,7 @@ impl ProfileRung {
 pub struct Profile {
     /// The device's name.
     pub device: String,
-    /// Its rungs, those alone that are right for every light and point: not [`crate::Horizon::Bare`].
+    /// Its quality levels.
     pub rungs: Vec<ProfileRung>,
 }
 
@@ -183,7 +183,6 @@ mod tests {
         horizon: crate::Horizon::Cosine,
         fresnel: Fresnel::ByF0,
         lobes: Lobes::Table,
-        one_point: false,
         footprint: Footprint::Round,
     };
 

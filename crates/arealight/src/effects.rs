@@ -23,10 +23,6 @@ bitflags::bitflags! {
         const POLYGON = 1 << 4;
         /// Some light shows an image ([`PolygonLight::texture`](crate::PolygonLight::texture)).
         const TEXTURED = 1 << 5;
-        /// Some light may be so small as seen from some surface that its centre alone stands for it
-        /// ([`Quality::one_point`](crate::Quality::one_point), which without this effect is as if it were not
-        /// set): it is [`Effects::FAR_DISTANCE`] of its radii away. Without it the light is shaded in full.
-        const FAR = 1 << 6;
         /// Some light is a disk or an ellipse ([`Shape::Ellipse`](crate::Shape::Ellipse)).
         const ELLIPSE = 1 << 8;
         /// Some light is a sphere ([`Shape::Sphere`](crate::Shape::Sphere)).
@@ -66,10 +62,6 @@ impl Effects {
     /// What the surfaces of a frame call for, whatever its lights.
     pub const SURFACES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::SPECULAR_INPUT);
 
-    /// A light nearer than so many of its radii is never shaded from its centre alone: less than the root of 8e4 in
-    /// `arealight_is_far`, since no lobe's space makes a light look smaller against its distance than it is.
-    pub const FAR_DISTANCE: f64 = 282.0;
-
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
         [
@@ -79,7 +71,6 @@ impl Effects {
             (Self::SPECULAR_INPUT, "specular_input"),
             (Self::POLYGON, "polygon"),
             (Self::TEXTURED, "textured"),
-            (Self::FAR, "far"),
             (Self::ELLIPSE, "ellipse"),
             (Self::SPHERE, "sphere"),
             (Self::TUBE, "tube"),

@@ -206,8 +206,7 @@ impl PolygonLight {
         }
     }
 
-    /// What the light itself calls for. [`Effects::FAR`] depends on where surfaces are:
-    /// [`PolygonLight::may_be_far`].
+    /// What the light calls for.
     pub fn effects(&self) -> Effects {
         let mut effects = Effects::empty();
         effects.set(Effects::TWO_SIDED, self.two_sided);
@@ -216,22 +215,6 @@ impl PolygonLight {
         effects.set(Effects::MESH, self.is_mesh());
         effects
     }
-
-    /// Whether a surface as far as `distance` from the light's center may see it as
-    /// [far](Effects::FAR). Conservative: false only where none does. A mesh is always shaded in full.
-    pub fn may_be_far(&self, distance: f64) -> bool {
-        if self.is_mesh() {
-            return false;
-        }
-        let center = self.center();
-        let radius = self.vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
-        may_be_far(radius, distance)
-    }
-}
-
-/// Whether a light of this radius may be far from what is at this distance of its center.
-pub(crate) fn may_be_far(radius: f64, distance: f64) -> bool {
-    distance.is_nan() || distance > Effects::FAR_DISTANCE * radius
 }
 
 #[cfg(test)]

@@ -2,10 +2,10 @@
 
 use crate::Effects;
 use crate::gpu::GpuLight;
-use crate::light::{LightError, PolygonLight, may_be_far};
+use crate::light::{LightError, PolygonLight};
 use crate::light_texture::TextureMap;
 use crate::mesh::area_of;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
@@ -31,14 +31,13 @@ pub struct PackedLights {
     pub order: Vec<u32>,
     /// How many records come first that are convex quads without an image.
     pub quad_count: u32,
-    /// What none of the lights calls for, of [`Effects::TWO_SIDED`] and [`Effects::BEYOND_QUADS`]; and [`Effects::FAR`] where it is
-    /// known that none is: see [`PackedLights::for_surfaces_within`].
+    /// What none of the lights calls for, of [`Effects::TWO_SIDED`] and [`Effects::BEYOND_QUADS`].
     pub unused: Effects,
 }
 
 impl Default for PackedLights {
     fn default() -> Self {
-        let unused = Effects::TWO_SIDED | Effects::BEYOND_QUADS | Effects::FAR;
+        let unused = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
         Self { lights: vec![], vertices: vec![], order: vec![], quad_count: 0, unused }
     }
 }
@@ -63,26 +62,9 @@ impl PackedLights {
         for index in quads.into_iter().chain(others) {
             packed.push(&lights[index], maps[index], origin)?;
             packed.order.push(index as u32);
-            // From somewhere every light is far
-            packed.unused -= effects[index] | Effects::FAR;
+            packed.unused -= effects[index];
         }
         Ok(packed)
-    }
-
-    /// Says that all surfaces that will be shaded lie in the box from `low` to `high`, relative to the origin. Where no light
-    /// may be [far](Effects::FAR) from anything in it, that is [unused](Self::unused) too.
-    #[must_use]
-    pub fn for_surfaces_within(mut self, low: Vec3, high: Vec3) -> Self {
-        let is_far = |light: &GpuLight| {
-            let center = Vec3::from_array(light.center).as_dvec3();
-            let [to_low, to_high] = [low, high].map(|corner| (corner.as_dvec3() - center).abs());
-            // NaN is far
-            let farthest =
-                if low.is_nan() || high.is_nan() { f64::NAN } else { to_low.max(to_high).length() };
-            may_be_far(f64::from(light.radius), farthest)
-        };
-        self.unused.set(Effects::FAR, !self.lights.iter().any(is_far));
-        self
     }
 
     /// Adds the lights of `other`, which may be packed relative to another origin, after those that are here. Their quads are
@@ -218,33 +200,6 @@ mod tests {
         two.append(quads()).unwrap();
         assert_eq!((two.quad_count, two.unused), (2, Effects::TWO_SIDED | Effects::BEYOND_QUADS));
         assert_eq!(PackedLights::new(&[], DVec3::ZERO).unwrap(), PackedLights::default());
-    }
-
-    #[test]
-    fn no_light_is_far_from_surfaces_within_its_reach() {
-        let origin = DVec3::new(1e7, 0.0, 0.0);
-        let mut light = arrow();
-        light.vertices.iter_mut().for_each(|vertex| *vertex += origin);
-        let packed = PackedLights::new(&[light], origin).unwrap();
-        let radius = packed.lights[0].radius;
-        let is_far = |low: Vec3, high: Vec3| {
-            let unused = packed.clone().for_surfaces_within(low, high).unused;
-            assert_eq!(unused - Effects::FAR, packed.unused);
-            !unused.contains(Effects::FAR)
-        };
-        assert!(!packed.unused.contains(Effects::FAR), "from somewhere it is");
-        // A box about the light, and one that reaches a little too far to one side
-        let center = Vec3::from_array(packed.lights[0].center);
-        let reach = Vec3::X * radius * Effects::FAR_DISTANCE as f32;
-        assert!(!is_far(center - reach * 0.999, center + Vec3::Y * radius));
-        assert!(is_far(center - reach * 1.001, center + Vec3::Y * radius));
-        assert!(is_far(center, center + reach * 1.001));
-        // What is no box: nothing is known
-        assert!(is_far(center, Vec3::new(0.0, f32::NAN, 0.0)) && is_far(Vec3::NEG_INFINITY, Vec3::INFINITY));
-        // With others that may be far, so are all
-        let mut both = packed.clone().for_surfaces_within(center, center);
-        both.append(packed.clone()).unwrap();
-        assert!(!both.unused.contains(Effects::FAR));
     }
 
     #[test]

@@ -141,7 +141,7 @@ impl ShadeVariant {
         // Shapes have two sides too
         let unused_sides =
             if constants.shape_count == 0 { unused & Effects::TWO_SIDED } else { Effects::empty() };
-        let unused_anywhere = unused & (Effects::SURFACES | Effects::FAR);
+        let unused_anywhere = unused & Effects::SURFACES;
         let others = effects - Effects::BEYOND_QUADS - Effects::OF_SHAPES - unused_sides - unused_anywhere;
         let quad_count = if lights.is_empty() { constants.light_count } else { constants.quad_count };
         Self { effects: others | lights | shapes, quads: quad_count > 0 }
@@ -250,7 +250,7 @@ pub fn shade_tiles_specialization(
 fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     vec![
         (kernels::constant::EFFECTS, effects.bits()),
-        (kernels::constant::FORM_FACTOR, quality.form_factor_bits()),
+        (kernels::constant::FORM_FACTOR, quality.form_factor as u32),
         (kernels::constant::HORIZON, quality.horizon as u32),
         (kernels::constant::FRESNEL, quality.fresnel as u32),
         (kernels::constant::LOBES, quality.lobes as u32),
@@ -355,7 +355,7 @@ mod tests {
         // What is counted is shaded, even where nothing is said to call for it
         assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::OF_SHAPES), Effects::empty());
         // What depends on surfaces, whatever lights there are
-        let of_surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::FAR;
+        let of_surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT;
         assert_eq!(variant(of_surfaces, counts(3, 1, 2)).0, of_surfaces);
         // A pass without those effects takes all lights for quads
         let plain = ShadeVariant::new(Effects::GLOSSY, Effects::empty(), &counts(3, 0, 0));

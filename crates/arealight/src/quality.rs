@@ -2,7 +2,7 @@
 
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
-/// Every rung returns a finite number in [0, 1], whatever comes in, and keeps the promises that
+/// Either returns a finite number in [0, 1], whatever comes in, and keeps the promises that
 /// `shaders/include/arealight/form_factor.glsl` states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -10,14 +10,10 @@ pub enum FormFactor {
     /// float32's own precision, absolute: 1e-6.
     #[default]
     Exact = 0,
-    /// A shorter series for the arcs: 2.7e-5 of each edge's share, fewer instructions.
-    Fast = 1,
     /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. Of a
     /// light of area A at five times its size, or any larger distance d, the error is at most 1e-6 A / (pi d²), both
     /// as they are in the lobe's cosine space.
-    ExactDifference = 2,
-    /// As [`FormFactor::Fast`], with an error that shrinks with the light.
-    FastDifference = 3,
+    Difference = 1,
 }
 
 /// Where a polygon is clipped.
@@ -30,15 +26,8 @@ pub enum Horizon {
     Cosine = 0,
     /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface. What the lobe loses there
     /// is made up for, so that its albedo stays: a light that is wholly above both horizons is brighter than by
-    /// [`Horizon::Cosine`]. So there is no rung without clipping that stands in for this one.
+    /// [`Horizon::Cosine`].
     Both = 1,
-    /// Nowhere: the result of [`Horizon::Cosine`] for lights and points of which the host knows that the light is
-    /// wholly above that horizon, and that no edge subtends more than a right angle (`arealight_is_bare` in the GLSL
-    /// library); else the result is wrong, though in [0, 1].
-    Bare = 2,
-    /// Nowhere: the result of [`Horizon::Cosine`], arc by arc, for lights and points of which the host knows that the
-    /// light is wholly above that horizon, whatever its edges subtend; else the result is wrong, though in [0, 1].
-    Above = 3,
 }
 
 /// How Schlick's Fresnel term enters the integral of a lobe.
@@ -83,7 +72,7 @@ pub enum Footprint {
     SplitFour = 3,
 }
 
-/// The rungs that a pass is specialised for.
+/// The quality levels that a pass is specialised for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Quality {
     /// How edges of the polygon are integrated.
@@ -94,16 +83,6 @@ pub struct Quality {
     pub fresnel: Fresnel,
     /// Where the glossy lobe comes from.
     pub lobes: Lobes,
-    /// Take far lights from their centre alone where that is within 1e-4 of the exact form factor, relative (2e-4 for
-    /// concave ones); the others as the other fields say.
-    pub one_point: bool,
     /// How light textures are looked up.
     pub footprint: Footprint,
-}
-
-impl Quality {
-    /// [`Quality::form_factor`] and [`Quality::one_point`] as the bits `AREALIGHT_FORM_FACTOR_*`.
-    pub fn form_factor_bits(self) -> u32 {
-        self.form_factor as u32 | (u32::from(self.one_point) << 2)
-    }
 }

@@ -51,20 +51,9 @@ fn assert_continuous(engine: &TestEngine, property: &Property<'_>, rung: Rung) {
 pub fn the_difference_form_begins_without_a_jump(engine: &TestEngine) {
     for path in PATHS {
         for rung in Rung::of(&[path], &[Horizon::Cosine]) {
-            let form_factor = rung.quality.form_factor;
-            if matches!(form_factor, FormFactor::ExactDifference | FormFactor::FastDifference) {
+            if rung.quality.form_factor == FormFactor::Difference {
                 assert_continuous(engine, &pairs(rung, 41, 0.6, [0.5 - 1e-6, 0.5 + 1e-6], 0.0), rung);
             }
         }
-    }
-}
-
-/// `arealight_is_far` takes a light from its center alone whose distance is 283 times its sphere's radius, at least.
-pub fn the_one_point_form_begins_without_a_jump(engine: &TestEngine) {
-    let edge = 8e4_f64.sqrt().recip();
-    let around = [edge * (1.0 - 1e-6), edge * (1.0 + 1e-6)];
-    for rung in Rung::of(&PATHS, &[Horizon::Cosine]) {
-        let property = pairs(rung, 42, 0.9 * edge, around, 0.1);
-        assert_continuous(engine, &property, rung.with_one_point());
     }
 }

@@ -1,4 +1,4 @@
-//! The rungs of the quality ladder, as options of a command.
+//! Quality levels, as options of a command.
 
 use crate::failure::Failure;
 use arealight::{Footprint, FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
@@ -7,9 +7,9 @@ use std::path::PathBuf;
 /// How lights are integrated.
 #[derive(clap::Args, Clone, Debug)]
 pub struct QualityArguments {
-    /// How edges of lights are integrated [default: exact for render, exact-difference for eval]
-    #[arg(long, value_enum, value_name = "RUNG")]
-    form_factor: Option<Rung>,
+    /// How edges of lights are integrated [default: exact for render, difference for eval]
+    #[arg(long, value_enum, value_name = "HOW")]
+    form_factor: Option<Edges>,
     /// Where lights are clipped
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
     horizon: Clip,
@@ -19,9 +19,6 @@ pub struct QualityArguments {
     /// Where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
     lobes: Source,
-    /// Take far lights from their centre alone where that is within 1e-4, relative
-    #[arg(long)]
-    one_point: bool,
     /// How light textures are looked up [default: round for render, split-four for eval]
     #[arg(long, value_enum, value_name = "HOW")]
     footprint: Option<Lookup>,
@@ -30,20 +27,16 @@ pub struct QualityArguments {
     table: Option<PathBuf>,
 }
 
-/// The rungs of the form factor.
+/// How edges are integrated.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Rung {
+pub enum Edges {
     /// float32's own precision, absolute: 1e-6
     Exact,
-    /// 2.7e-5 of each edge's share, fewer instructions
-    Fast,
     /// As exact, and as precise relative to lights that look small
-    ExactDifference,
-    /// As fast, with an error that shrinks with the light
-    FastDifference,
+    Difference,
 }
 
-/// Where polygons are clipped. The bare rung is left out: whether it is right depends on the pixel.
+/// Where polygons are clipped.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Clip {
     /// At the horizon of the lobe's cosine space; some light leaks in from below the surface
@@ -90,7 +83,6 @@ impl Default for QualityArguments {
             horizon: Clip::Cosine,
             fresnel: None,
             lobes: Source::Table,
-            one_point: false,
             footprint: None,
             table: None,
         }
@@ -98,14 +90,12 @@ impl Default for QualityArguments {
 }
 
 impl QualityArguments {
-    /// The rungs chosen, and those of `default` where none is.
+    /// The levels chosen, and those of `default` where none is.
     pub fn quality_or(&self, default: Quality) -> Quality {
         let form_factor = match self.form_factor {
             None => default.form_factor,
-            Some(Rung::Exact) => FormFactor::Exact,
-            Some(Rung::Fast) => FormFactor::Fast,
-            Some(Rung::ExactDifference) => FormFactor::ExactDifference,
-            Some(Rung::FastDifference) => FormFactor::FastDifference,
+            Some(Edges::Exact) => FormFactor::Exact,
+            Some(Edges::Difference) => FormFactor::Difference,
         };
         let horizon = match self.horizon {
             Clip::Cosine => Horizon::Cosine,
@@ -127,7 +117,7 @@ impl QualityArguments {
             Some(Lookup::SplitTwo) => Footprint::SplitTwo,
             Some(Lookup::SplitFour) => Footprint::SplitFour,
         };
-        Quality { form_factor, horizon, fresnel, lobes, one_point: self.one_point, footprint }
+        Quality { form_factor, horizon, fresnel, lobes, footprint }
     }
 
     /// The table chosen.

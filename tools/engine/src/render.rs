@@ -49,10 +49,7 @@ impl<'a> SceneRenderer<'a> {
         camera: VisibilityConstants,
         size: [u32; 2],
     ) -> Result<Self, EngineError> {
-        let mut packed = PackedLights::new(lights, scene.origin)?;
-        if let Some([low, high]) = scene.bounds() {
-            packed = packed.for_surfaces_within(low, high);
-        }
+        let packed = PackedLights::new(lights, scene.origin)?;
         engine.check_layers(lights)?;
         let geometry = [
             engine.storage("hierarchy nodes", &scene.nodes)?,

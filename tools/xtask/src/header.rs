@@ -83,7 +83,7 @@ fn layouts() -> [Layout; 16] {
             memory, memory_offset, staging_data, staging_size, staging_buffer, staging_offset, command_buffer,
         }
         ArealightPassOptions {
-            effects, form_factor, horizon, fresnel, lobes, one_point, footprint, position, output,
+            effects, form_factor, horizon, fresnel, lobes, footprint, position, output,
             radiance_images, radiance_format, g_buffer,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }

@@ -142,20 +142,16 @@ fn plans(root: &Path) -> Result<Vec<Plan>, TaskError> {
     let mut plans = vec![plan("plain".to_owned(), both_lobes, &[])?, plan("none".to_owned(), 0, &[])?];
     let all = effects.iter().fold(0, |all, (_, bit)| all | bit);
     plans.push(plan("all".to_owned(), all, &[])?);
-    let one_point = numbers("FORM_FACTOR").into_iter().find(|(name, _)| name == "one_point");
-    let one_point = one_point.ok_or_else(|| missing(LIBRARY, "AREALIGHT_FORM_FACTOR_ONE_POINT"))?.1;
     let ellipse = bit("ellipse")?;
     for (name, bit) in &effects {
-        // That of far lights matters with its rung alone
-        let rungs: &[_] = if name == "far" { &[("FORM_FACTOR", one_point)] } else { &[] };
-        // And that of images on ellipses, with ellipses
+        // That of images on ellipses matters with ellipses alone
         let others = if name == "textured_ellipse" { both_lobes | ellipse } else { both_lobes };
-        plans.push(plan(name.clone(), others ^ bit, rungs)?);
+        plans.push(plan(name.clone(), others ^ bit, &[])?);
     }
     for constant in ["FORM_FACTOR", "HORIZON", "FRESNEL", "LOBES", "FOOTPRINT"] {
         for (name, value) in numbers(constant) {
-            // The first one is the plain kernel, and the one-point form was counted above
-            if value != 0 && !(constant == "FORM_FACTOR" && value == one_point) {
+            // The first one is the plain kernel
+            if value != 0 {
                 let textured = if constant == "FOOTPRINT" { bit("textured")? } else { 0 };
                 let name = format!("{}:{name}", constant.to_lowercase());
                 plans.push(plan(name, both_lobes | textured, &[(constant, value)])?);

@@ -80,7 +80,7 @@ impl Judged {
         let errors = other_closings.iter().chain([&reference.form_factor]).map(|f| (value - f).abs());
         let error = errors.fold(f64::INFINITY, f64::min);
         // The given polygon is one of those nearby: its value is searched no further where it is close enough
-        let bound = promises.backward_bound(reference);
+        let bound = promises.backward;
         // Nor where it is hopelessly far off: away from contact, values nearby differ by little more than the moves
         let reach = 100.0 * nearby.vertex_count() as f64 * MOVE / reference.rho;
         let searched = error > bound && error <= reach;

@@ -24,54 +24,23 @@ pub struct Promises {
     /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if it
     /// stood upright at the zenith. `None` promises nothing more for them.
     pub small_light: Option<f64>,
-    /// What a short series adds, as a part of each edge's share.
-    pub of_share: f64,
-    /// What a short series adds, as a part of each edge's share times its angle in radians.
-    pub of_share_by_angle: f64,
-    /// What a form without edges adds, as a part of the form factor.
-    pub of_form_factor: f64,
 }
 
 impl Promises {
-    /// The exact rung.
-    pub const EXACT: Self = Self {
-        backward: 6e-7,
-        forward: 1e-6,
-        contact: 1e-7,
-        small_light: None,
-        of_share: 0.0,
-        of_share_by_angle: 0.0,
-        of_form_factor: 0.0,
-    };
-    /// The fast rung: a short series for the arcs.
-    pub const FAST: Self = Self { of_share: 2.7e-5, ..Self::EXACT };
-    /// The exact rung that takes small lights in difference form.
-    pub const EXACT_DIFFERENCE: Self = Self { small_light: Some(1e-6), ..Self::EXACT };
-    /// The fast rung that takes small lights in difference form: only what an arc is longer than its chord has the
-    /// short series' error.
-    pub const FAST_DIFFERENCE: Self = Self { of_share_by_angle: 7e-5, ..Self::EXACT_DIFFERENCE };
-
-    /// What short series and forms without edges may add.
-    fn allowance(&self, reference: &Reference) -> f64 {
-        self.of_share * reference.share
-            + self.of_share_by_angle * reference.share_by_angle
-            + self.of_form_factor * reference.form_factor
-    }
-
-    /// The largest backward error.
-    pub fn backward_bound(&self, reference: &Reference) -> f64 {
-        self.backward + self.allowance(reference)
-    }
+    /// [`FormFactor::Exact`](arealight::FormFactor::Exact).
+    pub const EXACT: Self = Self { backward: 6e-7, forward: 1e-6, contact: 1e-7, small_light: None };
+    /// [`FormFactor::Difference`](arealight::FormFactor::Difference).
+    pub const DIFFERENCE: Self = Self { small_light: Some(1e-6), ..Self::EXACT };
 
     /// The largest error; infinite in contact.
     pub fn forward_bound(&self, reference: &Reference) -> f64 {
-        self.forward + self.contact / reference.rho + self.allowance(reference)
+        self.forward + self.contact / reference.rho
     }
 
     /// The largest error of a small light, where there is a promise for this one.
     pub fn small_light_bound(&self, reference: &Reference) -> Option<f64> {
         let unit = reference.small_light_unit?;
-        Some(self.small_light? * unit + self.allowance(reference))
+        Some(self.small_light? * unit)
     }
 }
 

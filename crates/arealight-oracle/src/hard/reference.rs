@@ -21,10 +21,6 @@ pub struct Reference {
     pub distance: f64,
     /// The polygon's area.
     pub area: f64,
-    /// The edge terms' absolute values, summed.
-    pub share: f64,
-    /// The same, each times its edge's angle in radians.
-    pub share_by_angle: f64,
     /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`]. Of a sliver, the area
     /// that four units in the last place of its offsets are a millionth of: no better is its area known.
     pub small_light_unit: Option<f64>,
@@ -81,8 +77,6 @@ impl Reference {
             rho: if farthest > 0.0 { distance / farthest } else { 0.0 },
             distance,
             area,
-            share: walked.share,
-            share_by_angle: walked.share_by_angle,
             small_light_unit: (extent < SMALL * farthest).then(|| small_area / (PI * distance * distance)),
         };
         (reference, closings)

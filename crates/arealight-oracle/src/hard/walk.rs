@@ -12,10 +12,6 @@ pub type Vector<T> = [T; 3];
 pub struct Walked<T> {
     /// 2 pi times the signed form factor, which is positive where the front faces the origin.
     pub sum: T,
-    /// The form factor's edge terms' absolute values, summed.
-    pub share: f64,
-    /// The same sum, each term times its edge's angle in radians.
-    pub share_by_angle: f64,
     /// The distance from the origin to the nearest of the clipped polygon's edges, those along the horizon
     /// included; infinite where nothing is above the horizon.
     pub nearest_edge: f64,
@@ -57,8 +53,6 @@ fn absolute<T: Number>(a: T) -> T {
 /// The sums that become a [`Walked`]; `nearest_square` is the nearest edge's squared distance.
 struct Sums<T> {
     sum: T,
-    share: f64,
-    share_by_angle: f64,
     nearest_square: f64,
 }
 
@@ -79,9 +73,6 @@ impl<T: Number> Sums<T> {
         let angle = T::angle(length, dot(a.position, b.position));
         let term = angle * (normal[2] / length);
         self.sum = self.sum - term;
-        let share = term.round().abs() / TAU;
-        self.share += share;
-        self.share_by_angle += share * angle.round();
     }
 }
 
@@ -121,7 +112,7 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
         offset: offset.map(T::exact),
         position: [0, 1, 2].map(|i| T::sum(anchor[i], offset[i])),
     };
-    let mut sums = Sums { sum: T::ZERO, share: 0.0, share_by_angle: 0.0, nearest_square: f64::INFINITY };
+    let mut sums = Sums { sum: T::ZERO, nearest_square: f64::INFINITY };
     let (mut exit, mut first_entry, mut exits) = (None, None, 0);
     let mut previous = offsets.last().map(&vertex);
     for offset in offsets {
@@ -150,11 +141,5 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
     if let (Some(exit), Some(entry)) = (&exit, &first_entry) {
         sums.add_edge(exit, entry);
     }
-    Walked {
-        sum: sums.sum,
-        share: sums.share,
-        share_by_angle: sums.share_by_angle,
-        nearest_edge: sums.nearest_square.sqrt(),
-        exits,
-    }
+    Walked { sum: sums.sum, nearest_edge: sums.nearest_square.sqrt(), exits }
 }

@@ -89,7 +89,7 @@ fn the_demo_shows_what_there_is() {
     let scene = load("demo.glb");
     assert_eq!(
         scene.effects(),
-        Effects::all() - Effects::FAR - Effects::IMAGES - Effects::SHAPES - Effects::MESH,
+        Effects::all() - Effects::IMAGES - Effects::SHAPES - Effects::MESH,
         "screen.glb has textures"
     );
     let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
@@ -110,7 +110,7 @@ fn the_demo_shows_what_there_is() {
 #[test]
 fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let scene = load("screen.glb");
-    let others = Effects::FAR | Effects::SPECULAR_INPUT | Effects::OF_SHAPES | Effects::MESH;
+    let others = Effects::SPECULAR_INPUT | Effects::OF_SHAPES | Effects::MESH;
     assert_eq!(scene.effects(), Effects::all() - others);
     let layer = |name: &str| {
         let light = scene.lights.iter().find(|light| light.name == name).unwrap();

@@ -2,7 +2,7 @@
 
 /// [`crate::Effects`] as bits.
 pub const EFFECTS: u32 = 0;
-/// [`crate::Quality::form_factor_bits`].
+/// [`crate::FormFactor`].
 pub const FORM_FACTOR: u32 = 1;
 /// [`crate::plan::PositionSource`].
 pub const POSITION_SOURCE: u32 = 2;

@@ -55,8 +55,8 @@ fn to_text(calls: &[Call], instructions: &Instructions) -> String {
     if let Some(plain) = instructions.find("plain") {
         let both = Effects::from_bits_truncate(plain.effects);
         lines.push(format!(
-            "\nInstructions of the shade kernel's SPIR-V after {}, beside {} with {both} on the first rungs \
-             (far: with --one-point).",
+            "\nInstructions of the shade kernel's SPIR-V after {}, beside {} with {both} on the first quality \
+             levels.",
             instructions.tool, plain.instructions
         ));
     }

@@ -191,7 +191,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
     // The most precise rungs, unless others are to be seen
     let precise = Quality {
-        form_factor: FormFactor::ExactDifference,
+        form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,
         footprint: Footprint::SplitFour,
         ..Quality::default()

@@ -144,8 +144,8 @@ impl EffectChoice {
     fn effects(self, scene: &Scene, path: &Path) -> Effects {
         let Self::Stated(effects) = self else { return scene.effects() };
         for call in arealight_scene::required_effects(scene) {
-            // Lights that need more are refused by the engine; a far light without its effect is shaded in full
-            if !effects.contains(call.effect) && call.effect != Effects::FAR {
+            // Lights that need more are refused by the engine
+            if !effects.contains(call.effect) {
                 eprintln!("warning: {}: --effects is without {call}", path.display());
             }
         }
@@ -155,8 +155,7 @@ impl EffectChoice {
 
 /// A profile's times are of quads with one side, and of those that show images.
 fn warn_of_dearer_lights(effects: Effects, path: &Path) {
-    let measured =
-        Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::TEXTURED | Effects::FAR;
+    let measured = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::TEXTURED;
     let dearer = effects - measured;
     if !dearer.is_empty() {
         let path = path.display();
@@ -425,7 +424,7 @@ mod tests {
     fn effects_are_stated_or_required() {
         assert_eq!("required".parse(), Ok(EffectChoice::Required));
         assert_eq!("all".parse(), Ok(EffectChoice::Stated(Effects::all())));
-        assert_eq!("glossy,far".parse(), Ok(EffectChoice::Stated(Effects::GLOSSY | Effects::FAR)));
+        assert_eq!("glossy,tube".parse(), Ok(EffectChoice::Stated(Effects::GLOSSY | Effects::TUBE)));
         assert!("shiny".parse::<EffectChoice>().unwrap_err().contains("'shiny' is no effect"));
     }
 

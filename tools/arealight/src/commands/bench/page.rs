@@ -99,7 +99,7 @@ fn says_pareto(found: &Ladder) -> String {
             }
         }
     }
-    says + "The bare rung is judged where it may be taken: lights wholly above the horizon."
+    says
 }
 
 fn says_parts(found: &Ladder) -> String {

@@ -75,11 +75,10 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
     drawing.into_html()
 }
 
-/// The rungs that none is better than in both, from the fastest on. The bare one, judged elsewhere, is left out.
+/// The rungs that none is better than in both, from the fastest on.
 fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let is_bare = |row: &Row| row.rungs.as_ref().is_some_and(|rungs| rungs.horizon == "bare");
     let mut ours: Vec<(&Row, [f64; 2])> = rows.iter().copied().zip(dots.iter().copied()).collect();
-    ours.retain(|(row, _)| row.rungs.is_some() && !is_bare(row));
+    ours.retain(|(row, _)| row.rungs.is_some());
     ours.sort_by(|a, b| a.0.time.milliseconds.median.total_cmp(&b.0.time.milliseconds.median));
     let mut best = f64::INFINITY;
     // Differences below a hundredth are none
