@@ -18,13 +18,18 @@ layout(push_constant, std430) uniform ShadeConstants {
 
 const bool HAS_LIGHTS = true;
 const bool HAS_OTHERS = (EFFECTS & BEYOND_QUADS) != 0u;
+const bool HAS_SHAPES = (EFFECTS & ANY_SHAPE) != 0u;
 
 // The lights of the buffer.
 struct LightList {
     uint quad_count;
     uint light_count;
+    uint shape_count;
 };
 uint light_at(LightList list, uint place) {
+    return place;
+}
+uint shape_at(LightList list, uint place) {
     return place;
 }
 
@@ -32,7 +37,7 @@ uint light_at(LightList list, uint place) {
 
 void main() {
     uint quad_count = HAS_OTHERS ? constants.quad_count : constants.light_count;
-    LightList list = LightList(quad_count, constants.light_count);
+    LightList list = LightList(quad_count, constants.light_count, constants.shape_count);
     shade_pixel(ivec2(gl_GlobalInvocationID.xy), imageSize(radiance_image), list);
 }
 

@@ -1,10 +1,11 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// How a pixel is shaded with a list of polygons, and all shapes. The including kernel has shade_resources.glsl, push constants with
-// camera and shape_count, a struct LightList with quad_count and light_count, and
-// - uint light_at(LightList list, uint place): a light of the list, of which the first quad_count are convex quads without an image;
-// - HAS_LIGHTS, HAS_QUADS, HAS_OTHERS: whether a pixel may have any light, such quads, other polygons.
+// How a pixel is shaded with a list of polygons and one of shapes. The including kernel has shade_resources.glsl, push constants with
+// camera, a struct LightList with quad_count, light_count and shape_count, and
+// - uint light_at(LightList list, uint place): a polygon of the list, of which the first quad_count are convex quads without an image;
+// - uint shape_at(LightList list, uint place): a shape of the list;
+// - HAS_LIGHTS, HAS_QUADS, HAS_OTHERS, HAS_SHAPES: whether a pixel may have any light, such quads, other polygons, shapes.
 
 #include "position.glsl"
 
@@ -26,9 +27,9 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
             add_light(sum, light.radiance, arealight_polygon_reflected(point, light, EFFECTS, quality));
         }
     }
-    if ((EFFECTS & ANY_SHAPE) != 0u) {
-        for (uint index = 0u; index < constants.shape_count; index++) {
-            ArealightShape shape = load_shape(index, SHAPE_ANY);
+    if (HAS_SHAPES) {
+        for (uint place = 0u; place < list.shape_count; place++) {
+            ArealightShape shape = load_shape(shape_at(list, place), SHAPE_ANY);
             add_light(sum, shape.radiance, arealight_shape_reflected(point, shape, EFFECTS, quality));
         }
     }

@@ -6,26 +6,23 @@
 
 const int TILE_SIDE = 8;
 
-// The classes of tiles; crates/arealight/src/tiles.rs tells what they are.
+// The classes of tiles; crates/arealight/src/tiles.rs defines them.
 const uint CLASS_EMPTY = 0u;
 const uint CLASS_QUADS = 1u;
 const uint CLASS_ANY = 2u;
 
-// In the place of a class: all tiles of a frame, none of which was classified.
-const uint TILE_NOT_CLASSIFIED = 3u;
-
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
-// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each, since
-//   devices that divide integers one by one would take as long to find them in a number as a light takes;
-// - for each tile a record: how many of its lights are quads, how many there are in all (or TILE_ALL_LIGHTS twice, for those
-//   of the buffer), and their indices in the order of the buffer, in as many words as the capacity says.
+// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each;
+// - for each tile a record: how many convex quads without an image it has, how many polygons in all, and how many shapes (or
+//   TILE_ALL_LIGHTS thrice, for the lights of the frame); then the indices of its polygons and of its shapes, in the order of their
+//   buffers, in as many words as the capacity.
 const uint TILE_CLASS_WORDS = 4u;
 const uint TILE_FIRST_LIST = 12u;
-const uint TILE_RECORD_HEADER = 2u;
+const uint TILE_RECORD_HEADER = 3u;
 const uint TILE_ALL_LIGHTS = 0xffffffffu;
 
-// Groups of a class's dispatch in x. Vulkan promises 65535.
+// Workgroups of a class's dispatch in x. Vulkan promises 65535.
 const uint TILE_ROW = 32768u;
 
 layout(push_constant, std430) uniform TileConstants {
@@ -37,7 +34,7 @@ layout(push_constant, std430) uniform TileConstants {
     uint horizon_cells;
     uint shape_count;
     uint quad_count;
-    float negligible;
+    float cull_threshold;
 } constants;
 
 layout(set = 0, binding = TILE_LISTS_BINDING, std430) TILE_LISTS_ACCESS buffer TileLists {

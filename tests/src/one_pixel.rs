@@ -108,6 +108,7 @@ impl<'a> OnePixel<'a> {
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: self.engine.light_textures(),
                 shapes: Resource::buffer(light_buffer.handle()),
+                tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -118,6 +119,7 @@ impl<'a> OnePixel<'a> {
                 quad_count: packed.quad_count,
                 unused: packed.unused,
                 shape_count: 0,
+                tile_lists: None,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

@@ -183,6 +183,7 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
         glossy: None,
         light_textures: engine.light_textures(),
         shapes: Resource::buffer(shape_buffer.handle()),
+        tiles: None,
     };
     let frame = ShadeFrame {
         size: SIZE,
@@ -192,6 +193,7 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
         quad_count: packed.quad_count,
         unused: packed.unused,
         shape_count: 1,
+        tile_lists: None,
     };
     // SAFETY: the set is new, and what it points to lives until the submission was waited for.
     unsafe {

@@ -212,6 +212,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
             quad_count: 0,
             unused: Effects::empty(),
             shape_count: 0,
+            tile_lists: None,
         };
         let none = vk::DescriptorSet::null();
         engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();

@@ -112,6 +112,7 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         glossy: None,
         light_textures: engine.light_textures(),
         shapes: buffer,
+        tiles: None,
     };
     let apart = ShadeOptions { images: RadianceImages::Apart, ..options() };
     // SAFETY: no submission uses the pass, and nothing is written where an error is returned.

@@ -24,6 +24,7 @@ fn frame() -> ShadeFrame {
         quad_count: 0,
         unused: Effects::empty(),
         shape_count: 0,
+        tile_lists: None,
     }
 }
 

@@ -53,6 +53,7 @@ impl Images {
             glossy: None,
             light_textures: engine.light_textures(),
             shapes: Resource::buffer(buffers[0]),
+            tiles: None,
         };
         // SAFETY: the set is new; tests wait before the images go.
         let set = unsafe {
@@ -142,6 +143,7 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
             quad_count: packed.quad_count,
             unused: packed.unused,
             shape_count: 0,
+            tile_lists: None,
         };
         // SAFETY: the commands are being recorded, with a set of images of at least this size.
         unsafe { pass.record(commands, images.set, &frame) }.unwrap();

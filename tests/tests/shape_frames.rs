@@ -165,6 +165,7 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             glossy: None,
             light_textures: engine.light_textures(),
             shapes: Resource::buffer(buffer.handle()),
+            tiles: None,
         };
         pass.write_set(set, &resources).expect("resources");
         let frame = ShadeFrame {
@@ -175,6 +176,7 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             quad_count: 0,
             unused: Effects::empty(),
             shape_count: shapes.len() as u32,
+            tile_lists: None,
         };
         host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
     }

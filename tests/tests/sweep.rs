@@ -156,6 +156,7 @@ impl<'a> Sweep<'a> {
                 glossy: None,
                 light_textures: self.engine.light_textures(),
                 shapes: Resource::buffer(lights.handle()),
+                tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -166,6 +167,7 @@ impl<'a> Sweep<'a> {
                 quad_count: self.packed.quad_count,
                 unused: self.packed.unused,
                 shape_count: 0,
+                tile_lists: None,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

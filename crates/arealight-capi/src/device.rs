@@ -7,9 +7,11 @@ use crate::types::{
 };
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
 use arealight::LightTable;
+use arealight::table::LobeHorizon;
 use arealight_table::TableFile;
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Context, HostDevice, TableFormat, TableImage};
+use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The library on a device of the host, with a light table.
@@ -29,6 +31,11 @@ struct Image {
 impl Arealight {
     pub(crate) fn context(&self) -> &Context {
         &self.context
+    }
+
+    /// Nodes a side of the table.
+    pub(crate) fn table_size(&self) -> u32 {
+        self.table.size()
     }
 
     fn image(&self) -> MutexGuard<'_, Image> {
@@ -199,6 +206,40 @@ pub unsafe extern "C" fn arealight_table_upload(
                 upload.staging_offset,
             );
         }
+        Ok(())
+    })
+}
+
+/// Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
+/// `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+///
+/// # Safety
+/// Pointers are null or valid, with as many bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_lobe_horizons(
+    arealight: *const Arealight,
+    data: *mut c_void,
+    size: *mut u64,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (arealight, given) =
+            unsafe { (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?) };
+        let cells = u64::from(arealight.table.size() - 1).pow(2);
+        let needed = cells * size_of::<LobeHorizon>() as u64;
+        // SAFETY: as above.
+        unsafe { arguments::write(size, needed, "size") }?;
+        if data.is_null() {
+            return Ok(());
+        }
+        if given < needed {
+            let message = format!("size: {given}, but {needed} are needed");
+            return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
+        }
+        let horizons = arealight.table.lobe_horizons();
+        let bytes: &[u8] = bytemuck::cast_slice(&horizons);
+        // SAFETY: as above, and there are as many bytes.
+        unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), data.cast(), bytes.len()) };
         Ok(())
     })
 }

@@ -4,13 +4,15 @@ use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
-    ArealightSetLayout,
+    ArealightSetLayout, ArealightTileMemory,
 };
 use crate::{arguments, handles};
-use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{
+    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions, TileOptions,
+};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileResources};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -38,13 +40,19 @@ pub unsafe extern "C" fn arealight_pass_create(
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe {
-        create(arealight, options, out, |context, options| Ok(ShadePass::new(context, options)?))
+        create(arealight, options, out, |arealight, options, tiles| {
+            let context = arealight.context();
+            Ok(match tiles {
+                None => ShadePass::new(context, options)?,
+                Some(tiles) => ShadePass::with_tiles(context, options, tiles, arealight.table_size())?,
+            })
+        })
     })
 }
 
 /// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
-/// own: `options.g_buffer` does not count then. `words` is SPIR-V, `size` its bytes. Images that the module does not declare
-/// may be any in ArealightResources.
+/// own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V, `size` its bytes. Images that the module
+/// does not declare may be any in ArealightResources.
 ///
 /// # Safety
 /// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
@@ -56,14 +64,19 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
     size: usize,
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
-    let make = |context: &Context, options| {
+    let make = |arealight: &Arealight, options, tiles: Option<TileOptions>| {
+        if tiles.is_some() {
+            return Err(Failure::argument(
+                "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the host's own",
+            ));
+        }
         if !size.is_multiple_of(4) {
             return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
         }
         // SAFETY: the same contract, here and below.
         let words = unsafe { arguments::array(words, size / 4, "words") }?;
         // SAFETY: as above.
-        Ok(unsafe { ShadePass::with_module(context, options, words.to_vec()) }?)
+        Ok(unsafe { ShadePass::with_module(arealight.context(), options, words.to_vec()) }?)
     };
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe { create(arealight, options, out, make) })
@@ -75,16 +88,25 @@ unsafe fn create(
     arealight: *const Arealight,
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
-    make: impl FnOnce(&Context, ShadeOptions) -> Result<ShadePass, Failure>,
+    make: impl FnOnce(&Arealight, ShadeOptions, Option<TileOptions>) -> Result<ShadePass, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract, here and below.
     let (arealight, options) = unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
     };
-    let pass = make(arealight.context(), shade_options(options)?)?;
+    let pass = make(arealight, shade_options(options)?, tile_options(options))?;
     // SAFETY: as above.
     unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
+}
+
+fn tile_options(options: &ArealightPassOptions) -> Option<TileOptions> {
+    let tiles = TileOptions {
+        capacity: options.tile_capacity,
+        cull_threshold: options.tile_cull_threshold,
+        least_quads: options.tile_least_quads,
+    };
+    (tiles.capacity > 0).then_some(tiles)
 }
 
 fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
@@ -222,6 +244,10 @@ pub unsafe extern "C" fn arealight_pass_write_set(
                 shapes if effects.intersects(Effects::SHAPES) || shapes.buffer != 0 => buffer(shapes),
                 _ => buffer(resources.lights),
             },
+            tiles: pass.tiles().map(|_| TileResources {
+                lobe_horizons: buffer(resources.lobe_horizons),
+                tile_lists: buffer(resources.tile_lists),
+            }),
         };
         // SAFETY: the caller vouches for the set and the resources.
         Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
@@ -247,7 +273,32 @@ fn buffer(buffer: ArealightBuffer) -> Resource {
     Resource::StorageBuffer { buffer: vk::Buffer::from_raw(buffer), offset, range }
 }
 
-/// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
+/// What the buffer of the lists of tiles needs, for radiance images of `width` x `height` pixels.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_tile_memory(
+    pass: *const ArealightPass,
+    width: u32,
+    height: u32,
+    out: *mut ArealightTileMemory,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let needed = unsafe { handles::borrow(pass, "pass") }?.pass.tile_memory([width, height]);
+        let memory = ArealightTileMemory {
+            size: needed.map_or(0, |needed| needed.size),
+            usage: needed.map_or(0, |needed| needed.usage.as_raw()),
+            reserved: 0,
+        };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, memory, "out") }
+    })
+}
+
+/// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins their lists, a dispatch that
+/// classifies them, one for each class, and the barriers between. Barriers before and after are the host's.
 ///
 /// # Safety
 /// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
@@ -290,6 +341,7 @@ unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
         // What is no effect is used by nobody
         unused: Effects::from_bits_truncate(frame.unused),
         shape_count: frame.shape_count,
+        tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
     })
 }
 
@@ -365,6 +417,9 @@ mod tests {
     #[test]
     fn options_out_of_range_are_named() {
         let zero = ArealightPassOptions::default();
+        let tiles = ArealightPassOptions { tile_capacity: 64, tile_cull_threshold: 0.5, ..zero };
+        let expected = TileOptions { capacity: 64, cull_threshold: 0.5, least_quads: 0 };
+        assert_eq!((tile_options(&tiles), tile_options(&zero)), (Some(expected), None));
         for (wrong, field) in [
             (ArealightPassOptions { effects: 1 << 30, ..zero }, "options.effects"),
             (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),

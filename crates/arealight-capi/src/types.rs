@@ -224,6 +224,14 @@ pub struct ArealightPassOptions {
     pub radiance_format: u32,
     /// One of AREALIGHT_G_BUFFER_*.
     pub g_buffer: u32,
+    /// 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels holds, such as 128; a tile that
+    /// more lights contribute to is shaded by all.
+    pub tile_capacity: u32,
+    /// With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
+    /// radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
+    pub tile_cull_threshold: f32,
+    /// With tiles: frames of fewer lights, all of them convex quads without an image, are shaded without, which takes less time; such as 4.
+    pub tile_least_quads: u32,
 }
 
 /// What a descriptor set is made with.
@@ -373,6 +381,10 @@ pub struct ArealightResources {
     pub radiance: ArealightImage,
     /// Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
     pub glossy: ArealightImage,
+    /// What arealight_lobe_horizons wrote. Without tiles 0.
+    pub lobe_horizons: ArealightBuffer,
+    /// What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
+    pub tile_lists: ArealightBuffer,
 }
 
 /// What differs from frame to frame.
@@ -401,6 +413,21 @@ pub struct ArealightFrame {
     /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
     /// be null with AREALIGHT_POSITION_IMAGE.
     pub position_from_clip: *const f32,
+    /// With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
+    pub tile_lists: ArealightBuffer,
+}
+
+/// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
+/// waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ArealightTileMemory {
+    /// Bytes; 0 for a pass without tiles.
+    pub size: u64,
+    /// VkBufferUsageFlags that it is made with.
+    pub usage: u32,
+    /// 0
+    pub reserved: u32,
 }
 
 /// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.

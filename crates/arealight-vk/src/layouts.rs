@@ -91,10 +91,6 @@ impl Layouts {
         &self.context
     }
 
-    pub(crate) fn kernel(&self) -> &'static Kernel {
-        self.kernel
-    }
-
     pub(crate) fn pipeline_layout(&self) -> vk::PipelineLayout {
         self.pipeline_layout
     }
@@ -172,21 +168,22 @@ impl Layouts {
         Ok(())
     }
 
-    /// What [`ComputePass::record`] refuses.
+    /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they serve.
     pub(crate) fn check(
         &self,
+        kernel: &Kernel,
         set: vk::DescriptorSet,
         constants: &[u8],
         groups: [u32; 3],
     ) -> Result<(), Error> {
-        if constants.len() != self.kernel.push_constant_size as usize {
+        if constants.len() != kernel.push_constant_size as usize {
             return Err(Error::InvalidArgument {
                 field: "constants",
                 message: format!(
                     "{} bytes, but kernel '{}' takes {}",
                     constants.len(),
-                    self.kernel.name,
-                    self.kernel.push_constant_size
+                    kernel.name,
+                    kernel.push_constant_size
                 ),
             });
         }
@@ -216,7 +213,7 @@ impl Drop for Layouts {
     }
 }
 
-/// Only the kernels of our own tools bind more than every Vulkan device can.
+/// Only tiles and the kernels of our own tools bind more than every Vulkan device can.
 fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
     use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
     let limits = context.limits;

@@ -26,6 +26,7 @@
 //!     quad_count: packed.quad_count,
 //!     unused: packed.unused,
 //!     shape_count: 0,
+//!     tile_lists: None,
 //! };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;
 //! # Ok(()) }
@@ -56,4 +57,4 @@ pub use pass::{ComputePass, Resource};
 pub use prune::prune;
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use table_image::{TableFormat, TableImage};
-pub use tiles::{TileResources, TiledShade};
+pub use tiles::{TileMemory, TileResources};

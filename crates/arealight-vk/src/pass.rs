@@ -78,6 +78,7 @@ impl Resource {
 #[derive(Debug)]
 pub struct ComputePass {
     layouts: Arc<Layouts>,
+    kernel: &'static Kernel,
     pipeline: vk::Pipeline,
 }
 
@@ -116,19 +117,19 @@ impl ComputePass {
     ) -> Result<Self, Error> {
         check_module(module)?;
         // SAFETY: the same contract.
-        unsafe { Self::of(&Layouts::new(context, kernel)?, module, specialization) }
+        unsafe { Self::of(&Layouts::new(context, kernel)?, kernel, module, specialization) }
     }
 
     /// As [`ComputePass::with_module`], with layouts that others have too, of a module that [`check_module`] found good.
     ///
     /// # Safety
-    /// As [`ComputePass::with_module`].
+    /// As [`ComputePass::with_module`]. The layouts are those of a kernel with every binding of this one.
     pub(crate) unsafe fn of(
         layouts: &Arc<Layouts>,
+        kernel: &'static Kernel,
         module: &[u32],
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        let kernel = layouts.kernel();
         if let Some((id, _)) = specialization.iter().find(|(id, _)| !kernel.constants.contains(id)) {
             return Err(Error::InvalidArgument {
                 field: "specialization",
@@ -140,12 +141,12 @@ impl ComputePass {
         }
         let pipeline = make_pipeline(layouts, module, specialization)?;
         layouts.context().names.name(pipeline, kernel.name);
-        Ok(Self { layouts: Arc::clone(layouts), pipeline })
+        Ok(Self { layouts: Arc::clone(layouts), kernel, pipeline })
     }
 
     /// The kernel.
     pub fn kernel(&self) -> &'static Kernel {
-        self.layouts.kernel()
+        self.kernel
     }
 
     /// The layout that the host allocates a descriptor set with.
@@ -190,7 +191,7 @@ impl ComputePass {
         constants: &[u8],
         groups: [u32; 3],
     ) -> Result<(), Error> {
-        self.layouts.check(set, constants, groups)?;
+        self.layouts.check(self.kernel, set, constants, groups)?;
         // SAFETY: the same contract.
         unsafe { self.record_checked(command_buffer, set, constants, groups) };
         Ok(())

@@ -1,10 +1,10 @@
-//! Pipelines of one kernel for what frames call for.
+//! Pipelines of one kernel for what frames need.
 
-use crate::context::Context;
 use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::pass::ComputePass;
 use arealight::kernels::Kernel;
+use ash::vk;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 #[derive(Debug)]
 pub(crate) struct Pipelines {
     layouts: Arc<Layouts>,
+    kernel: &'static Kernel,
     module: Vec<u32>,
     made: Mutex<HashMap<Vec<(u32, u32)>, ComputePass>>,
 }
@@ -21,18 +22,23 @@ impl Pipelines {
     /// The module is one that [`crate::pass::check_module`] found good.
     ///
     /// # Safety
-    /// As [`Layouts::new`] and [`ComputePass::with_module`].
-    pub(crate) unsafe fn new(
-        context: &Context,
-        kernel: &'static Kernel,
-        module: Vec<u32>,
-    ) -> Result<Self, Error> {
-        // SAFETY: the same contract.
-        Ok(Self { layouts: unsafe { Layouts::new(context, kernel) }?, module, made: Mutex::default() })
+    /// As [`Layouts::new`] and [`ComputePass::of`].
+    pub(crate) unsafe fn new(layouts: Arc<Layouts>, kernel: &'static Kernel, module: Vec<u32>) -> Self {
+        Self { layouts, kernel, module, made: Mutex::default() }
     }
 
     pub(crate) fn layouts(&self) -> &Layouts {
         &self.layouts
+    }
+
+    /// What [`ComputePass::record`] refuses.
+    pub(crate) fn check(
+        &self,
+        set: vk::DescriptorSet,
+        constants: &[u8],
+        groups: [u32; 3],
+    ) -> Result<(), Error> {
+        self.layouts.check(self.kernel, set, constants, groups)
     }
 
     /// Does something with the pipeline of these specialisation constants.
@@ -46,7 +52,7 @@ impl Pipelines {
             Entry::Occupied(found) => found.into_mut(),
             Entry::Vacant(place) => {
                 // SAFETY: by the contract of Pipelines::new.
-                let pass = unsafe { ComputePass::of(&self.layouts, &self.module, place.key()) }?;
+                let pass = unsafe { ComputePass::of(&self.layouts, self.kernel, &self.module, place.key()) }?;
                 place.insert(pass)
             }
         };

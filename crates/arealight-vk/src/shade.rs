@@ -2,11 +2,13 @@
 
 use crate::context::Context;
 use crate::error::Error;
+use crate::layouts::Layouts;
 use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
+use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
 use arealight::gpu::{GpuShape, ShadeConstants};
-use arealight::kernels::{Access, BindingKind, Kernel, SHADE, store_to};
-use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, ShadeVariant};
+use arealight::kernels::{Access, BindingKind, CLASSIFY, Kernel, SHADE, store_to};
+use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, ShadeVariant, TileOptions};
 use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
@@ -41,6 +43,8 @@ pub struct ShadeResources {
     /// What [`ShadePass::pack_shapes`] gave. Read only with [`arealight::Effects::SHAPES`]: without them any buffer of 64 bytes
     /// or more.
     pub shapes: Resource,
+    /// What a pass with tiles needs; others do not use it.
+    pub tiles: Option<TileResources>,
 }
 
 /// What differs from frame to frame.
@@ -62,6 +66,8 @@ pub struct ShadeFrame {
     pub unused: Effects,
     /// How many shapes of their buffer are shaded; none where the pass was made without [`arealight::Effects::SHAPES`].
     pub shape_count: u32,
+    /// With tiles, [`TileResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
+    pub tile_lists: Option<Resource>,
 }
 
 /// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
@@ -81,13 +87,15 @@ pub struct ResourceAccess {
 
 /// How `kernel` uses each of its bindings.
 pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
-    let accesses = kernel.bindings.iter().map(|binding| ResourceAccess {
+    let used = kernel.bindings.iter().filter(|binding| binding.access != Access::None);
+    let accesses = used.map(|binding| ResourceAccess {
         name: binding.name,
         stage: vk::PipelineStageFlags::COMPUTE_SHADER,
         access: match binding.access {
             Access::Read => vk::AccessFlags::SHADER_READ,
             Access::Write => vk::AccessFlags::SHADER_WRITE,
             Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
+            Access::None => vk::AccessFlags::empty(),
         },
         layout: match binding.kind {
             BindingKind::StorageImage => vk::ImageLayout::GENERAL,
@@ -102,9 +110,13 @@ pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
 /// Of the set, pipelines have what the lights and surfaces of a frame call for: a pass for every effect takes as long as one for just
 /// those.
 /// A pipeline is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
+///
+/// With tiles ([`ShadePass::with_tiles`]) a dispatch first lists the lights that contribute to each tile of 8 × 8 pixels, and tiles of quads
+/// alone run less code than others. The picture is the same but for lights that are left out, by [`TileOptions`].
 #[derive(Debug)]
 pub struct ShadePass {
     pipelines: Pipelines,
+    tiles: Option<Tiles>,
     options: ShadeOptions,
 }
 
@@ -119,6 +131,30 @@ impl ShadePass {
     pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
         // SAFETY: the same contract; the module is the kernel's.
         unsafe { Self::with_module(context, options, SHADE.words()) }
+    }
+
+    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::tiles`] and [`ShadeFrame::tile_lists`] are needed then.
+    /// `table_size` is how many nodes a side the table has that will be bound, [`arealight::LightTable::size`].
+    ///
+    /// # Safety
+    /// As [`ShadePass::new`].
+    ///
+    /// # Errors
+    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] names the field of `tiles` that is out of range;
+    /// [`Error::MissingFeature`] where the device has too few storage buffers for a stage.
+    pub unsafe fn with_tiles(
+        context: &Context,
+        options: ShadeOptions,
+        tiles: TileOptions,
+        table_size: u32,
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract; the modules are the kernels'.
+        unsafe {
+            let layouts = Tiles::layouts(context)?;
+            let tiles = Tiles::new(&layouts, options, tiles, table_size)?;
+            let pipelines = Pipelines::new(layouts, &SHADE, SHADE.words_for(options.format));
+            Ok(Self { pipelines, tiles: Some(tiles), options })
+        }
     }
 
     /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of its own
@@ -137,13 +173,23 @@ impl ShadePass {
         check_module(&module)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pipelines = unsafe { Pipelines::new(context, &SHADE, module) }?;
-        Ok(Self { pipelines, options })
+        let pipelines = unsafe { Pipelines::new(Layouts::new(context, &SHADE)?, &SHADE, module) };
+        Ok(Self { pipelines, tiles: None, options })
     }
 
     /// What the pass was specialised for.
     pub fn options(&self) -> ShadeOptions {
         self.options
+    }
+
+    /// How tiles get their lists of lights, in a pass with tiles.
+    pub fn tiles(&self) -> Option<TileOptions> {
+        self.tiles.as_ref().map(Tiles::options)
+    }
+
+    /// What [`TileResources::tile_lists`] needs for images of `size` pixels; none in a pass without tiles.
+    pub fn tile_memory(&self, size: [u32; 2]) -> Option<TileMemory> {
+        self.tiles.as_ref().map(|tiles| tiles.memory(size))
     }
 
     /// The layout that the host allocates a descriptor set with.
@@ -156,9 +202,15 @@ impl ShadePass {
         self.pipelines.layouts().pool_sizes(sets)
     }
 
-    /// How the pass uses each resource.
+    /// How the pass uses each resource. The lists of tiles are not among them: they are written and read within the pass, with barriers of
+    /// its own, from `TRANSFER` to `DRAW_INDIRECT` and `COMPUTE_SHADER`. Before the buffer is used by another frame the host waits
+    /// for those stages, as for any buffer that is written again.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
-        accesses_of(&SHADE)
+        let mut accesses = accesses_of(&SHADE);
+        if self.tiles.is_some() {
+            accesses.extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
+        }
+        accesses
     }
 
     /// Packs lights for this pass, relative to `origin`; upload both arrays to the buffers of
@@ -218,8 +270,8 @@ impl ShadePass {
     }
 
     /// The resources as the kernel's bindings have them.
-    pub(crate) fn in_order(&self, resources: &ShadeResources) -> Result<[Resource; 11], Error> {
-        Ok([
+    fn in_order(&self, resources: &ShadeResources) -> Result<Vec<Resource>, Error> {
+        let mut all = vec![
             resources.table,
             resources.lights,
             resources.light_vertices,
@@ -231,17 +283,28 @@ impl ShadePass {
             resources.light_textures,
             resources.shapes,
             self.glossy_image(resources)?,
-        ])
+        ];
+        if self.tiles.is_some() {
+            let Some(tiles) = resources.tiles else {
+                let message = "are missing, but the pass was made with tiles".into();
+                return Err(Error::InvalidArgument { field: "tiles", message });
+            };
+            all.extend([tiles.tile_lists, tiles.lobe_horizons]);
+        }
+        Ok(all)
     }
 
-    /// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet. That takes a moment,
+    /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That takes a moment,
     /// which [`ShadePass::record`] would take otherwise.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        let (_, variant) = self.checked(frame)?;
-        self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |_| ())
+        let (constants, variant) = self.checked(frame)?;
+        match self.tiled(frame, &constants, variant)? {
+            Some((tiles, frame)) => tiles.prepare(self.options, &frame),
+            None => self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |_| ()),
+        }
     }
 
     /// What is bound for the glossy lobe's radiance: where there is one image, that again.
@@ -264,10 +327,12 @@ impl ShadePass {
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
     /// - `set` was written by [`ShadePass::write_set`], with images of `frame.size` and buffers that hold
-    ///   `frame.light_count` lights and `frame.shape_count` shapes.
+    ///   `frame.light_count` lights and `frame.shape_count` shapes; with tiles, with `frame.tile_lists`, a buffer of
+    ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong; then nothing is recorded.
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong; [`Error::Vulkan`] where a pipeline cannot be made. Then
+    /// nothing is recorded.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -275,20 +340,39 @@ impl ShadePass {
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
         let (constants, variant) = self.checked(frame)?;
-        let (groups, layouts) =
-            (SHADE.groups_for([frame.size[0], frame.size[1], 1]), self.pipelines.layouts());
-        layouts.check(set, bytemuck::bytes_of(&constants), groups)?;
+        let names = &self.pipelines.layouts().context().names;
+        if let Some((tiles, frame)) = self.tiled(frame, &constants, variant)? {
+            // SAFETY: the same contract.
+            return unsafe {
+                let _label = names.label(command_buffer, c"arealight tiles");
+                tiles.record(command_buffer, set, self.options, &frame)
+            };
+        }
+        let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
+        self.pipelines.check(set, bytemuck::bytes_of(&constants), groups)?;
         self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |pass| {
             // SAFETY: the same contract.
             unsafe {
-                let _label = layouts.context().names.label(command_buffer, c"arealight shade");
+                let _label = names.label(command_buffer, c"arealight shade");
                 pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
             }
         })
     }
 
-    /// The push constants of a frame, and what its lights call for.
-    pub(crate) fn checked(&self, frame: &ShadeFrame) -> Result<(ShadeConstants, ShadeVariant), Error> {
+    /// The tiles of a frame that is classified.
+    fn tiled(
+        &self,
+        frame: &ShadeFrame,
+        constants: &ShadeConstants,
+        variant: ShadeVariant,
+    ) -> Result<Option<(&Tiles, TiledFrame)>, Error> {
+        let Some(tiles) = &self.tiles else { return Ok(None) };
+        let frame = tiles.checked(frame.size, frame.tile_lists, (constants, variant))?;
+        Ok(frame.map(|frame| (tiles, frame)))
+    }
+
+    /// The push constants of a frame, and what its lights need.
+    fn checked(&self, frame: &ShadeFrame) -> Result<(ShadeConstants, ShadeVariant), Error> {
         let constants = self.constants(frame)?;
         Ok((constants, ShadeVariant::new(self.options.effects, frame.unused, &constants)))
     }

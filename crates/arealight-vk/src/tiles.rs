@@ -1,309 +1,218 @@
-//! The shade pass by tiles: the lights that matter to each tile of 8 × 8 pixels, and no more code than those call for.
+//! Tiles of the shade pass: how they are classified, and how the classes are shaded.
 
 use crate::context::Context;
 use crate::error::Error;
+use crate::layouts::Layouts;
 use crate::pass::Resource;
 use crate::pipelines::Pipelines;
-use crate::shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources, accesses_of};
+use arealight::Effects;
 use arealight::gpu::{GpuTileClass, ShadeConstants, TileConstants};
 use arealight::kernels::{CLASSIFY, SHADE_TILES};
 use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
 use arealight::tiles::{self, TileClass, tile_counts};
 use ash::vk;
+use std::sync::Arc;
 
-/// What tiles need beyond [`ShadeResources`]. The host makes these buffers, and leaves them alone between frames.
+/// What a pass with tiles needs beyond other passes: buffers of the host.
 #[derive(Debug, Clone, Copy)]
 pub struct TileResources {
     /// [`arealight::LightTable::lobe_horizons`] of the table.
     pub lobe_horizons: Resource,
-    /// [`TiledShade::memory`] bytes; the buffer has the usages `INDIRECT_BUFFER` and `TRANSFER_DST` too.
+    /// A buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each.
     pub tile_lists: Resource,
 }
 
-/// The shade pass by tiles: a dispatch that classifies tiles, then an indirect one for each class of them. The picture is that
-/// of [`ShadePass`], but for lights that are left out, by [`TileOptions`]. Frames of few quads are shaded without
-/// ([`TileOptions::least_quads`]); then no class has a tile.
-///
-/// As in [`ShadePass`], pipelines have what the lights of a frame call for, and are made when they are first needed.
+/// The buffer of tile lists: [`TileResources::tile_lists`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TileMemory {
+    /// Its size in bytes.
+    pub size: vk::DeviceSize,
+    /// The usages that it needs: the dispatches of the classes are in it.
+    pub usage: vk::BufferUsageFlags,
+}
+
+/// The pipelines of tiles: one that classifies them, and one for each class.
 #[derive(Debug)]
-pub struct TiledShade {
-    shade: ShadePass,
+pub(crate) struct Tiles {
     classify: Pipelines,
-    classes: Pipelines,
-    tiles: TileOptions,
+    shade: Pipelines,
+    options: TileOptions,
     horizon_cells: u32,
 }
 
 /// A frame, checked.
-struct Checked {
+pub(crate) struct TiledFrame {
     constants: TileConstants,
     variant: ShadeVariant,
-    /// How many tiles there are in each direction.
-    tiles: [u32; 2],
-    is_classified: bool,
+    /// The buffer of the tile lists, and where in it they begin.
+    lists: (vk::Buffer, vk::DeviceSize),
 }
 
-impl Checked {
-    /// Groups of the classification, or of the shading of all tiles.
-    fn groups(&self) -> [u32; 3] {
-        let [columns, rows] = self.tiles;
-        if self.is_classified {
-            CLASSIFY.groups_for([columns.saturating_mul(rows), 1, 1])
-        } else {
-            [columns, rows, 1]
-        }
-    }
-}
-
-impl TiledShade {
-    /// Makes what all pipelines of the pass have in common. `table_size` is how many nodes a side the table has that will be
-    /// bound.
+impl Tiles {
+    /// The layouts that all kernels of a pass with tiles have in common.
     ///
     /// # Safety
-    /// As [`ShadePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `tiles` that is out of range; [`Error::Vulkan`] where a call fails.
-    pub unsafe fn new(
-        context: &Context,
-        options: ShadeOptions,
-        table_size: u32,
-        tiles: TileOptions,
-    ) -> Result<Self, Error> {
-        if tiles.capacity == 0 {
-            let message = "is 0, but a tile's list holds a light at least".to_owned();
-            return Err(Error::InvalidArgument { field: "capacity", message });
-        }
-        if !(0.0..1.0).contains(&tiles.negligible) {
-            let message = format!("is {}, but a part is in [0, 1)", tiles.negligible);
-            return Err(Error::InvalidArgument { field: "negligible", message });
-        }
+    /// As [`Layouts::new`].
+    pub(crate) unsafe fn layouts(context: &Context) -> Result<Arc<Layouts>, Error> {
         // SAFETY: the same contract.
+        unsafe { Layouts::new(context, &SHADE_TILES) }
+    }
+
+    /// # Safety
+    /// As [`Pipelines::new`]; the layouts are those of [`Tiles::layouts`].
+    pub(crate) unsafe fn new(
+        layouts: &Arc<Layouts>,
+        options: ShadeOptions,
+        tiles: TileOptions,
+        table_size: u32,
+    ) -> Result<Self, Error> {
+        let wrong = |field, message: String| Err(Error::InvalidArgument { field, message });
+        if tiles.capacity == 0 {
+            return wrong("capacity", "is 0, but a tile's list holds at least one light".to_owned());
+        }
+        if !(0.0..1.0).contains(&tiles.cull_threshold) {
+            let message = format!("is {}, but a fraction of what stays is in [0, 1)", tiles.cull_threshold);
+            return wrong("cull_threshold", message);
+        }
+        if table_size < 2 {
+            return wrong("table_size", format!("is {table_size}, but a table has at least 2 nodes a side"));
+        }
+        let shade = SHADE_TILES.words_for(options.format);
+        // SAFETY: the same contract; the bindings of both kernels are those of the layouts.
         unsafe {
-            let shade = ShadePass::new(context, options)?;
             Ok(Self {
-                shade,
-                classify: Pipelines::new(context, &CLASSIFY, CLASSIFY.words())?,
-                classes: Pipelines::new(context, &SHADE_TILES, SHADE_TILES.words_for(options.format))?,
-                tiles,
-                horizon_cells: table_size.max(2) - 1,
+                classify: Pipelines::new(Arc::clone(layouts), &CLASSIFY, CLASSIFY.words()),
+                shade: Pipelines::new(Arc::clone(layouts), &SHADE_TILES, shade),
+                options: tiles,
+                horizon_cells: table_size - 1,
             })
         }
     }
 
-    /// The same pass without tiles: it packs lights and shapes for both, and checks them.
-    pub fn without_tiles(&self) -> &ShadePass {
-        &self.shade
+    pub(crate) fn options(&self) -> TileOptions {
+        self.options
     }
 
-    /// How tiles get their lists of lights.
-    pub fn tile_options(&self) -> TileOptions {
-        self.tiles
+    pub(crate) fn memory(&self, size: [u32; 2]) -> TileMemory {
+        TileMemory {
+            size: tiles::memory(size, self.options.capacity),
+            usage: vk::BufferUsageFlags::STORAGE_BUFFER
+                | vk::BufferUsageFlags::INDIRECT_BUFFER
+                | vk::BufferUsageFlags::TRANSFER_DST,
+        }
     }
 
-    /// How large [`TileResources::tile_lists`] is for an image of `size` pixels, in bytes.
-    pub fn memory(&self, size: [u32; 2]) -> u64 {
-        tiles::memory(size, self.tiles.capacity)
-    }
-
-    /// The layouts that the host allocates the two descriptor sets of a run with: the classification's, and the shading's.
-    pub fn set_layouts(&self) -> [vk::DescriptorSetLayout; 2] {
-        [self.classify.layouts().set_layout(), self.classes.layouts().set_layout()]
-    }
-
-    /// What the sets of `runs` take from the host's descriptor pool.
-    pub fn pool_sizes(&self, runs: u32) -> Vec<vk::DescriptorPoolSize> {
-        [&self.classify, &self.classes].into_iter().flat_map(|pass| pass.layouts().pool_sizes(runs)).collect()
-    }
-
-    /// How the pass uses each of the host's resources. The tile lists are written and read within, with barriers of its own,
-    /// from `TRANSFER` to `DRAW_INDIRECT` and `COMPUTE_SHADER`: before its next run the host waits for those stages, as
-    /// for any buffer that is written again.
-    pub fn accesses(&self) -> Vec<ResourceAccess> {
-        let mut accesses = accesses_of(&SHADE_TILES);
-        accesses.retain(|access| access.name != "tile_lists");
-        accesses.extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
-        accesses
-    }
-
-    /// Points descriptor sets, one of each layout, at the resources of a run.
-    ///
-    /// # Safety
-    /// As [`ShadePass::write_set`]: the sets are not in use, and the resources outlive the recorded work.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
-    pub unsafe fn write_sets(
+    /// A frame with tiles; none where it has too few lights to be classified.
+    pub(crate) fn checked(
         &self,
-        sets: [vk::DescriptorSet; 2],
-        resources: &ShadeResources,
-        tiles: &TileResources,
-    ) -> Result<(), Error> {
-        let classify = [
-            tiles.lobe_horizons,
-            resources.lights,
-            resources.shapes,
-            resources.position,
-            resources.normal,
-            resources.base_color,
-            resources.specular,
-            tiles.tile_lists,
-        ];
-        let shade: Vec<Resource> =
-            self.shade.in_order(resources)?.into_iter().chain([tiles.tile_lists]).collect();
-        // SAFETY: the same contract.
-        unsafe {
-            self.classify.layouts().write_set(sets[0], &classify)?;
-            self.classes.layouts().write_set(sets[1], &shade)
+        size: [u32; 2],
+        lists: Option<Resource>,
+        (constants, variant): (&ShadeConstants, ShadeVariant),
+    ) -> Result<Option<TiledFrame>, Error> {
+        let wrong = |message: &str| Error::InvalidArgument { field: "tile_lists", message: message.into() };
+        let lists = match lists {
+            None => return Err(wrong("is missing, but the pass was made with tiles")),
+            Some(Resource::StorageBuffer { buffer, offset, .. }) if buffer != vk::Buffer::null() => {
+                (buffer, offset)
+            }
+            Some(_) => return Err(wrong("is no buffer")),
+        };
+        if !self.options.classifies(constants) {
+            return Ok(None);
         }
+        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count } = constants;
+        // Where the pass has nothing beyond quads, all lights are
+        let has_others = variant.effects.intersects(Effects::BEYOND_QUADS);
+        let constants = TileConstants {
+            position_from_clip,
+            camera,
+            light_count,
+            size,
+            capacity: self.options.capacity,
+            horizon_cells: self.horizon_cells,
+            shape_count,
+            quad_count: if has_others { quad_count } else { light_count },
+            cull_threshold: self.options.cull_threshold,
+        };
+        Ok(Some(TiledFrame { constants, variant, lists }))
     }
 
-    /// As [`ShadePass::prepare`], of the pipelines of every class that the frame may have.
-    ///
-    /// # Errors
-    /// As [`ShadePass::prepare`].
-    pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        self.prepare_checked(&self.checked(frame)?)
-    }
-
-    fn prepare_checked(&self, &Checked { variant, is_classified, .. }: &Checked) -> Result<(), Error> {
-        if !is_classified {
-            return self.classes.with(self.all_tiles_constants(variant), |_| ());
-        }
-        self.classify.with(self.classify_constants(variant), |_| ())?;
-        for class in self.called_for(variant) {
-            self.classes
-                .with(plan::shade_tiles_specialization(self.shade.options(), variant, class), |_| ())?;
+    /// Makes the pipelines of a frame that are not made yet.
+    pub(crate) fn prepare(&self, options: ShadeOptions, frame: &TiledFrame) -> Result<(), Error> {
+        self.classify.with(self.classify_constants(options, frame), |_| ())?;
+        for class in dispatched(options, frame) {
+            self.shade.with(plan::shade_tiles_specialization(options, frame.variant, class), |_| ())?;
         }
         Ok(())
     }
 
-    /// Records the pass, with the barriers between its dispatches. The host's barriers make its resources visible before, by
-    /// [`TiledShade::accesses`].
+    fn classify_constants(&self, options: ShadeOptions, frame: &TiledFrame) -> Vec<(u32, u32)> {
+        plan::classify_specialization(options, frame.variant, self.options)
+    }
+
+    /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the barriers between.
     ///
     /// # Safety
-    /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
-    /// - `sets` were written by [`TiledShade::write_sets`] with `tiles`, with images of `frame.size`, buffers that hold
-    ///   `frame.light_count` lights and `frame.shape_count` shapes, and one of [`TiledShade::memory`] for that size.
-    ///
-    /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` or of `tiles` that is wrong, [`Error::Vulkan`] where a
-    /// pipeline cannot be made; then nothing is recorded.
-    pub unsafe fn record(
+    /// As [`crate::ShadePass::record`].
+    pub(crate) unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
-        sets: [vk::DescriptorSet; 2],
-        tiles: &TileResources,
-        frame: &ShadeFrame,
+        set: vk::DescriptorSet,
+        options: ShadeOptions,
+        frame: &TiledFrame,
     ) -> Result<(), Error> {
         // Check everything, and make what is missing, before anything is recorded
-        let checked = self.checked(frame)?;
-        let Resource::StorageBuffer { buffer, offset, .. } = tiles.tile_lists else {
-            let message = "is no buffer".to_owned();
-            return Err(Error::InvalidArgument { field: "tile_lists", message });
-        };
-        let (bytes, groups) = (bytemuck::bytes_of(&checked.constants), checked.groups());
-        self.classify.layouts().check(sets[0], bytes, groups)?;
-        self.classes.layouts().check(sets[1], bytes, groups)?;
-        self.prepare_checked(&checked)?;
+        let [columns, rows] = tile_counts(frame.constants.size);
+        let (bytes, groups) = (bytemuck::bytes_of(&frame.constants), [columns, rows, 1]);
+        self.classify.check(set, bytes, groups)?;
+        self.prepare(options, frame)?;
 
-        let names = &self.classify.layouts().context().names;
-        // SAFETY: the same contract.
-        let _label = unsafe { names.label(command_buffer, c"arealight tiles") };
-        // SAFETY: the same contract; the buffer holds a record a class, whose indirect dispatch the classify kernel writes.
+        let (buffer, offset) = frame.lists;
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
+        // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the classify kernel writes.
         unsafe {
-            self.record_reset(command_buffer, buffer, offset);
-            if !checked.is_classified {
-                return self.classes.with(self.all_tiles_constants(checked.variant), |pass| {
-                    pass.record_checked(command_buffer, sets[1], bytes, groups);
-                });
-            }
-            self.classify.with(self.classify_constants(checked.variant), |pass| {
-                pass.record_checked(command_buffer, sets[0], bytes, groups);
+            self.record_no_tiles(command_buffer, frame);
+            self.record_barrier(
+                command_buffer,
+                (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE),
+                (compute, read | write),
+            );
+            self.classify.with(self.classify_constants(options, frame), |pass| {
+                pass.record_checked(command_buffer, set, bytes, groups);
             })?;
             self.record_barrier(
                 command_buffer,
-                (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE),
-                (
-                    vk::PipelineStageFlags::COMPUTE_SHADER | vk::PipelineStageFlags::DRAW_INDIRECT,
-                    vk::AccessFlags::SHADER_READ | vk::AccessFlags::INDIRECT_COMMAND_READ,
-                ),
+                (compute, write),
+                (compute | vk::PipelineStageFlags::DRAW_INDIRECT, read | vk::AccessFlags::INDIRECT_COMMAND_READ),
             );
-            for class in self.called_for(checked.variant) {
+            for class in dispatched(options, frame) {
                 let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;
-                let specialization =
-                    plan::shade_tiles_specialization(self.shade.options(), checked.variant, class);
-                self.classes.with(specialization, |pass| {
-                    pass.record_indirect(command_buffer, sets[1], bytes, (buffer, place));
+                let specialization = plan::shade_tiles_specialization(options, frame.variant, class);
+                self.shade.with(specialization, |pass| {
+                    pass.record_indirect(command_buffer, set, bytes, (buffer, place));
                 })?;
             }
         }
         Ok(())
     }
 
-    /// What [`TiledShade::record`] refuses, and what it records.
-    fn checked(&self, frame: &ShadeFrame) -> Result<Checked, Error> {
-        let (constants, variant) = self.shade.checked(frame)?;
-        let is_classified = self.tiles.classifies(&constants);
-        let ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count } = constants;
-        // Where the pass has nothing beyond quads, all lights are
-        let quad_count = if variant.effects.intersects(arealight::Effects::BEYOND_QUADS) {
-            quad_count
-        } else {
-            light_count
-        };
-        let constants = TileConstants {
-            position_from_clip,
-            camera,
-            light_count,
-            size: frame.size,
-            capacity: self.tiles.capacity,
-            horizon_cells: self.horizon_cells,
-            shape_count,
-            quad_count,
-            negligible: self.tiles.negligible,
-        };
-        Ok(Checked { constants, variant, tiles: tile_counts(frame.size), is_classified })
-    }
-
-    fn all_tiles_constants(&self, variant: ShadeVariant) -> Vec<(u32, u32)> {
-        plan::shade_all_tiles_specialization(self.shade.options(), variant)
-    }
-
-    fn classify_constants(&self, variant: ShadeVariant) -> Vec<(u32, u32)> {
-        plan::classify_specialization(self.shade.options(), variant, self.tiles)
-    }
-
-    /// The classes that something is to be done for.
-    fn called_for(&self, variant: ShadeVariant) -> impl Iterator<Item = TileClass> {
-        let output = self.shade.options().output;
-        TileClass::ALL.into_iter().filter(move |class| class.is_called_for(variant.effects, output))
-    }
-
     /// Begins every class without a tile.
-    unsafe fn record_reset(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        buffer: vk::Buffer,
-        offset: vk::DeviceSize,
-    ) {
+    ///
+    /// # Safety
+    /// As [`Tiles::record`]: the buffer holds as much, and nothing else uses it now.
+    unsafe fn record_no_tiles(&self, command_buffer: vk::CommandBuffer, frame: &TiledFrame) {
         let none = [GpuTileClass { z: 1, ..GpuTileClass::default() }; TileClass::ALL.len()];
-        // SAFETY: the caller's contract: the buffer holds as much, and nothing else uses it now.
-        unsafe {
-            let device = self.classify.layouts().context().device();
-            device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&none));
-            self.record_barrier(
-                command_buffer,
-                (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE),
-                (
-                    vk::PipelineStageFlags::COMPUTE_SHADER,
-                    vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
-                ),
-            );
-        }
+        let (buffer, offset) = frame.lists;
+        let device = self.classify.layouts().context().device();
+        // SAFETY: the same contract.
+        unsafe { device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&none)) };
     }
 
     /// A barrier for what the dispatches hand on to each other.
+    ///
+    /// # Safety
+    /// As [`Tiles::record`].
     unsafe fn record_barrier(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -311,11 +220,15 @@ impl TiledShade {
         (after, used): (vk::PipelineStageFlags, vk::AccessFlags),
     ) {
         let barrier = [vk::MemoryBarrier::default().src_access_mask(written).dst_access_mask(used)];
+        let device = self.classify.layouts().context().device();
         let flags = vk::DependencyFlags::empty();
-        // SAFETY: the caller's contract.
-        unsafe {
-            let device = self.classify.layouts().context().device();
-            device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]);
-        }
+        // SAFETY: the same contract.
+        unsafe { device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]) };
     }
+}
+
+/// The classes whose tiles have pixels to write.
+fn dispatched(options: ShadeOptions, frame: &TiledFrame) -> impl Iterator<Item = TileClass> {
+    let variant = frame.variant;
+    TileClass::ALL.into_iter().filter(move |class| class.is_dispatched(variant, options.output))
 }

@@ -117,19 +117,19 @@ pub struct TileConstants {
     pub shape_count: u32,
     /// As [`ShadeConstants::quad_count`].
     pub quad_count: u32,
-    /// As [`crate::plan::TileOptions::negligible`].
-    pub negligible: f32,
+    /// As [`crate::plan::TileOptions::cull_threshold`].
+    pub cull_threshold: f32,
 }
 
 /// How a class of tiles is dispatched.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
 pub struct GpuTileClass {
-    /// Groups in x: `VkDispatchIndirectCommand` begins here.
+    /// Workgroups in x: `VkDispatchIndirectCommand` begins here.
     pub x: u32,
-    /// Groups in y.
+    /// Workgroups in y.
     pub y: u32,
-    /// Groups in z: 1.
+    /// Workgroups in z: 1.
     pub z: u32,
     /// How many tiles there are in the class.
     pub tile_count: u32,

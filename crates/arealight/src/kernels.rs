@@ -183,26 +183,36 @@ pub static SHADE: Kernel = Kernel {
     ],
 };
 
-/// Sorts the tiles of a G-buffer into classes; an item a tile. Push constants: [`crate::gpu::TileConstants`].
+const LOBE_HORIZONS: Binding =
+    read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]");
+const TILE_LISTS: Binding = write(
+    "tile_lists",
+    BindingKind::StorageBuffer,
+    Access::ReadWrite,
+    "tiles::memory bytes; begins with a GpuTileClass per class, {0, 0, 1, 0}",
+);
+
+/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE_TILES`]. Push constants:
+/// [`crate::gpu::TileConstants`].
 pub static CLASSIFY: Kernel = Kernel {
     name: "classify",
     spirv: include_bytes!("../spirv/classify.spv"),
-    local_size: [32, 1, 1],
+    local_size: [8, 8, 1],
     push_constant_size: size_of::<crate::gpu::TileConstants>() as u32,
     bindings: &[
-        read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]"),
+        TABLE.unused(),
         LIGHTS,
-        SHAPES,
+        LIGHT_VERTICES.unused(),
         G_POSITION,
         G_NORMAL,
         G_BASE_COLOR,
         G_SPECULAR,
-        write(
-            "tile_lists",
-            BindingKind::StorageBuffer,
-            Access::ReadWrite,
-            "tiles::memory bytes; begins with a GpuTileClass a class, {0, 0, 1, 0}",
-        ),
+        RADIANCE.unused(),
+        LIGHT_TEXTURES.unused(),
+        SHAPES,
+        GLOSSY.unused(),
+        TILE_LISTS,
+        LOBE_HORIZONS,
     ],
     constants: &[
         constant::EFFECTS,
@@ -215,7 +225,7 @@ pub static CLASSIFY: Kernel = Kernel {
     ],
 };
 
-/// As [`SHADE`], of the tiles of one class; a group a tile, dispatched indirectly. Push constants:
+/// As [`SHADE`], of the tiles of one class; a workgroup per tile, dispatched indirectly. Push constants:
 /// [`crate::gpu::TileConstants`].
 pub static SHADE_TILES: Kernel = Kernel {
     name: "shade_tiles",
@@ -234,7 +244,8 @@ pub static SHADE_TILES: Kernel = Kernel {
         LIGHT_TEXTURES,
         SHAPES,
         GLOSSY,
-        read("tile_lists", BindingKind::StorageBuffer, "what the classify kernel wrote"),
+        Binding { access: Access::Read, ..TILE_LISTS },
+        LOBE_HORIZONS.unused(),
     ],
     constants: &[
         constant::EFFECTS,
@@ -245,6 +256,7 @@ pub static SHADE_TILES: Kernel = Kernel {
         constant::FRESNEL,
         constant::LOBES,
         constant::FOOTPRINT,
+        constant::HAS_QUADS,
         constant::CLASS,
         constant::LAYOUT,
     ],

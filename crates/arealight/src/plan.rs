@@ -4,7 +4,7 @@
 use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality, ShapeKind, TileClass, tiles};
+use crate::{Effects, Quality, ShapeKind, TileClass};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -191,18 +191,19 @@ pub fn shade_variant_specialization(options: ShadeOptions, variant: ShadeVariant
 /// How tiles get their lists of lights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TileOptions {
-    /// The most lights that a tile's list holds, from 1 on: a tile that more lights reach is shaded by all of the frame's.
+    /// The most lights, of all kinds, that a tile's list holds, from 1 on: a tile that more lights contribute to is shaded by all of
+    /// the frame's.
     pub capacity: u32,
-    /// The part of what a tile's lights send to the viewer from any of its pixels, in the sum of the channels, that those which
-    /// are left out may make up together, in [0, 1). With 0, lights that send anything stay.
-    pub negligible: f32,
-    /// Frames of fewer lights than this, all of them convex quads without an image, are not classified: that would take longer
-    /// than it could save (docs/tiles.md). With 0 every frame is.
+    /// Lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the radiance of
+    /// each of its pixels, in the sum of the channels; in [0, 1). With 0 only lights that contribute nothing are left out.
+    pub cull_threshold: f32,
+    /// Frames of fewer lights than this, all of them convex quads without an image, are shaded without tiles: to classify them would take
+    /// longer than it could save (docs/tiles.md). With 0 every frame is classified.
     pub least_quads: u32,
 }
 
 impl TileOptions {
-    /// Whether the tiles of a frame are classified that has as many lights, quads first, and shapes as `constants` says.
+    /// Whether the tiles of a frame are classified that has as many lights, quads first, and shapes as `constants` has.
     pub fn classifies(self, constants: &ShadeConstants) -> bool {
         let &ShadeConstants { light_count, quad_count, shape_count, .. } = constants;
         light_count >= self.least_quads || quad_count < light_count || shape_count > 0
@@ -210,9 +211,9 @@ impl TileOptions {
 }
 
 impl Default for TileOptions {
-    /// 128 lights, of which none is negligible; frames of four quads and more are classified.
+    /// Lists of 128 lights, of which none is culled that contributes anything; frames of four quads and more are classified.
     fn default() -> Self {
-        Self { capacity: 128, negligible: 0.0, least_quads: 4 }
+        Self { capacity: 128, cull_threshold: 0.0, least_quads: 4 }
     }
 }
 
@@ -229,7 +230,7 @@ pub fn classify_specialization(
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
-        (kernels::constant::CULL, u32::from(tiles.negligible > 0.0)),
+        (kernels::constant::CULL, u32::from(tiles.cull_threshold > 0.0)),
     ]
 }
 
@@ -239,16 +240,9 @@ pub fn shade_tiles_specialization(
     variant: ShadeVariant,
     class: TileClass,
 ) -> Vec<(u32, u32)> {
-    let mut values =
-        shade_specialization(ShadeOptions { effects: class.effects(variant.effects), ..options });
+    let variant = ShadeVariant { effects: class.effects(variant.effects), ..variant };
+    let mut values = shade_variant_specialization(options, variant);
     values.push((kernels::constant::CLASS, class as u32));
-    values
-}
-
-/// As [`shade_tiles_specialization`], for frames that are not classified: a group for each tile of the frame, with all lights.
-pub fn shade_all_tiles_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
-    let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
-    values.push((kernels::constant::CLASS, tiles::NOT_CLASSIFIED));
     values
 }
 

@@ -1,32 +1,36 @@
-//! Tiles of a picture, classified by the lights that matter to them: what the kernels `classify` and `shade_tiles` share.
+//! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and `shade_tiles` share.
 //!
-//! A scene has a set of effects, but few of its pixels call for all of them. Each tile of 8 × 8 pixels gets a list of
-//! the lights that matter to it, and each class of tiles has a pipeline that does no more than those call for. docs/tiles.md
-//! tells what that gains.
+//! A frame may have many lights of every kind, of which few contribute to a pixel. Each tile of 8 × 8 pixels gets a list of
+//! the lights that contribute to it, and each class of tiles has a pipeline with no more code than their lights need. docs/tiles.md
+//! has measurements.
 
 use crate::Effects;
 use crate::gpu::GpuTileClass;
-use crate::plan::Output;
+use crate::plan::{Output, ShadeVariant};
 
 /// Width and height of a tile in pixels.
 pub const SIDE: u32 = 8;
 
-/// Words of a tile's record before the indices of its lights.
-pub const RECORD_HEADER: u32 = 2;
+/// Words of a tile's record before the indices of its lights: how many convex quads without an image, polygons in all, and shapes.
+pub const RECORD_HEADER: u32 = 3;
 
-/// Groups of a class's dispatch in x.
+/// In the place of each of these counts: the tile is shaded by all lights of the frame, since its list does not hold those that
+/// contribute to it.
+pub const ALL_LIGHTS: u32 = u32::MAX;
+
+/// Workgroups of a class's dispatch in x.
 pub const ROW: u32 = 32768;
 
-/// What the tiles of a class have in common, from the cheapest on.
+/// The classes of tiles, from the cheapest on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum TileClass {
-    /// No surface, or no light that reaches it. Its pipeline writes that, where pixels are overwritten; where they are added
+    /// No surface, or no light that contributes to it. Its pipeline writes that, where pixels are overwritten; where they are added
     /// to it has none.
     Empty = 0,
-    /// Convex quads without images.
+    /// Convex quads without images, and no other light.
     Quads = 1,
-    /// Any lights; and all lights, where a tile's list does not hold them.
+    /// Any lights.
     Any = 2,
 }
 
@@ -38,20 +42,20 @@ impl TileClass {
     pub fn effects(self, frame: Effects) -> Effects {
         match self {
             Self::Any => frame,
-            _ => frame - Effects::BEYOND_QUADS,
+            Self::Empty | Self::Quads => frame - Effects::BEYOND_QUADS - Effects::OF_SHAPES,
         }
     }
 
-    /// Whether a frame of these effects may have such tiles that something is to be done for.
-    pub fn is_called_for(self, frame: Effects, output: Output) -> bool {
+    /// Whether frames whose lights need `frame` may have such tiles, of which pixels are written.
+    pub fn is_dispatched(self, frame: ShadeVariant, output: Output) -> bool {
         match self {
             Self::Empty => output == Output::Overwrite,
-            Self::Quads => true,
-            Self::Any => frame.intersects(Effects::BEYOND_QUADS),
+            Self::Quads => frame.quads,
+            Self::Any => frame.effects.intersects(Effects::BEYOND_QUADS | Effects::SHAPES),
         }
     }
 
-    /// A few words, for people to read.
+    /// A word, for people to read.
     pub fn name(self) -> &'static str {
         match self {
             Self::Empty => "empty",
@@ -66,9 +70,6 @@ impl std::fmt::Display for TileClass {
         f.write_str(self.name())
     }
 }
-
-/// In the place of a class: the kernel shades all tiles of a frame, none of which was classified.
-pub const NOT_CLASSIFIED: u32 = TileClass::ALL.len() as u32;
 
 /// How many tiles an image of `size` pixels has in each direction.
 pub fn tile_counts(size: [u32; 2]) -> [u32; 2] {
@@ -100,15 +101,23 @@ mod tests {
         for (number, class) in (0..).zip(TileClass::ALL) {
             assert_eq!(class as u32, number);
         }
-        let quads = Effects::all() - Effects::BEYOND_QUADS;
-        assert!(!TileClass::Any.is_called_for(quads, Output::Add));
-        assert!(TileClass::Any.is_called_for(Effects::POLYGON, Output::Add));
-        assert!(TileClass::Empty.is_called_for(quads, Output::Overwrite));
-        assert!(!TileClass::Empty.is_called_for(quads, Output::Add));
+        let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+        let frame = |effects, quads| ShadeVariant { effects, quads };
+        let dispatched = |frame, output| TileClass::ALL.map(|class| class.is_dispatched(frame, output));
+        assert_eq!(dispatched(frame(lobes, true), Output::Add), [false, true, false]);
+        assert_eq!(dispatched(frame(lobes, true), Output::Overwrite), [true, true, false]);
+        assert_eq!(dispatched(frame(lobes | Effects::POLYGON, true), Output::Add), [false, true, true]);
+        assert_eq!(dispatched(frame(lobes | Effects::SPHERE, false), Output::Add), [false, false, true]);
+    }
+
+    #[test]
+    fn tiles_of_quads_have_the_code_of_quads_alone() {
+        assert_eq!(TileClass::Quads.effects(Effects::all()) & (Effects::POLYGON | Effects::SHAPES), Effects::empty());
+        assert_eq!(TileClass::Any.effects(Effects::all()), Effects::all());
     }
 
     #[test]
     fn memory_is_that_of_whole_tiles() {
-        assert_eq!(memory([17, 8], 64), (12 + 3 * (3 + 2 + 64)) * 4);
+        assert_eq!(memory([17, 8], 64), (12 + 3 * (3 + 3 + 64)) * 4);
     }
 }

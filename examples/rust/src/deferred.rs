@@ -159,6 +159,7 @@ impl<'a> Deferred<'a> {
                 glossy: None, // its radiance is in that image too, without RadianceImages::Apart
                 light_textures: table.in_place_of_textures(), // nor these without Effects::TEXTURED
                 shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
+                tiles: None,
             };
             // SAFETY: no pending frame uses the set, and the resources outlive its next use.
             unsafe { self.shade.write_set(place.set, &resources) }?;
@@ -226,6 +227,7 @@ impl<'a> Deferred<'a> {
                 quad_count: packed.quad_count,
                 unused: packed.unused,
                 shape_count: 0,
+                tile_lists: None,
             };
             // SAFETY: the commands are being recorded; buffers and sets are this place's.
             unsafe {

@@ -24,7 +24,7 @@ pub use g_buffer::GBuffer;
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::SceneRenderer;
-pub use render::tiled::{TileCounts, TiledView};
+pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 

@@ -293,6 +293,7 @@ impl<'a> SceneRenderer<'a> {
             glossy: None,
             light_textures: self.engine.light_textures(),
             shapes: Resource::buffer(self.shape_buffer.handle()),
+            tiles: None,
         }
     }
 
@@ -305,6 +306,7 @@ impl<'a> SceneRenderer<'a> {
             quad_count: self.quad_count,
             unused: self.unused,
             shape_count: self.shapes.len() as u32,
+            tile_lists: None,
         }
     }
 

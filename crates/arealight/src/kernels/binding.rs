@@ -29,6 +29,8 @@ pub enum Access {
     Write,
     /// Reads and writes.
     ReadWrite,
+    /// Nothing: the binding is in the descriptor set for another kernel of the pass.
+    None,
 }
 
 /// A binding of descriptor set 0; its number is its place in [`Kernel::bindings`](super::Kernel::bindings).
@@ -45,6 +47,12 @@ pub struct Binding {
 }
 
 impl Binding {
+    /// The same binding of a kernel that does not use it.
+    #[must_use]
+    pub const fn unused(self) -> Self {
+        Self { access: Access::None, ..self }
+    }
+
     /// A storage buffer.
     pub const fn storage_buffer(name: &'static str, access: Access, content: &'static str) -> Self {
         Self { name, kind: BindingKind::StorageBuffer, access, content }

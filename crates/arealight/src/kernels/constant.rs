@@ -28,5 +28,5 @@ pub const HAS_QUADS: u32 = 11;
 pub const CLASS: u32 = 12;
 /// [`crate::plan::GBufferLayout`].
 pub const LAYOUT: u32 = 13;
-/// 1 where [`crate::plan::TileOptions::negligible`] is not zero.
+/// 1 where [`crate::plan::TileOptions::cull_threshold`] is not zero.
 pub const CULL: u32 = 14;

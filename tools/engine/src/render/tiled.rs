@@ -7,40 +7,81 @@ use arealight::gpu::GpuTileClass;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
 use arealight_host::{Buffer, DescriptorPool, Location, Usage};
-use arealight_vk::{Resource, ShadeFrame, TileResources, TiledShade};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, TileMemory, TileResources};
 use ash::vk;
 use std::time::Duration;
 
-/// The pipelines, buffers and descriptor sets of shading a view by tiles, for any number of runs.
+/// The pipelines, buffers and descriptor set of shading a view by tiles, for any number of runs.
 pub struct TiledView {
-    // Goes before the pool that its sets are of
-    pass: Kept<TiledShade>,
-    sets: [vk::DescriptorSet; 2],
+    // Goes before the pool that its set is of
+    pass: Kept<ShadePass>,
+    set: vk::DescriptorSet,
     lobe_horizons: Buffer,
     tile_lists: Buffer,
     _pool: DescriptorPool,
+    tiles: TileOptions,
     size: [u32; 2],
 }
 
 /// What was found of a view's tiles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TileCounts {
-    /// How many tiles each class had.
+    /// How many tiles each class had; none where the frame was shaded without tiles ([`TileOptions::least_quads`]).
     pub classes: Vec<(TileClass, u32)>,
-    /// How many lights the tiles' lists held together; a tile that was shaded by all of the frame's counts those.
+    /// How many lights of all kinds the tiles' lists held in all; a tile that was shaded by all of the frame's counts those.
     pub lights: u64,
 }
 
 impl TileCounts {
-    /// Whether tiles were classified: [`TileOptions::least_quads`] says which frames' are.
+    /// Whether tiles were classified: [`TileOptions::least_quads`] decides which frames' are.
     pub fn is_classified(&self) -> bool {
         self.classes.iter().any(|(_, count)| *count > 0)
     }
 
-    /// How many lights a tile had in the mean.
-    pub fn lights_a_tile(&self) -> f64 {
+    /// The mean number of lights per tile.
+    pub fn lights_per_tile(&self) -> f64 {
         let tiles: u32 = self.classes.iter().map(|(_, count)| count).sum();
         self.lights as f64 / f64::from(tiles.max(1))
+    }
+}
+
+/// The lists of tiles, as the classification wrote them.
+pub struct TileLists {
+    words: Vec<u32>,
+    capacity: u32,
+    size: [u32; 2],
+}
+
+impl TileLists {
+    fn tile_count(&self) -> usize {
+        tiles::tile_counts(self.size).map(|count| count as usize).iter().product()
+    }
+
+    /// How many tiles each class has.
+    pub fn classes(&self) -> Vec<(TileClass, u32)> {
+        let found: &[GpuTileClass] = bytemuck::cast_slice(&self.words[..tiles::FIRST_LIST as usize]);
+        TileClass::ALL.into_iter().zip(found.iter().map(|found| found.tile_count)).collect()
+    }
+
+    /// The column and row of each tile of a class.
+    pub fn tiles_of(&self, class: TileClass) -> impl Iterator<Item = [u32; 2]> {
+        let first = tiles::FIRST_LIST as usize + class as usize * self.tile_count();
+        let count = self.classes()[class as usize].1 as usize;
+        self.words[first..][..count].iter().map(|tile| tiles::unpack(*tile))
+    }
+
+    /// The indices of a tile's polygons, and of its shapes; none where it is shaded by all lights.
+    pub fn lights(&self, [column, row]: [u32; 2]) -> Option<[&[u32]; 2]> {
+        let [columns, _] = tiles::tile_counts(self.size);
+        let first = tiles::FIRST_LIST as usize + TileClass::ALL.len() * self.tile_count();
+        let length = (tiles::RECORD_HEADER + self.capacity) as usize;
+        let record = &self.words[first + (row * columns + column) as usize * length..][..length];
+        let (counts, lights) = record.split_at(tiles::RECORD_HEADER as usize);
+        if counts[0] == tiles::ALL_LIGHTS {
+            return None;
+        }
+        let (polygons, shapes) = lights.split_at(counts[1] as usize);
+        Some([polygons, &shapes[..counts[2] as usize]])
     }
 }
 
@@ -50,28 +91,27 @@ impl TiledView {
         TileResources { lobe_horizons: buffer(&self.lobe_horizons), tile_lists: buffer(&self.tile_lists) }
     }
 
-    /// What the last run found, of a frame of so many lights.
+    /// The lists that the last run wrote.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn lists(&self) -> Result<TileLists, EngineError> {
+        let words = self.tile_lists.download()?;
+        Ok(TileLists { words, capacity: self.tiles.capacity, size: self.size })
+    }
+
+    /// What the last run found, of a frame of so many lights of all kinds.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn counts(&self, light_count: usize) -> Result<TileCounts, EngineError> {
-        let words: Vec<u32> = self.tile_lists.download()?;
-        let found: &[GpuTileClass] = bytemuck::cast_slice(&words[..tiles::FIRST_LIST as usize]);
-        let classes = TileClass::ALL.into_iter().zip(found.iter().map(|found| found.tile_count)).collect();
-        let [columns, rows] = tiles::tile_counts(self.size);
-        let tile_count = (columns * rows) as usize;
-        let record = (tiles::RECORD_HEADER + self.pass.tile_options().capacity) as usize;
-        let first_record = tiles::FIRST_LIST as usize + TileClass::ALL.len() * tile_count;
-        let mut lights = 0;
-        for (place, found) in found.iter().enumerate().skip(TileClass::Quads as usize) {
-            let list = &words[tiles::FIRST_LIST as usize + place * tile_count..][..found.tile_count as usize];
-            for &tile in list {
-                let [column, row] = tiles::unpack(tile);
-                let total = words[first_record + (row * columns + column) as usize * record + 1];
-                lights += if total == u32::MAX { light_count as u64 } else { total.into() };
-            }
-        }
-        Ok(TileCounts { classes, lights })
+        let lists = self.lists()?;
+        let listed = [TileClass::Quads, TileClass::Any].into_iter().flat_map(|class| lists.tiles_of(class));
+        let lights = listed.map(|tile| match lists.lights(tile) {
+            Some([polygons, shapes]) => (polygons.len() + shapes.len()) as u64,
+            None => light_count as u64,
+        });
+        Ok(TileCounts { lights: lights.sum(), classes: lists.classes() })
     }
 }
 
@@ -79,25 +119,25 @@ impl SceneRenderer<'_> {
     /// Makes what shading this view by tiles needs.
     ///
     /// # Errors
-    /// [`EngineError`] names a light that calls for more than the options' effects, or says why the device fails.
+    /// [`EngineError`] names a light that needs more than the options' effects, or the reason why the device fails.
     pub fn tiled(&self, options: ShadeOptions, tiles: TileOptions) -> Result<TiledView, EngineError> {
         let engine = self.engine;
         let host = engine.host();
         // SAFETY: As in Engine::pass.
-        let pass = unsafe { TiledShade::new(engine.context(), options, engine.table_size(), tiles) }?;
+        let pass = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) }?;
         let pass = Kept::new(host, pass);
-        pass.without_tiles().check_lights(self.lights)?;
-        pass.without_tiles().check_shapes(self.shapes)?;
+        pass.check_lights(self.lights)?;
+        pass.check_shapes(self.shapes)?;
         let lobe_horizons = engine.storage("lobe horizons", engine.lobe_horizons())?;
-        let tile_lists = engine.tile_lists(pass.memory(self.size))?;
-        let pool = host.descriptor_pool(2, &pass.pool_sizes(1))?;
-        let [classify, shade] = pass.set_layouts();
-        // SAFETY: The layouts are the pass's, and alive.
-        let sets = unsafe { [pool.allocate(classify)?, pool.allocate(shade)?] };
-        let view = TiledView { pass, sets, lobe_horizons, tile_lists, _pool: pool, size: self.size };
-        // SAFETY: The sets are new, and the resources live until submissions were waited for.
-        unsafe { view.pass.write_sets(view.sets, &self.shade_resources(), &view.resources()) }?;
-        view.pass.prepare(&self.shade_frame())?;
+        let tile_lists = engine.tile_lists(pass.tile_memory(self.size).expect("the pass has tiles"))?;
+        let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
+        // SAFETY: The layout is the pass's, and alive.
+        let set = unsafe { pool.allocate(pass.set_layout()) }?;
+        let view = TiledView { pass, set, lobe_horizons, tile_lists, _pool: pool, tiles, size: self.size };
+        let resources = arealight_vk::ShadeResources { tiles: Some(view.resources()), ..self.shade_resources() };
+        // SAFETY: The set is new, and the resources live until submissions were waited for.
+        unsafe { view.pass.write_set(view.set, &resources) }?;
+        view.pass.prepare(&self.tiled_frame(&view))?;
         Ok(view)
     }
 
@@ -107,23 +147,32 @@ impl SceneRenderer<'_> {
     /// [`EngineError`] where the device fails.
     pub fn shade_tiled(&mut self, view: &TiledView) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let frame: ShadeFrame = self.shade_frame();
+        let frame = self.tiled_frame(view);
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of
+            // SAFETY: The commands are being recorded outside a render pass; the set was written with images of
             // the frame's size, and submissions are waited for.
-            unsafe { view.pass.record(commands, view.sets, &view.resources(), &frame) }?;
+            unsafe { view.pass.record(commands, view.set, &frame) }?;
             Ok(())
         })
+    }
+
+    fn tiled_frame(&self, view: &TiledView) -> ShadeFrame {
+        ShadeFrame { tile_lists: Some(view.resources().tile_lists), ..self.shade_frame() }
     }
 }
 
 impl Engine {
-    /// A buffer with the device for the lists of tiles.
-    fn tile_lists(&self, bytes: u64) -> Result<Buffer, EngineError> {
+    /// A buffer with the device for the lists of tiles, without a tile at first.
+    fn tile_lists(&self, memory: TileMemory) -> Result<Buffer, EngineError> {
         let name = "tile lists";
-        self.check_storage(name, bytes)?;
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::INDIRECT_BUFFER;
-        Ok(self.host().buffer(name, bytes, usage, Location::Device)?)
+        self.check_storage(name, memory.size)?;
+        let buffer = self.host().buffer(name, memory.size, memory.usage, Location::Device)?;
+        self.host().submit(|commands| {
+            let (device, raw) = (self.host().device(), buffer.handle());
+            // SAFETY: The buffer is new, and the submission is waited for.
+            unsafe { device.cmd_fill_buffer(commands, raw, 0, vk::WHOLE_SIZE, 0) };
+        })?;
+        Ok(buffer)
     }
 }

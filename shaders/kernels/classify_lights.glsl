@@ -1,0 +1,120 @@
+#ifndef CLASSIFY_LIGHTS_GLSL
+#define CLASSIFY_LIGHTS_GLSL
+
+// Tests lights against the bounds of a tile. What is found holds for every pixel:
+//
+// - A light is left out where it contributes to neither lobe: it is wholly below the lobe's horizon, or the pixel is behind
+//   a flat light of one side.
+// - With CULL its contribution has bounds (tile_contribution.glsl).
+//
+// Margins: 1e-5 of the distances, which is a hundred times what positions and planes are rounded by, and 1e-3 of
+// the radius for lights that are flat to 1e-4 of it. Comparisons are such that NaN leaves nothing out.
+
+#include "classify_pixels.glsl"
+
+const float MARGIN = 1e-5;
+
+// The lights of a frame, polygons and then shapes.
+uint light_total() {
+    return constants.light_count + (HAS_SHAPES ? constants.shape_count : 0u);
+}
+
+float sum_of(vec3 radiance) {
+    return radiance.x + radiance.y + radiance.z;
+}
+
+TileLight polygon_light(uint index) {
+    ArealightGpuLight record = light_record(index);
+    bool is_flat = (record.flags & LIGHT_FLAT) != 0u;
+    TileLight light;
+    light.center = record.center;
+    light.radius = record.radius;
+    light.normal = is_flat ? arealight_normalize_or(record.area, vec3(0.0)) : vec3(0.0);
+    light.two_sided = (EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u && (record.flags & LIGHT_TWO_SIDED) != 0u;
+    light.radiance = sum_of(record.radiance);
+    light.area = sqrt(dot(record.area, record.area)) * (record.radius * record.radius);
+    light.least = light.area;
+    // What an image shows may be brighter than the light, or black
+    bool has_image = (EFFECTS & AREALIGHT_EFFECT_TEXTURED) != 0u && record.texture_layer != NO_LIGHT_TEXTURE;
+    light.is_bounded = light.normal != vec3(0.0) && !has_image;
+    return light;
+}
+
+TileLight shape_light(uint index) {
+    ArealightShape shape = load_shape(index, SHAPE_ANY);
+    TileLight light;
+    light.center = shape.center;
+    light.radius = shape.radius;
+    light.normal = vec3(0.0);
+    light.two_sided = shape.two_sided;
+    light.radiance = sum_of(shape.radiance);
+    light.area = TILE_PI * (shape.radius * shape.radius);
+    light.least = light.area;
+    light.is_bounded = true;
+    if (shape.kind == AREALIGHT_SHAPE_ELLIPSE) {
+        vec3 area = cross(shape.axis_u, shape.axis_v);
+        light.normal = arealight_normalize_or(area, vec3(0.0));
+        light.area = TILE_PI * sqrt(dot(area, area));
+        light.least = light.area;
+        bool has_image = (EFFECTS & AREALIGHT_EFFECT_TEXTURED_ELLIPSE) != 0u && shape.image != AREALIGHT_NO_IMAGE;
+        light.is_bounded = light.normal != vec3(0.0) && !has_image;
+    } else if (shape.kind == AREALIGHT_SHAPE_TUBE) {
+        // Half of a capsule's surface; those with flat ends or none have less
+        float half_length = sqrt(dot(shape.axis_u, shape.axis_u));
+        light.radius += half_length;
+        light.area = 2.0 * TILE_PI * shape.radius * light.radius;
+        light.least = 0.0;
+    }
+    return light;
+}
+
+// A light of the frame, as the pixels of the tile have it before them.
+TileLight tile_light(uint index) {
+    TileLight light;
+    if (!HAS_SHAPES || index < constants.light_count) {
+        light = polygon_light(index);
+    } else {
+        light = shape_light(index - constants.light_count);
+    }
+    light.center -= constants.camera;
+    light.distance = sqrt(dot(light.center, light.center)) + tile_distance();
+    light.margin = MARGIN * (light.distance + light.radius);
+    return light;
+}
+
+// The least and the most that a light contributes. Where nothing is known or asked of that, the most is TILE_FAR; where it contributes
+// nothing, negative.
+vec2 contribution(uint index) {
+    if (index >= light_total()) {
+        return vec2(0.0, -1.0);
+    }
+    TileLight light = tile_light(index);
+    vec2 behind = vec2(dot(light.normal, light.center)) - box_dot(tile_position(), light.normal).yx;
+    bool is_behind = light.normal != vec3(0.0) && !light.two_sided
+                  && behind.x > TILE_FLATNESS * light.radius + light.margin;
+
+    TileLightHeights heights;
+    heights.surface = tile_heights(tile_planes(SURFACE_PAIR), light);
+    heights.lobe = HAS_HORIZON ? tile_heights(tile_planes(LOBE_PAIR), light).y : 0.0;
+    bool is_below = !tile_is_diffuse() || heights.surface.y < 0.0;
+    if (HAS_GLOSSY) {
+        bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe();
+        is_below = is_below && (is_below_lobe || (HORIZON == AREALIGHT_HORIZON_BOTH && heights.surface.y < 0.0));
+    }
+    bool is_dark = light.radiance == 0.0;
+    if (tile_is_known() && (is_behind || is_below || is_dark)) {
+        return vec2(0.0, -1.0);
+    }
+
+    vec2 sent = vec2(0.0, TILE_FAR);
+    if (CULL != 0u) {
+        heights.mirror = HAS_HORIZON ? tile_heights(tile_planes(MIRROR_PAIR), light).y : 0.0;
+        vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
+        // NaN is neither little nor much
+        bool is_sure = light.is_bounded && tile_is_known() && tile_has_lobe() && bounds.x >= 0.0 && bounds.y < TILE_FAR;
+        sent = is_sure ? bounds : sent;
+    }
+    return sent;
+}
+
+#endif

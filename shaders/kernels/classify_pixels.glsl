@@ -1,0 +1,159 @@
+#ifndef CLASSIFY_PIXELS_GLSL
+#define CLASSIFY_PIXELS_GLSL
+
+// Bounds over the pixels of a tile: an invocation reads a pixel, and the workgroup reduces what they found.
+//
+// Horizons. That of Lambert's lobe is the surface. That of a fitted lobe is a plane through the point as well: its normal is
+// proportional to mirror + q across (table.glsl), with the ratio q = z / w of the texel that the table gives. With p = q / sin,
+// and the unit normal n, the unit vector v to the viewer and the cosine c between them, that normal is
+//
+//     (2 c + p (1 - 2 c^2)) n + (p c - 1) v.
+//
+// LobeHorizons holds the least and the largest p of each cell of the table for both of its lobes; a mixture of the two, by
+// the reflectance, has a weighted mean of theirs. So the table is not read here. The planes of a tile are held by the box of
+// their normals and by the range of their offsets, which makes them sharp on a flat floor however far it extends; the range of p
+// is a spread of the normals.
+
+#include "tile_bounds.glsl"
+#include "tile_contribution.glsl"
+#include "tile_reduction.glsl"
+
+// What the kernel knows of a cell of the table: LobeHorizon in Rust.
+struct ArealightGpuLobeHorizon {
+    vec2 lobe;     // the least and the largest p of the lobe without Fresnel term
+    vec2 schlick;  // of the lobe of Schlick's weight
+    vec2 weight;   // what a mixture of the two is weighed by, its ends
+    vec2 envelope; // tile_contribution.glsl
+    float schlick_albedo;
+    float reserved0;
+    float reserved1;
+    float reserved2;
+};
+
+layout(set = 0, binding = LOBE_HORIZONS_BINDING, std430) readonly buffer LobeHorizons {
+    ArealightGpuLobeHorizon lobe_horizons[];
+};
+
+// The pairs of tile_maxima. The least of a value is held as the largest of its negative.
+const int SURFACE_PAIR = 0;    // of the planes of the surfaces: normal and offset, their negatives
+const int LOBE_PAIR = 1;       // of the horizons of the glossy lobes, likewise
+const int POSITION_PAIR = 2;   // position and distance, negative position and the spread of the lobes' horizons
+const int REFLECTION_PAIR = 3; // whether some diffuse albedo is not zero; TileReflection's
+const int MIRROR_PAIR = 4;     // of the planes whose normals are the mirror directions of the view, with CULL
+
+// The cell of the table that a surface is looked up in.
+ArealightGpuLobeHorizon lobe_horizon(ArealightSurface surface, float cosine) {
+    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
+    float roughness = surface.roughness > smallest ? min(surface.roughness, 1.0) : smallest;
+    vec2 place = vec2(roughness, sqrt(max(1.0 - cosine, 0.0))) * float(constants.horizon_cells);
+    // Of whole numbers, so that NaN is a cell too
+    uvec2 cell = min(uvec2(place), uvec2(constants.horizon_cells - 1u));
+    return lobe_horizons[cell.y * constants.horizon_cells + cell.x];
+}
+
+// The range of p for a surface.
+vec2 horizon_range(ArealightSurface surface, ArealightGpuLobeHorizon horizon) {
+    // What part of the ratio Schlick's lobe has, by arealight_schlick_share and the lobes' heights
+    vec2 part = vec2(0.0, 1.0);
+    if (FRESNEL == AREALIGHT_FRESNEL_BY_F0) {
+        float mean = dot(surface.f0, vec3(1.0 / 3.0));
+        vec2 weight = (surface.f90 - mean) * horizon.weight;
+        part = mean >= 0.0 && surface.f90 > mean ? weight / (mean + weight + 1e-30) : vec2(0.0, mean <= 1.0 ? 0.0 : 1.0);
+    }
+    vec4 ends = mix(vec4(horizon.lobe, horizon.lobe), vec4(horizon.schlick, horizon.schlick), part.xxyy);
+    return vec2(min(ends.x, ends.z), max(ends.y, ends.w));
+}
+
+void reduce_planes(int pair, vec3 normal, vec3 position, bool has_surface) {
+    vec4 plane = vec4(normal, dot(normal, position));
+    tile_reduce(pair, has_surface ? plane : vec4(-TILE_FAR), has_surface ? -plane : vec4(-TILE_FAR));
+}
+
+// Finds the bounds. They are there after the next barrier.
+void reduce_pixels(ivec2 pixel) {
+    vec3 position;
+    bool is_inside = all(lessThan(pixel, ivec2(constants.size)));
+    pixel = min(pixel, ivec2(constants.size) - 1);
+    bool has_surface = load_position(pixel, ivec2(constants.size), position) && is_inside;
+    ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
+    vec3 normal = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
+    position = -surface.view;
+    float distance = sqrt(dot(position, position));
+    // Where numbers are infinite or NaN, nothing is known of the tile
+    float known_distance = distance > 0.0 && distance < TILE_FAR ? distance : TILE_FAR;
+    reduce_planes(SURFACE_PAIR, normal, position, has_surface);
+
+    // The glossy lobe: its horizon, and what it reflects at most
+    float spread = 0.0;
+    vec3 reflection = vec3(0.0, -TILE_FAR, 0.0);
+    if (HAS_HORIZON) {
+        vec3 view = surface.view / distance;
+        float cosine = dot(normal, view);
+        ArealightGpuLobeHorizon cell = lobe_horizon(surface, cosine);
+        vec2 range = horizon_range(surface, cell);
+        float p = 0.5 * (range.x + range.y);
+        float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+        float scale = inversesqrt(1.0 + p * p * sine * sine);
+        vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0)) * scale;
+        // The cells say nothing of views from below. NaN, of a cell without a horizon, gets through no comparison
+        spread = cosine > 0.0 && range.y - range.x < TILE_FAR ? 0.5 * (range.y - range.x) * sine : TILE_FAR;
+        reduce_planes(LOBE_PAIR, horizon, position, has_surface);
+
+        if (CULL != 0u) {
+            reduce_planes(MIRROR_PAIR, 2.0 * cosine * normal - view, position, has_surface);
+            // What is left of a lobe above the surface is more than half of it, and has all of its albedo
+            float gain = HORIZON == AREALIGHT_HORIZON_BOTH ? 2.0 : 1.0;
+            // The F0 part's albedo is at most 1
+            vec3 albedo = surface.f0 + max(vec3(surface.f90) - surface.f0, vec3(0.0)) * cell.schlick_albedo;
+            reflection = vec3(cell.envelope.x * gain, -cell.envelope.y, arealight_max_component(albedo));
+        }
+    }
+    tile_reduce(POSITION_PAIR, has_surface ? vec4(position, known_distance) : vec4(-TILE_FAR),
+                has_surface ? vec4(-position, spread) : vec4(-TILE_FAR));
+
+    if (HAS_DIFFUSE || CULL != 0u) {
+        vec3 albedo = HAS_DIFFUSE ? surface.diffuse_albedo : vec3(0.0);
+        float is_diffuse = albedo != vec3(0.0) ? 1.0 : 0.0;
+        vec2 diffuse = vec2(-min(albedo.r, min(albedo.g, albedo.b)), arealight_max_component(albedo));
+        tile_reduce(REFLECTION_PAIR, has_surface ? vec4(is_diffuse, reflection) : vec4(-TILE_FAR),
+                    has_surface ? vec4(diffuse, 0.0, 0.0) : vec4(-TILE_FAR));
+    }
+}
+
+// The largest distance of a pixel to the camera: negative where no pixel has a surface.
+float tile_distance() {
+    return tile_maxima[2 * POSITION_PAIR].w;
+}
+
+// Whether the numbers of every pixel are finite: else no bound holds.
+bool tile_is_known() {
+    return tile_distance() < TILE_FAR;
+}
+
+// Whether the horizons of every pixel's glossy lobe are known.
+bool tile_has_lobe() {
+    return HAS_HORIZON ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
+}
+
+bool tile_is_diffuse() {
+    return HAS_DIFFUSE && tile_maxima[2 * REFLECTION_PAIR].x > 0.0;
+}
+
+TileBox tile_position() {
+    return TileBox(-tile_maxima[2 * POSITION_PAIR + 1].xyz, tile_maxima[2 * POSITION_PAIR].xyz);
+}
+
+TilePlanes tile_planes(int pair) {
+    vec4 high = tile_maxima[2 * pair];
+    vec4 low = -tile_maxima[2 * pair + 1];
+    float spread = pair == LOBE_PAIR ? tile_maxima[2 * POSITION_PAIR + 1].w : 0.0;
+    return TilePlanes(TileBox(low.xyz, high.xyz), vec2(low.w, high.w), spread);
+}
+
+TileReflection tile_reflection() {
+    vec4 glossy = tile_maxima[2 * REFLECTION_PAIR];
+    vec2 diffuse = tile_maxima[2 * REFLECTION_PAIR + 1].xy;
+    return TileReflection(vec2(glossy.y, -glossy.z), vec2(-diffuse.x, diffuse.y), glossy.w);
+}
+
+#endif

@@ -1,0 +1,40 @@
+#ifndef TILE_REDUCTION_GLSL
+#define TILE_REDUCTION_GLSL
+
+// Maxima over the 64 pixels of a tile, in memory that the workgroup shares.
+
+const uint TILE_PIXELS = 64u;
+
+// Values of the pixels, eight at a time; afterwards free for other use.
+shared vec4 tile_scratch[2u * TILE_PIXELS];
+shared float tile_parts[TILE_PIXELS];
+
+// The maxima, in pairs of vectors.
+const int TILE_PAIRS = 5;
+shared vec4 tile_maxima[2 * TILE_PAIRS];
+
+// Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after the next barrier.
+void tile_reduce(int pair, vec4 first, vec4 second) {
+    uint invocation = gl_LocalInvocationIndex;
+    tile_scratch[invocation] = first;
+    tile_scratch[TILE_PIXELS + invocation] = second;
+    barrier();
+    // Eight invocations a value, which take every eighth pixel: no two of a bank at a time
+    uint value = invocation >> 3u;
+    uint from = (value >> 2u) * TILE_PIXELS + (invocation & 7u);
+    float largest = -TILE_FAR;
+    for (uint step = 0u; step < 8u; step++) {
+        largest = max(tile_scratch[from + 8u * step][value & 3u], largest);
+    }
+    tile_parts[invocation] = largest;
+    barrier();
+    if (invocation < 8u) {
+        largest = -TILE_FAR;
+        for (uint step = 0u; step < 8u; step++) {
+            largest = max(tile_parts[8u * invocation + step], largest);
+        }
+        tile_maxima[2 * pair + int(invocation >> 2u)][invocation & 3u] = largest;
+    }
+}
+
+#endif
