@@ -1,12 +1,12 @@
-//! What tiles gain: whole frames of our scenes; disks that no pixel's horizon crosses, and what images on them cost; and a floor
-//! under 10 to 1,000 lamps of which those that send little are left out: `cargo bench -p arealight-benches --bench tiles`, with
-//! `-- scenes`, `-- disks` or `-- lamps` these alone. Prints Markdown tables.
+//! What tiles gain: whole frames of our scenes; a floor under 10 to 1,000 lamps of which those that contribute little are culled; the same
+//! under disks and spheres, and images on disks: `cargo bench -p arealight-benches --bench tiles`, with `-- scenes`, `-- lamps` or
+//! `-- shapes` these alone. Prints Markdown tables.
 
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, Quality};
 use arealight_benches::pictures;
 use arealight_benches::start::start;
-use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure};
+use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure, round_lamps};
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Camera, Scene, SceneBuffers};
@@ -25,8 +25,8 @@ const FLOOR_SIZE: [u32; 2] = [1280, 720];
 /// The side of the floor in metres.
 const FLOOR: f64 = 40.0;
 
-/// What part of a pixel may be left out over the floor.
-const NEGLIGIBLE: [f32; 2] = [0.01, 0.1];
+/// What fraction of a pixel may be culled over the floor.
+const THRESHOLDS: [f32; 2] = [0.01, 0.1];
 
 /// What the floor is made of: a name, and a roughness.
 const FLOORS: [(&str, f32); 2] = [("concrete", 0.9), ("satin", 0.5)];
@@ -34,8 +34,11 @@ const FLOORS: [(&str, f32); 2] = [("concrete", 0.9), ("satin", 0.5)];
 /// How many lamps there are over it.
 const LAMPS: [usize; 3] = [10, 100, 1000];
 
-/// How many disks shine above the same floor, and how high.
-const DISKS: [usize; 3] = [1, 4, 16];
+/// How many disks or spheres there are over it.
+const ROUND_LAMPS: [usize; 2] = [10, 100];
+
+/// How many disks with images shine above the same floor, and how high.
+const DISKS: usize = 16;
 const DISK_HEIGHT: f64 = 30.0;
 
 fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
@@ -88,16 +91,33 @@ fn frame(
     Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
 }
 
+/// Frames of the floor under disks, and under spheres.
+fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
+    let mut frames = vec![];
+    for (kind, are_spheres) in [("disks", false), ("spheres", true)] {
+        for cull_threshold in THRESHOLDS {
+            for count in ROUND_LAMPS {
+                let mut scene = floor(FLOORS[0].1)?;
+                scene.shapes = round_lamps(count, FLOOR, are_spheres);
+                let against = (TileOptions { cull_threshold, ..TileOptions::default() }, Baseline::Exact);
+                let name = format!("{count} {kind}, threshold {cull_threshold}");
+                frames.push(frame(engine, (&name, &scene), SIZE, Quality::default(), against, rounds)?);
+            }
+        }
+    }
+    Ok(frames)
+}
+
 /// Frames of disks that show an image, by one fetch and by four.
 fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let mut frames = vec![];
     let mut scene = floor(FLOORS[0].1)?;
-    scene.shapes = disks(DISKS[2], 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
+    scene.shapes = disks(DISKS, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
     scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(0));
     for footprint in [Footprint::Round, Footprint::Ellipse] {
         let quality = Quality { footprint, ..Quality::default() };
         let against = (TileOptions::default(), Baseline::Plain);
-        let name = format!("disks with an image: {}, {footprint:?}", DISKS[2]);
+        let name = format!("disks with an image: {DISKS}, {footprint:?}");
         frames.push(frame(engine, (&name, &scene), SIZE, quality, against, rounds)?);
     }
     Ok(frames)
@@ -121,15 +141,15 @@ fn scene_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
 fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, String), Box<dyn Error>> {
     let (mut frames, mut growth) = (vec![], String::new());
     for (material, roughness) in FLOORS {
-        for negligible in NEGLIGIBLE {
+        for cull_threshold in THRESHOLDS {
             let first = frames.len();
             for count in LAMPS {
                 let against =
-                    (TileOptions { negligible, capacity: 512, ..TileOptions::default() }, Baseline::Practice);
+                    (TileOptions { cull_threshold, capacity: 512, ..TileOptions::default() }, Baseline::Practice);
                 let mut scene = floor(roughness)?;
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
-                let name = format!("{material}, {count} lamps, {negligible} negligible");
+                let name = format!("{material}, {count} lamps, threshold {cull_threshold}");
                 frames.push(frame(engine, (&name, &scene), FLOOR_SIZE, Quality::default(), against, rounds)?);
             }
             let ten = frames[first].milliseconds[2].median;
@@ -137,7 +157,7 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
                 let times = frame.milliseconds[2].median / ten;
                 let _ = writeln!(
                     growth,
-                    "- {material}, {negligible} negligible: {count} lamps take {times:.1} times as long as {}",
+                    "- {material}, threshold {cull_threshold}: {count} lamps take {times:.1} times as long as {}",
                     LAMPS[0]
                 );
             }
@@ -152,7 +172,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let device = engine.host().device_name();
     println!("{device}, {rounds} rounds\n");
     let named = |part: &str| std::env::args().any(|argument| argument == part);
-    let wanted = |part: &str| named(part) || !(named("scenes") || named("disks") || named("lamps"));
+    let wanted = |part: &str| named(part) || !(named("scenes") || named("shapes") || named("lamps"));
     if wanted("scenes") {
         println!("## Scenes, {} x {}\n", SIZE[0], SIZE[1]);
         println!("{}", markdown(&scene_frames(&engine, rounds)?));
@@ -162,8 +182,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (frames, growth) = lamp_frames(&engine, rounds)?;
         println!("{}\n{growth}", markdown(&frames));
     }
-    if wanted("disks") {
-        println!("## Disks above a floor, {} x {}\n", SIZE[0], SIZE[1]);
+    if wanted("shapes") {
+        println!("## A floor under disks and spheres, {} x {}\n", SIZE[0], SIZE[1]);
+        println!("{}", markdown(&shape_frames(&engine, rounds)?));
         pictures::load(&mut engine, &[Arc::new(Texture::noise(256, 256, 1))])?;
         println!("{}", markdown(&image_frames(&engine, rounds)?));
     }

@@ -23,6 +23,8 @@ const METHODS: usize = 3;
 pub enum Baseline {
     /// Polygons without images as others shade them: nothing clipped.
     Practice,
+    /// The shade kernel over all lights of the frame.
+    Exact,
     /// The shade kernel over the same shapes without the images that they show.
     Plain,
 }
@@ -32,6 +34,7 @@ impl Baseline {
     fn name(self) -> &'static str {
         match self {
             Self::Practice => "practice",
+            Self::Exact => "exact",
             Self::Plain => "no image",
         }
     }
@@ -44,6 +47,7 @@ impl Baseline {
                 let practice = Yardstick::Practice as u32;
                 (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, practice)])
             }
+            Self::Exact => (shade, shade_specialization(options)),
             Self::Plain => {
                 let effects = options.effects - Effects::TEXTURED_ELLIPSE;
                 (shade, shade_specialization(ShadeOptions { effects, ..options }))
@@ -158,6 +162,24 @@ pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
     places.enumerate().map(lamp).collect()
 }
 
+/// As [`lamps`], of disks that face down, or of spheres.
+pub fn round_lamps(count: usize, side: f64, are_spheres: bool) -> Vec<ShapeLight> {
+    let (step, places) = grid(count, side);
+    let lamp = |(index, place): (usize, DVec3)| {
+        let (center, radius) = (place.with_y(0.5 * step), 0.1 * step);
+        // x cross z is down
+        let disk = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
+        ShapeLight {
+            name: format!("lamp {index}"),
+            radiance: Vec3::splat(10.0),
+            two_sided: false,
+            texture: None,
+            shape: if are_spheres { Shape::Sphere { center, radius } } else { disk },
+        }
+    };
+    places.enumerate().map(lamp).collect()
+}
+
 /// Disks that face down to `center` from `height` above it, side by side as many as a square of `side` holds.
 pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLight> {
     let (step, places) = grid(count, side);
@@ -188,7 +210,7 @@ pub fn markdown(frames: &[TiledFrame]) -> String {
         "exact",
         "exact, by tiles",
         "quartiles",
-        "lights a tile",
+        "lights per tile",
         "RMSE",
         "largest",
     ];

@@ -1,9 +1,9 @@
 // A small engine that embeds Arealight: its own device, memory, G-buffer and command buffer.
 //
-//     host PICTURE.pfm [--validate core|synchronization|gpu-assisted] [--mistake]
+//     host PICTURE.pfm [--tiles] [--validate core|synchronization|gpu-assisted] [--mistake]
 //
-// Renders a floor under four lights and writes its radiance. With --validate it fails if the validation layer says
-// anything; with --mistake it makes one, to show that this would be noticed.
+// Renders a floor under four lights and writes its radiance; with --tiles, each tile of it with the lights that contribute to it. With
+// --validate it fails if the validation layer has a message; with --mistake it makes one, to show that this would be noticed.
 
 #include "engine.hpp"
 
@@ -63,7 +63,7 @@ void write_picture(const char *path, const float *radiance) {
     }
 }
 
-int render(const char *path, const std::string &validation, bool mistake) {
+int render(const char *path, const std::string &validation, bool tiles, bool mistake) {
     Engine engine(validation);
     VkDevice device = engine.device;
 
@@ -90,6 +90,7 @@ int render(const char *path, const std::string &validation, bool mistake) {
     ArealightPassOptions options = {};
     options.effects = AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_GLOSSY | AREALIGHT_EFFECT_TWO_SIDED |
                       AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_SPHERE;
+    options.tile_capacity = tiles ? 128 : 0; // for many lights: lists of up to so many for each tile of 8 x 8 pixels
     ArealightPass *pass = nullptr;
     check(arealight_pass_create(arealight, &options, &pass));
     // doc end
@@ -127,6 +128,20 @@ int render(const char *path, const std::string &validation, bool mistake) {
     check(arealight_pass_pack_shapes(pass, &lamp, 1, camera, nullptr, &shape_size));
     Buffer shape_buffer = engine.buffer(shape_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     check(arealight_pass_pack_shapes(pass, &lamp, 1, camera, shape_buffer.mapped, &shape_size));
+    // doc end
+
+    // doc: tiles
+    // With tiles: where the horizons of the table's lobes are, once, and a buffer for the lists of each frame in flight
+    Buffer lobe_horizons = {}, tile_lists = {};
+    if (tiles) {
+        uint64_t horizon_size = 0;
+        check(arealight_lobe_horizons(arealight, nullptr, &horizon_size));
+        lobe_horizons = engine.buffer(horizon_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+        check(arealight_lobe_horizons(arealight, lobe_horizons.mapped, &horizon_size));
+        ArealightTileMemory lists;
+        check(arealight_pass_tile_memory(pass, WIDTH, HEIGHT, &lists));
+        tile_lists = engine.buffer(lists.size, lists.usage);
+    }
     // doc end
 
     // The engine's own G-buffer
@@ -215,6 +230,8 @@ int render(const char *path, const std::string &validation, bool mistake) {
     resources.normal = {number(g_buffer[1].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     resources.base_color = {number(g_buffer[2].view), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, 0};
     resources.radiance = {number(radiance.view), VK_IMAGE_LAYOUT_GENERAL, 0};
+    resources.lobe_horizons = {number(lobe_horizons.handle), 0, AREALIGHT_WHOLE_SIZE}; // these two with tiles alone
+    resources.tile_lists = {number(tile_lists.handle), 0, AREALIGHT_WHOLE_SIZE};
     check(arealight_pass_write_set(pass, arealight, number(set), &resources));
 
     barrier(commands, radiance.handle, start, 0, VK_IMAGE_LAYOUT_UNDEFINED, compute, VK_ACCESS_SHADER_WRITE_BIT,
@@ -226,6 +243,7 @@ int render(const char *path, const std::string &validation, bool mistake) {
     frame.quad_count = packed.quad_count;
     frame.unused = packed.unused;
     frame.shape_count = 1; // frame.camera stays zero: the origin is the camera's position
+    frame.tile_lists = resources.tile_lists;
     check(arealight_pass_record(pass, commands, number(set), &frame));
     barrier(commands, radiance.handle, compute, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, copy,
             VK_ACCESS_TRANSFER_READ_BIT, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL);
@@ -259,7 +277,7 @@ int render(const char *path, const std::string &validation, bool mistake) {
         engine.destroy(staging[i]);
     }
     engine.destroy(radiance);
-    for (const Buffer &buffer : {readback, light_buffer, vertex_buffer, shape_buffer, table_staging}) {
+    for (const Buffer &buffer : {readback, light_buffer, vertex_buffer, shape_buffer, table_staging, lobe_horizons, tile_lists}) {
         engine.destroy(buffer);
     }
     return engine.close();
@@ -269,11 +287,13 @@ int render(const char *path, const std::string &validation, bool mistake) {
 
 int main(int argc, char **argv) {
     std::string path, validation;
-    bool mistake = false;
+    bool tiles = false, mistake = false;
     for (int i = 1; i < argc; i++) {
         std::string argument = argv[i];
         if (argument == "--validate" && i + 1 < argc) {
             validation = argv[++i];
+        } else if (argument == "--tiles") {
+            tiles = true;
         } else if (argument == "--mistake") {
             mistake = true;
         } else {
@@ -281,12 +301,12 @@ int main(int argc, char **argv) {
         }
     }
     if (path.empty()) {
-        std::fprintf(stderr, "usage: %s PICTURE.pfm [--validate core|synchronization|gpu-assisted] [--mistake]\n",
+        std::fprintf(stderr, "usage: %s PICTURE.pfm [--tiles] [--validate core|synchronization|gpu-assisted] [--mistake]\n",
                      argv[0]);
         return 2;
     }
     try {
-        int messages = render(path.c_str(), validation, mistake);
+        int messages = render(path.c_str(), validation, tiles, mistake);
         if (messages > 0) {
             std::fprintf(stderr, "error: the validation layer has %d messages\n", messages);
             return 1;

@@ -295,6 +295,7 @@ impl<'a> CLibrary<'a> {
             unused: packed.unused,
             reserved: 0,
             position_from_clip: null(),
+            tile_lists: ArealightBuffer::default(),
         };
         let (set, _pool) = self.set(&set_layout(pass));
         // SAFETY: the set is new, and what it points to lives until the submission was waited for.

@@ -3,7 +3,7 @@
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED,
-    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightFrame, ArealightHost, ArealightLight,
+    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost, ArealightLight,
     ArealightPackedLights, ArealightPass, ArealightResources, ArealightResult, ArealightShape,
     ArealightTable, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
     arealight_pass_create, arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes,
@@ -325,6 +325,7 @@ fn calls_out_of_order_are_refused() {
         unused: 0,
         reserved: 0,
         position_from_clip: null(),
+        tile_lists: ArealightBuffer::default(),
     };
     // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
     unsafe {

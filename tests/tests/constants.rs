@@ -136,7 +136,6 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("FIRST_LIST", number(tiles::FIRST_LIST)),
         ("RECORD_HEADER", number(tiles::RECORD_HEADER)),
         ("ALL_LIGHTS", f64::from(u32::MAX)),
-        ("NOT_CLASSIFIED", number(tiles::NOT_CLASSIFIED)),
         ("ROW", number(tiles::ROW)),
     ];
     assert_constants(TILES_GLSL, "TILE_", &tiles);

@@ -238,6 +238,28 @@ fn cpp_draws_what_rust_draws_to_the_last_bit() {
 }
 
 #[test]
+fn cpp_draws_the_same_with_tiles() {
+    let Some(engine) = TestEngine::new() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let program = compile(folder.path());
+    let picture = folder.path().join("picture.pfm");
+    for validation in ["synchronization", "gpu-assisted"] {
+        let output = run(&program, &picture, validation, &["--tiles"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+    let tiled = read_picture(&picture);
+    // Lights that are left out contribute nothing, which the quality level may round to 1e-6 of their radiance: of all 16
+    let is_same = |other: &[[f32; 3]]| {
+        tiled.iter().flatten().zip(other.iter().flatten()).all(|(a, b)| (a - b).abs() <= 16e-6)
+    };
+    assert!(is_same(&draw(&engine, &lights())));
+    // The twin: a light that is a hundredth brighter shows
+    let mut others = lights();
+    others[2].radiance.y *= 1.01;
+    assert!(!is_same(&draw(&engine, &others)));
+}
+
+#[test]
 fn a_mistake_of_the_cpp_host_fails_it() {
     // Skipped where the other is
     let Some(_engine) = TestEngine::new() else { return };

@@ -126,15 +126,16 @@ fn binding_name(module: &Module, variable: &Instruction) -> String {
 fn compare(kernel: &Kernel, module: &Module) -> Result<(), String> {
     let bound = bound_variables(module);
     let numbers: Vec<u32> = bound.keys().copied().collect();
-    if numbers != (0..kernel.bindings.len() as u32).collect::<Vec<_>>() {
+    let used = || (0u32..).zip(kernel.bindings).filter(|(_, binding)| binding.access != Access::None);
+    if numbers != used().map(|(number, _)| number).collect::<Vec<_>>() {
         return Err(format!("{}: the module binds {numbers:?}", kernel.name));
     }
-    for (number, binding) in kernel.bindings.iter().enumerate() {
-        let found = reflected(module, bound[&(number as u32)]);
+    for (number, binding) in used() {
+        let found = reflected(module, bound[&number]);
         if found != (binding.kind, binding.access) {
             return Err(format!("{}: binding '{}' is {found:?}", kernel.name, binding.name));
         }
-        let named = binding_name(module, bound[&(number as u32)]);
+        let named = binding_name(module, bound[&number]);
         if named != binding.name {
             return Err(format!("{}: binding '{}' is named '{named}'", kernel.name, binding.name));
         }
@@ -199,6 +200,17 @@ fn the_comparison_can_fail() {
         ..copy(&kernels::EVAL)
     };
     assert!(compare(&swapped, &module(&kernels::EVAL)).unwrap_err().contains("SampledImage"));
+    // A binding that is said not to be used, and one that is not used
+    for access in [Access::None, Access::Read] {
+        let bindings = kernels::CLASSIFY.bindings.iter().map(|binding| match binding.access {
+            Access::Read if access == Access::None && binding.name == "shapes" => binding.unused(),
+            Access::None => kernels::Binding { access, ..*binding },
+            _ => *binding,
+        });
+        let changed =
+            Kernel { bindings: bindings.collect::<Vec<_>>().leak(), ..copy(&kernels::CLASSIFY) };
+        assert!(compare(&changed, &module(&kernels::CLASSIFY)).unwrap_err().contains("the module binds"));
+    }
     // Two bindings of one kind in each other's place: buffers, then images
     for (kernel, one, other) in [(&kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
         let mut bindings = kernel.bindings.to_vec();
@@ -323,7 +335,7 @@ fn the_structures_of_tiles_have_the_same_offsets() {
         horizon_cells,
         shape_count,
         quad_count,
-        negligible
+        cull_threshold
     );
     let horizon = layout!(
         arealight::table::LobeHorizon,

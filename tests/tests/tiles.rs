@@ -8,7 +8,8 @@ use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{scene, with_renderer};
-use arealight_vk::{Error, TiledShade};
+use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadeResources};
+use ash::vk;
 use glam::{DMat3, DVec3, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -60,7 +61,7 @@ fn pictures(
         let view = renderer.tiled(options, tiles).unwrap();
         renderer.shade_tiled(&view).unwrap();
         let tiled = renderer.radiance().unwrap();
-        Pictures { plain, tiled, counts: view.counts(lights.len()).unwrap() }
+        Pictures { plain, tiled, counts: view.counts(lights.len() + scene.shapes.len()).unwrap() }
     })
 }
 
@@ -74,7 +75,7 @@ impl Pictures {
         self.counts.classes.iter().find(|(found, _)| *found == class).expect("every class is counted").1
     }
 
-    /// How many pixels differ by more than what a rung promises of each light: some that are left out would be
+    /// How many pixels differ by more than what the quality level promises of each light: some that are left out would be
     /// rounded to more than nothing.
     fn different(&self, lights: &[PolygonLight]) -> usize {
         let radiance: f32 = lights.iter().map(|light| light.radiance.max_element()).sum();
@@ -195,26 +196,29 @@ fn shape_scene(height: f64) -> Scene {
 }
 
 #[test]
-fn shapes_are_shaded_by_tiles_and_those_that_no_pixel_sees_cost_no_tile() {
+fn tiles_list_the_shapes_that_contribute_to_them() {
     let Some(engine) = TestEngine::new() else { return };
     let shade = |height: f64| {
         let scene = shape_scene(height);
         pictures(&engine, &scene, &[], Effects::DIFFUSE | Effects::SHAPES, every_frame())
     };
-    let bound = |plain: &Vec4| 4e-7 * plain.max_element() + 1e-6;
-    let is_same = |found: &Pictures| {
-        found.plain.iter().zip(&found.tiled).all(|(a, b)| (*a - *b).abs().max_element() <= bound(a))
-    };
     let above = shade(1.0);
-    assert!(is_same(&above));
+    assert_eq!(above.plain, above.tiled);
     let lit = above.plain.iter().filter(|pixel| pixel.x > 1e-3).count();
     assert!(lit > 200, "{lit} pixels are lit");
-    assert!(above.count(TileClass::Quads) > 0, "{:?}", above.counts);
+    assert!(above.count(TileClass::Any) > 0, "{:?}", above.counts);
+    assert_eq!(above.count(TileClass::Quads), 0, "{:?}", above.counts);
     let below = shade(-1.0);
-    assert!(is_same(&below));
+    // Shapes below the horizon are left out, which the quality level may round to 1e-6 of their radiance each
+    let is_same = |plain: &[Vec4], tiled: &[Vec4]| {
+        plain.iter().zip(tiled).all(|(a, b)| (*a - *b).abs().max_element() <= 3e-6)
+    };
+    assert!(is_same(&below.plain, &below.tiled));
     assert!(below.count(TileClass::Empty) > above.count(TileClass::Empty), "{:?}", below.counts);
+    let all = 3 * u64::from(below.count(TileClass::Any));
+    assert!(below.counts.lights < all, "some tiles have fewer shapes: {:?}", below.counts);
     // The twin: pictures of other heights differ
-    assert!(!is_same(&Pictures { tiled: below.tiled, ..above }));
+    assert!(!is_same(&above.plain, &below.tiled));
 }
 
 #[test]
@@ -227,73 +231,182 @@ fn images_of_disks_are_looked_up_by_tiles_too() {
         scene.shapes.retain(|shape| matches!(shape.shape, Shape::Ellipse { .. }));
         scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(layer));
         let effects = Effects::DIFFUSE | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
-        pictures(&engine, &scene, &[], effects, every_frame())
+        pictures(&engine, &scene, &[], effects, TileOptions { cull_threshold: 0.5, ..every_frame() })
     };
     let found = shade(0);
-    assert!(found.count(TileClass::Quads) > 0, "{:?}", found.counts);
-    // Both forms round where the light comes from, which may move a lookup by 1/256 of what texels differ by: 1/128
-    let is_same = |found: &Pictures| {
-        let pixels = found.plain.iter().zip(&found.tiled);
-        pixels.into_iter().all(|(a, b)| (*a - *b).abs().max_element() <= 1e-4 * a.max_element() + 1e-6)
-    };
-    assert!(is_same(&found));
-    // The twin: without the image they are seen to differ
-    assert!(!is_same(&Pictures { tiled: shade(1).tiled, ..found }));
+    assert!(found.count(TileClass::Any) > 0, "{:?}", found.counts);
+    // How bright an image is is not known, so that nothing is culled
+    assert_eq!(found.plain, found.tiled);
+    // The twin: with another image they differ
+    assert_ne!(shade(1).tiled, found.plain);
 }
 
-/// Lamps over the floor of the sweep, some bright and most dim.
-fn lamps(center: DVec3) -> Vec<PolygonLight> {
-    let lamp = |index: usize| {
-        let (column, row) = (index % 10, index / 10);
-        let at = center + DVec3::new(column as f64 - 4.5, 1.2, row as f64 * 0.6 - 2.7);
+/// Where lamps are over the floor of the sweep, in rows of ten, and how bright: some are bright and most dim.
+fn places(count: usize, center: DVec3) -> impl Iterator<Item = (DVec3, Vec3)> {
+    let rows = count.div_ceil(10) as f64;
+    (0..count).map(move |index| {
+        let (column, row) = ((index % 10) as f64 - 4.5, ((index / 10) as f64 + 0.5) / rows - 0.5);
+        let radiance = Vec3::new(1.0, 0.8, 0.6) * if index.is_multiple_of(7) { 20.0 } else { 0.02 };
+        (center + DVec3::new(column, 1.2, 6.0 * row), radiance)
+    })
+}
+
+/// Square lamps that face down.
+fn lamps(count: usize, center: DVec3) -> Vec<PolygonLight> {
+    let lamp = |(at, radiance): (DVec3, Vec3)| {
         let corner = |x: f64, z: f64| at + DVec3::new(0.05 * x, 0.0, 0.05 * z);
         PolygonLight {
-            name: format!("lamp {index}"),
+            name: format!("lamp at {at}"),
             vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
-            radiance: Vec3::new(1.0, 0.8, 0.6) * if index.is_multiple_of(7) { 20.0 } else { 0.02 },
+            radiance,
             ..PolygonLight::default()
         }
     };
-    (0..100).map(lamp).collect()
+    places(count, center).map(lamp).collect()
 }
 
-#[test]
-fn what_is_left_out_is_less_than_was_said() {
-    let Some(engine) = TestEngine::new() else { return };
-    let scene = scene("sweep.glb");
-    let lights = lamps(scene.bounds.center().with_y(scene.bounds.min.y));
-    // The most that a pixel lost, in the sum of its channels, over what it kept
-    let lost = |all: &[Vec4], kept: &[Vec4]| {
-        let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
-        let pixels = all.iter().map(sum).zip(kept.iter().map(sum));
-        // What float32 rounds of a hundred lights, and pixels that see nearly nothing, are no matter of what is left out
-        pixels
-            .map(|(all, kept)| (all - kept - 1e-5 * all - 1e-6).max(0.0) / kept.max(1e-9))
-            .fold(0.0, f64::max)
+/// Disks that face down, spheres and tubes, in turn.
+fn round_lamps(count: usize, center: DVec3) -> Vec<ShapeLight> {
+    let lamp = |(index, (at, radiance)): (usize, (DVec3, Vec3))| ShapeLight {
+        name: format!("lamp at {at}"),
+        radiance,
+        two_sided: false,
+        texture: None,
+        shape: match index % 3 {
+            0 => Shape::Ellipse { center: at, axis_u: DVec3::X * 0.06, axis_v: DVec3::Z * 0.05 },
+            1 => Shape::Sphere { center: at, radius: 0.04 },
+            _ => {
+                let half = DVec3::new(0.08, 0.01, 0.02);
+                Shape::Tube { p0: at - half, p1: at + half, radius: 0.02, ends: TubeEnds::Round }
+            }
+        },
     };
-    let tiles = TileOptions { negligible: 0.05, ..every_frame() };
-    let found = pictures(&engine, &scene, &lights, scene.effects(), tiles);
-    assert!(lost(&found.plain, &found.tiled) <= 0.05, "{}", lost(&found.plain, &found.tiled));
-    let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * lights.len() as u64;
-    assert!(found.counts.lights < all, "nothing was left out: {} of {all}", found.counts.lights);
-    // The twin: a row of lamps too few is seen
-    let few = plain(&engine, &scene, &lights[10..], scene.effects());
-    assert!(lost(&found.plain, &few) > 0.05, "{}", lost(&found.plain, &few));
+    places(count, center).enumerate().map(lamp).collect()
+}
+
+/// The sweep, and the middle of its floor.
+fn floor() -> (Scene, DVec3) {
+    let scene = scene("sweep.glb");
+    let center = scene.bounds.center().with_y(scene.bounds.min.y);
+    (scene, center)
+}
+
+/// The most that a pixel lost, in the sum of its channels, over what it kept. What float32 rounds of hundreds of lights, and pixels that
+/// nothing lights, do not count.
+fn lost(all: &[Vec4], kept: &[Vec4]) -> f64 {
+    let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
+    let pixels = all.iter().map(sum).zip(kept.iter().map(sum));
+    pixels.map(|(all, kept)| (all - kept - 1e-5 * all - 1e-6).max(0.0) / kept.max(1e-9)).fold(0.0, f64::max)
 }
 
 #[test]
-fn options_out_of_range_are_refused() {
+fn lights_that_are_culled_contribute_less_than_the_threshold() {
     let Some(engine) = TestEngine::new() else { return };
-    let refused = |tiles| {
-        // SAFETY: Nothing is made.
-        let error = unsafe { TiledShade::new(engine.context(), ShadeOptions::all(), 64, tiles) }.unwrap_err();
+    let tiles = TileOptions { cull_threshold: 0.05, capacity: 1000, ..every_frame() };
+    // One group of 64 lights and a part, shapes among them; more than the kernel keeps the bounds of
+    for (squares, rounds) in [(100, 0), (0, 100), (60, 30), (640, 0)] {
+        let (mut scene, center) = floor();
+        scene.shapes = round_lamps(rounds, center + DVec3::X * 0.3);
+        let lights = lamps(squares, center);
+        let kinds = if rounds > 0 { Effects::SHAPES } else { Effects::empty() };
+        let effects = scene.effects() | kinds;
+        let found = pictures(&engine, &scene, &lights, effects, tiles);
+        let what = lost(&found.plain, &found.tiled);
+        assert!(what <= 0.05, "{squares} and {rounds}: {what}");
+        let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * (squares + rounds) as u64;
+        assert!(found.counts.lights * 10 < all * 9, "{squares} and {rounds}: {} of {all}", found.counts.lights);
+        // The twin: two rows of lamps too few are seen
+        scene.shapes.drain(..scene.shapes.len().min(20));
+        let few = plain(&engine, &scene, &lights[lights.len().min(20)..], effects);
+        assert!(lost(&found.plain, &few) > 0.05, "{squares} and {rounds}: {}", lost(&found.plain, &few));
+    }
+}
+
+/// The lists of a frame of lamps: of each tile the polygons and the shapes.
+fn lists(engine: &TestEngine, squares: usize, rounds: usize, tiles: TileOptions) -> Vec<[Vec<u32>; 2]> {
+    let (mut scene, center) = floor();
+    scene.shapes = round_lamps(rounds, center + DVec3::X * 0.3);
+    let lights = lamps(squares, center);
+    with_view(engine, &scene, &lights, |renderer| {
+        let options =
+            ShadeOptions { effects: scene.effects() | Effects::SHAPES, ..ShadeOptions::all() };
+        let view = renderer.tiled(options, tiles).unwrap();
+        renderer.shade_tiled(&view).unwrap();
+        let lists = view.lists().unwrap();
+        let mut listed: Vec<_> = lists.tiles_of(TileClass::Any).collect();
+        listed.sort_unstable();
+        listed.iter().map(|tile| lists.lights(*tile).expect("there is room").map(<[u32]>::to_vec)).collect()
+    })
+}
+
+#[test]
+fn lists_have_the_order_of_the_buffers() {
+    let Some(engine) = TestEngine::new() else { return };
+    let tiles = TileOptions { cull_threshold: 0.05, capacity: 1000, ..every_frame() };
+    let found = lists(&engine, 150, 90, tiles);
+    assert!(found.len() > 10, "{} tiles", found.len());
+    let is_ascending = |list: &Vec<u32>| list.is_sorted_by(|a, b| a < b);
+    assert!(found.iter().flatten().all(is_ascending));
+    assert!(found.iter().all(|[polygons, shapes]| {
+        polygons.last().is_none_or(|last| *last < 150) && shapes.last().is_none_or(|last| *last < 90)
+    }));
+    // Some list has lights of every group of 64 but not all of them
+    assert!(found.iter().any(|[polygons, shapes]| {
+        let group = |first: u32| polygons.iter().any(|light| (first..first + 64).contains(light));
+        group(0) && group(64) && group(128) && !shapes.is_empty() && polygons.len() < 150
+    }));
+    // The same every time
+    assert_eq!(found, lists(&engine, 150, 90, tiles));
+    // The twin: with another threshold others
+    assert_ne!(found, lists(&engine, 150, 90, TileOptions { cull_threshold: 0.2, ..tiles }));
+}
+
+#[test]
+fn options_out_of_range_and_missing_buffers_are_refused() {
+    let Some(engine) = TestEngine::new() else { return };
+    let field = |error: Error| {
         let Error::InvalidArgument { field, .. } = error else { panic!("{error}") };
         field
     };
-    assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }), "capacity");
-    for negligible in [1.0, -0.1, f32::NAN] {
-        assert_eq!(refused(TileOptions { negligible, ..every_frame() }), "negligible");
+    let make = |tiles, table_size| {
+        // SAFETY: Nothing is made where an error is returned; else it is dropped before the engine.
+        unsafe { ShadePass::with_tiles(engine.context(), ShadeOptions::all(), tiles, table_size) }
+    };
+    let refused = |tiles, table_size| field(make(tiles, table_size).unwrap_err());
+    assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }, 64), "capacity");
+    for cull_threshold in [1.0, -0.1, f32::NAN] {
+        assert_eq!(refused(TileOptions { cull_threshold, ..every_frame() }, 64), "cull_threshold");
     }
+    assert_eq!(refused(every_frame(), 1), "table_size");
+
+    let pass = make(every_frame(), 64).unwrap();
+    let needed = pass.tile_memory([17, 8]).unwrap();
+    assert_eq!(needed.size, arealight::tiles::memory([17, 8], every_frame().capacity));
+    assert!(needed.usage.contains(vk::BufferUsageFlags::INDIRECT_BUFFER));
+    // SAFETY: As above.
+    let plain = unsafe { ShadePass::new(engine.context(), ShadeOptions::all()) }.unwrap();
+    assert_eq!((plain.tile_memory([17, 8]), plain.tiles()), (None, None));
+    let names = |pass: &ShadePass| pass.accesses().iter().map(|access| access.name).collect::<Vec<_>>();
+    assert!(names(&pass).contains(&"lobe_horizons") && !names(&plain).contains(&"lobe_horizons"));
+    let (scene, _) = floor();
+    with_view(&engine, &scene, &scene.lights, |renderer| {
+        let view = renderer.tiled(ShadeOptions::all(), every_frame()).unwrap();
+        let (resources, frame) = renderer.tiled_run(&view);
+        let none = vk::DescriptorSet::null();
+        // SAFETY: Nothing is written or recorded where an error is returned.
+        unsafe {
+            let without = ShadeResources { tiles: None, ..resources };
+            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "tiles");
+            for lists in [None, Some(resources.position), Some(Resource::buffer(vk::Buffer::null()))] {
+                let frame = ShadeFrame { tile_lists: lists, ..frame };
+                let error = pass.record(vk::CommandBuffer::null(), none, &frame).unwrap_err();
+                assert_eq!(field(error), "tile_lists");
+                assert_eq!(field(pass.prepare(&frame).unwrap_err()), "tile_lists");
+            }
+        }
+        // The twin: with them the frame is right
+        pass.prepare(&frame).unwrap();
+    });
 }
 
 /// The last row of the transform into a lobe's cosine space: along the normal of the lobe's horizon.

@@ -41,6 +41,9 @@
 // Some light shows an image: ArealightResources.light_textures is read.
 #define AREALIGHT_EFFECT_TEXTURED 32
 
+// Some light may be so far that its center alone stands for it: ArealightPassOptions.one_point counts only with this.
+#define AREALIGHT_EFFECT_FAR 64
+
 // Some light is a disk or an ellipse.
 #define AREALIGHT_EFFECT_ELLIPSE 256
 
@@ -57,19 +60,28 @@
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
 
 // Every effect: right for any lights, at the highest cost.
-#define AREALIGHT_EFFECTS_ALL 7999
+#define AREALIGHT_EFFECTS_ALL 8063
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
+// 2.7e-5 of each edge's share, fewer instructions.
+#define AREALIGHT_FORM_FACTOR_FAST 1
+
 // As EXACT, and relative precision for lights that look small.
-#define AREALIGHT_FORM_FACTOR_DIFFERENCE 1
+#define AREALIGHT_FORM_FACTOR_EXACT_DIFFERENCE 2
+
+// As FAST, likewise.
+#define AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE 3
 
 // Polygons are clipped at the horizon of the lobe's cosine space.
 #define AREALIGHT_HORIZON_COSINE 0
 
 // And at the surface's horizon: nothing leaks from behind the surface.
 #define AREALIGHT_HORIZON_BOTH 1
+
+// Nowhere: the host knows that it need not be.
+#define AREALIGHT_HORIZON_BARE 2
 
 // One integral a glossy lobe.
 #define AREALIGHT_FRESNEL_BY_F0 0
@@ -346,7 +358,7 @@ typedef struct ArealightShape {
     uint32_t texture_layer;
 } ArealightShape;
 
-// What a pass is specialised for. All zero is exact without an effect.
+// What a pass is specialised for. All zero is the exact rung without an effect.
 typedef struct ArealightPassOptions {
     // AREALIGHT_EFFECT_* that the scene calls for. More only costs time; less is an error when lights are packed.
     uint32_t effects;
@@ -358,6 +370,8 @@ typedef struct ArealightPassOptions {
     uint32_t fresnel;
     // One of AREALIGHT_LOBES_*.
     uint32_t lobes;
+    // 1: far lights are taken from their center alone where that is within 1e-4. With AREALIGHT_EFFECT_FAR.
+    uint32_t one_point;
     // One of AREALIGHT_FOOTPRINT_*.
     uint32_t footprint;
     // One of AREALIGHT_POSITION_*.
@@ -370,6 +384,14 @@ typedef struct ArealightPassOptions {
     uint32_t radiance_format;
     // One of AREALIGHT_G_BUFFER_*.
     uint32_t g_buffer;
+    // 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels holds, such as 128; a tile that
+    // more lights contribute to is shaded by all.
+    uint32_t tile_capacity;
+    // With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
+    // radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
+    float tile_cull_threshold;
+    // With tiles: frames of fewer lights, all of them convex quads without an image, are shaded without, which takes less time; such as 4.
+    uint32_t tile_least_quads;
 } ArealightPassOptions;
 
 // What a descriptor set is made with.
@@ -431,7 +453,22 @@ typedef struct ArealightResources {
     struct ArealightImage radiance;
     // Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
     struct ArealightImage glossy;
+    // What arealight_lobe_horizons wrote. Without tiles 0.
+    struct ArealightBuffer lobe_horizons;
+    // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
+    struct ArealightBuffer tile_lists;
 } ArealightResources;
+
+// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
+// waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+typedef struct ArealightTileMemory {
+    // Bytes; 0 for a pass without tiles.
+    uint64_t size;
+    // VkBufferUsageFlags that it is made with.
+    uint32_t usage;
+    // 0
+    uint32_t reserved;
+} ArealightTileMemory;
 
 // What differs from frame to frame.
 typedef struct ArealightFrame {
@@ -457,6 +494,8 @@ typedef struct ArealightFrame {
     // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
     // be null with AREALIGHT_POSITION_IMAGE.
     const float *position_from_clip;
+    // With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
+    struct ArealightBuffer tile_lists;
 } ArealightFrame;
 
 // The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
@@ -553,6 +592,15 @@ enum ArealightResult arealight_table_memory(const struct Arealight *arealight, s
 enum ArealightResult arealight_table_upload(struct Arealight *arealight,
                                             const struct ArealightUpload *upload);
 
+// Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
+// `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many bytes.
+enum ArealightResult arealight_lobe_horizons(const struct Arealight *arealight,
+                                             void *data,
+                                             uint64_t *size);
+
 // Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
 // nothing.
 //
@@ -597,8 +645,8 @@ enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
                                            struct ArealightPass **out);
 
 // As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
-// own: `options.g_buffer` does not count then. `words` is SPIR-V, `size` its bytes. Images that the module does not declare
-// may be any in ArealightResources.
+// own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V, `size` its bytes. Images that the module
+// does not declare may be any in ArealightResources.
 //
 // The host sees to it:
 // Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
@@ -625,7 +673,17 @@ enum ArealightResult arealight_pass_write_set(const struct ArealightPass *pass,
                                               uint64_t set,
                                               const struct ArealightResources *resources);
 
-// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch. Barriers are the host's.
+// What the buffer of the lists of tiles needs, for radiance images of `width` x `height` pixels.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_tile_memory(const struct ArealightPass *pass,
+                                                uint32_t width,
+                                                uint32_t height,
+                                                struct ArealightTileMemory *out);
+
+// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins their lists, a dispatch that
+// classifies them, one for each class, and the barriers between. Barriers before and after are the host's.
 //
 // The host sees to it:
 // Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
@@ -754,18 +812,22 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 44);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 60);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, effects) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, fresnel) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 20);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 36);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, one_point) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 56);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
@@ -807,7 +869,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 184);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 232);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -818,7 +880,9 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 168);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 208);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
@@ -828,6 +892,11 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, quad_count) == 28);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, unused) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
+AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightTileMemory, reserved) == 12);
 AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, height) == 4);

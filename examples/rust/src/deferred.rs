@@ -7,10 +7,12 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, M
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::gpu::GpuLight;
-use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{
+    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions, TileOptions,
+};
 use arealight::{Effects, Quality};
 use arealight_vk::{
-    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
+    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage, TileResources,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -30,6 +32,7 @@ pub struct Deferred<'a> {
     _sets: DescriptorPool<'a>,
     table: TableImage,
     _table_memory: Memory<'a>,
+    lobe_horizons: Buffer<'a>,
     g_buffer: GBuffer<'a>,
     size: [u32; 2],
     gpu: &'a Gpu<'a>,
@@ -40,6 +43,7 @@ struct Place<'a> {
     vertices: Buffer<'a>,
     lights: Buffer<'a>,
     light_vertices: Buffer<'a>,
+    tile_lists: Buffer<'a>,
     set: vk::DescriptorSet,
 }
 
@@ -76,13 +80,16 @@ impl<'a> Deferred<'a> {
             format: RadianceFormat::Rgba32Float,
         };
         g_buffer.formats().check(options)?; // says which image has another format than it should
+        let table = arealight_table::ggx();
+        // With tiles, for scenes of many lights; without, ShadePass::new. (Of two lights, as here, tiles would save nothing, and
+        // TileOptions::default() would classify none.)
+        let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
         // SAFETY: the pass is dropped after the frames, and before the device.
-        let shade = unsafe { ShadePass::new(&context, options) }?;
+        let shade = unsafe { ShadePass::with_tiles(&context, options, tiles, table.size()) }?;
         // doc end
 
         // doc: table
         // Give the light table memory, and fill it
-        let table = arealight_table::ggx();
         let format = TableFormat::Rgba16Float;
         // SAFETY: the image goes after the frames, and its memory after the image.
         let mut image = unsafe { TableImage::new(&context, &table, format) }?;
@@ -100,13 +107,22 @@ impl<'a> Deferred<'a> {
         frames.wait()?;
         // doc end
 
+        // doc: tiles
+        // With tiles: upload where the horizons of the table's lobes are
+        let horizons = table.lobe_horizons();
+        let bytes: &[u8] = bytemuck::cast_slice(&horizons);
+        let lobe_horizons = gpu.buffer(vk::BufferUsageFlags::STORAGE_BUFFER, bytes.len())?;
+        lobe_horizons.write(bytes)?;
+        // doc end
+
         // doc: sets
         // Allocate a descriptor set from a pool of yours for each frame in flight
         let sets = DescriptorPool::new(gpu, &shade.pool_sizes(FRAMES_IN_FLIGHT as u32))?;
         let mut places = vec![];
         for _ in 0..FRAMES_IN_FLIGHT {
             // SAFETY: the layout is the pass's.
-            places.push(Place::new(gpu, unsafe { sets.allocate(shade.set_layout()) }?)?);
+            let set = unsafe { sets.allocate(shade.set_layout()) }?;
+            places.push(Place::new(gpu, tile_lists(gpu, &shade, size)?, set)?);
         }
         // doc end
 
@@ -130,6 +146,7 @@ impl<'a> Deferred<'a> {
             _sets: sets,
             table: image,
             _table_memory: memory,
+            lobe_horizons,
             g_buffer,
             size,
             gpu,
@@ -140,7 +157,7 @@ impl<'a> Deferred<'a> {
 
     /// Points the sets at the images and buffers; no frame is in flight.
     fn write_sets(&self) -> Result<()> {
-        let Self { table, g_buffer, .. } = self;
+        let Self { table, g_buffer, lobe_horizons, .. } = self;
         // doc: write
         // Point the sets at your images and buffers
         let sampled = |image: &Image<'_>, layout| Resource::SampledImage { view: image.view, layout };
@@ -159,7 +176,10 @@ impl<'a> Deferred<'a> {
                 glossy: None, // its radiance is in that image too, without RadianceImages::Apart
                 light_textures: table.in_place_of_textures(), // nor these without Effects::TEXTURED
                 shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
-                tiles: None,
+                tiles: Some(TileResources {
+                    lobe_horizons: Resource::buffer(lobe_horizons.raw),
+                    tile_lists: Resource::buffer(place.tile_lists.raw),
+                }), // without tiles, None
             };
             // SAFETY: no pending frame uses the set, and the resources outlive its next use.
             unsafe { self.shade.write_set(place.set, &resources) }?;
@@ -179,6 +199,9 @@ impl<'a> Deferred<'a> {
         let (g_buffer, readback) = (GBuffer::new(self.gpu, size)?, Readback::new(self.gpu, size)?);
         // SAFETY: as in Deferred::new; the drawing before goes before its images.
         self.draw = unsafe { g_buffer.make_draw(self.gpu, size, self.users) }?;
+        for place in &mut self.places {
+            place.tile_lists = tile_lists(self.gpu, &self.shade, size)?;
+        }
         (self.g_buffer, self.readback, self.size) = (g_buffer, readback, size);
         self.write_sets()
         // doc end
@@ -227,7 +250,7 @@ impl<'a> Deferred<'a> {
                 quad_count: packed.quad_count,
                 unused: packed.unused,
                 shape_count: 0,
-                tile_lists: None,
+                tile_lists: Some(Resource::buffer(place.tile_lists.raw)),
             };
             // SAFETY: the commands are being recorded; buffers and sets are this place's.
             unsafe {
@@ -254,14 +277,23 @@ impl<'a> Deferred<'a> {
     }
 }
 
+// doc: tile_lists
+/// A buffer for the lists of tiles of pictures of `size` pixels: each frame in flight has one, which the pass alone writes.
+fn tile_lists<'a>(gpu: &'a Gpu<'a>, shade: &ShadePass, size: [u32; 2]) -> Result<Buffer<'a>> {
+    let needed = shade.tile_memory(size).ok_or("the pass has tiles")?;
+    gpu.buffer(needed.usage, needed.size as usize)
+}
+// doc end
+
 impl<'a> Place<'a> {
-    fn new(gpu: &'a Gpu<'a>, set: vk::DescriptorSet) -> Result<Self> {
+    fn new(gpu: &'a Gpu<'a>, tile_lists: Buffer<'a>, set: vk::DescriptorSet) -> Result<Self> {
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
         let vertices = size_of_val(scene::vertices(0.0).as_slice());
         Ok(Self {
             vertices: gpu.buffer(vk::BufferUsageFlags::VERTEX_BUFFER, vertices)?,
             lights: gpu.buffer(storage, MOST_LIGHTS * size_of::<GpuLight>())?,
             light_vertices: gpu.buffer(storage, MOST_LIGHTS * 4 * size_of::<Vec4>())?,
+            tile_lists,
             set,
         })
     }

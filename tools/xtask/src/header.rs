@@ -71,7 +71,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 16] {
+fn layouts() -> [Layout; 17] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
@@ -84,7 +84,7 @@ fn layouts() -> [Layout; 16] {
         }
         ArealightPassOptions {
             effects, form_factor, horizon, fresnel, lobes, footprint, position, output,
-            radiance_images, radiance_format, g_buffer,
+            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
@@ -96,11 +96,13 @@ fn layouts() -> [Layout; 16] {
         ArealightImage { view, layout, reserved }
         ArealightResources {
             lights, light_vertices, shapes, position, normal, base_color, specular, light_textures, radiance,
-            glossy,
+            glossy, lobe_horizons, tile_lists,
         }
         ArealightFrame {
             width, height, camera, light_count, shape_count, quad_count, unused, reserved, position_from_clip,
+            tile_lists,
         }
+        ArealightTileMemory { size, usage, reserved }
         ArealightTextureOptions { width, height, layers, reserved }
         ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
         ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }

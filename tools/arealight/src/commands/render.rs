@@ -52,9 +52,9 @@ pub struct Arguments {
     /// diffuse,glossy
     #[arg(long, value_name = "SET", default_value = "required")]
     effects: EffectChoice,
-    /// Shade by tiles of 8 x 8 pixels, each by the lights that reach it and no more code than those call for; with PART, less
-    /// than 1, without the lights that together send less than this part of what a pixel gets
-    #[arg(long, value_name = "PART", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
+    /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1, without the lights that
+    /// together contribute less than this fraction of what the others do
+    #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
     #[command(flatten)]
     quality: QualityArguments,
@@ -236,11 +236,11 @@ fn render(
     let mut tiles = None;
     let shading = match (arguments.reference, arguments.tiles) {
         (None, None) => renderer.shade(effects, quality)?,
-        (None, Some(negligible)) => {
+        (None, Some(cull_threshold)) => {
             let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
-            let view = renderer.tiled(options, TileOptions { negligible, ..TileOptions::default() })?;
+            let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;
             let took = renderer.shade_tiled(&view)?;
-            tiles = Some(view.counts(scene.lights.len())?);
+            tiles = Some(view.counts(scene.lights.len() + scene.shapes.len())?);
             took
         }
         (Some(samples), _) => {
@@ -350,9 +350,9 @@ impl Summary<'_> {
             let classes: Vec<_> =
                 tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
             lines.push(if tiles.is_classified() {
-                format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_a_tile())
+                format!("tiles    {}; {:.1} lights each", classes.join(", "), tiles.lights_per_tile())
             } else {
-                "tiles    not classified: that would take longer than so few quads do".to_owned()
+                "tiles    not classified: that would take longer than so few quads".to_owned()
             });
         }
         if let Some(rung) = outcome.picked {
@@ -398,7 +398,7 @@ impl Summary<'_> {
             "reference_samples": arguments.reference_samples(),
             "tiles": outcome.tiles.as_ref().map(|tiles| json!({
                 "classes": tiles.classes.iter().map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
-                "lights_a_tile": tiles.lights_a_tile(),
+                "lights_per_tile": tiles.lights_per_tile(),
             })),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "picture": output,

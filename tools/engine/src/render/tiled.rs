@@ -7,7 +7,7 @@ use arealight::gpu::GpuTileClass;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
 use arealight_host::{Buffer, DescriptorPool, Location, Usage};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, TileMemory, TileResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory, TileResources};
 use ash::vk;
 use std::time::Duration;
 
@@ -134,10 +134,10 @@ impl SceneRenderer<'_> {
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
         let view = TiledView { pass, set, lobe_horizons, tile_lists, _pool: pool, tiles, size: self.size };
-        let resources = arealight_vk::ShadeResources { tiles: Some(view.resources()), ..self.shade_resources() };
+        let (resources, frame) = self.tiled_run(&view);
         // SAFETY: The set is new, and the resources live until submissions were waited for.
         unsafe { view.pass.write_set(view.set, &resources) }?;
-        view.pass.prepare(&self.tiled_frame(&view))?;
+        view.pass.prepare(&frame)?;
         Ok(view)
     }
 
@@ -147,7 +147,7 @@ impl SceneRenderer<'_> {
     /// [`EngineError`] where the device fails.
     pub fn shade_tiled(&mut self, view: &TiledView) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let frame = self.tiled_frame(view);
+        let (_, frame) = self.tiled_run(view);
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // SAFETY: The commands are being recorded outside a render pass; the set was written with images of
@@ -157,8 +157,11 @@ impl SceneRenderer<'_> {
         })
     }
 
-    fn tiled_frame(&self, view: &TiledView) -> ShadeFrame {
-        ShadeFrame { tile_lists: Some(view.resources().tile_lists), ..self.shade_frame() }
+    /// What the pass of a view takes for a run.
+    pub fn tiled_run(&self, view: &TiledView) -> (ShadeResources, ShadeFrame) {
+        let tiles = view.resources();
+        let resources = ShadeResources { tiles: Some(tiles), ..self.shade_resources() };
+        (resources, ShadeFrame { tile_lists: Some(tiles.tile_lists), ..self.shade_frame() })
     }
 }
 

@@ -122,6 +122,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
         Access::Read => "read",
         Access::Write => "write",
         Access::ReadWrite => "read and write",
+        Access::None => "none: for another kernel of the pass",
     };
     json!({
         "set": 0,
