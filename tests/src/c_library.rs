@@ -285,7 +285,6 @@ impl<'a> CLibrary<'a> {
             ..ArealightResources::default()
         };
         let frame = ArealightFrame {
-            tile_lists: Default::default(),
             width: 1,
             height: 1,
             camera: camera.to_array(),
