@@ -1,5 +1,5 @@
 //! What accuracy costs in time: every rung of the quality ladder on a device, its error against the integral of the true BRDF and
-//! its time, beside Monte Carlo, the textbook and the practice.
+//! its time, beside Monte Carlo and what others ship.
 
 mod compare;
 mod errors;
@@ -14,7 +14,7 @@ mod timing;
 
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
-pub use methods::{DEFAULT, PRACTICE};
+pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
 pub use names::{RungNames, UnknownRung};
 pub use pictures::{Picture, Pictures};
 pub use scaling::{Growth, Scaling};
