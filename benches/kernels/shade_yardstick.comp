@@ -115,18 +115,13 @@ void main() {
     if (position.w != 0.0) {
         YardstickPoint point = yardstick_point(pixel, position.xyz);
         uint quad_count = HAS_OTHERS ? constants.quad_count : constants.light_count;
-        uint index = 0u;
-        if (quad_count != 0u) {
-            do {
-                radiance += radiance_of(point, index, true);
-                index++;
-            } while (index < quad_count);
+        for (uint index = 0u; index < quad_count; index++) {
+            radiance += radiance_of(point, index, true);
         }
-        if (HAS_OTHERS && index < constants.light_count) {
-            do {
+        if (HAS_OTHERS) {
+            for (uint index = quad_count; index < constants.light_count; index++) {
                 radiance += radiance_of(point, index, false);
-                index++;
-            } while (index < constants.light_count);
+            }
         }
     }
     imageStore(radiance_image, pixel, vec4(radiance, position.w != 0.0 ? 1.0 : 0.0));

@@ -8,6 +8,7 @@ pub(crate) mod methods;
 mod names;
 mod pictures;
 mod points;
+mod reference;
 mod scaling;
 mod text;
 mod timing;
@@ -17,8 +18,9 @@ pub use errors::{Errors, SplitErrors};
 pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
 pub use names::{RungNames, UnknownRung};
 pub use pictures::{Picture, Pictures};
+pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
-pub use text::{error_cells, number, percent};
+pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
 use crate::instructions::Instructions;

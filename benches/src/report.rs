@@ -115,7 +115,8 @@ impl Stability {
             0 => "keeps every promise".to_owned(),
             _ => format!("breaks promises in {broken} of {} families", rows.len()),
         };
-        let whose = if method.is_yardstick { " (a yardstick, held to the best level's promises)" } else { "" };
+        let whose =
+            if method.is_yardstick { " (a yardstick, held to the best level's promises)" } else { "" };
         format!("{told}{whose}; {polygons} polygons, {not_finite} results not finite")
     }
 

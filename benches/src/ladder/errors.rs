@@ -255,11 +255,15 @@ mod tests {
         let mut known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
         let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;
         // The table's lobes in float64: all that is left is the fit's and the table's
-        let of_table = Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: LobesFrom::Ours(Lobes::Table) };
+        let of_table =
+            Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: LobesFrom::Ours(Lobes::Table) };
         let of_table = known.integrate(of_table, &table);
         let errors = known.judge(exact, &table, &of_table);
         assert_eq!(errors.integral, 0.0);
-        assert!(errors.fit > 1e-3 && errors.fit < 0.1 && errors.table.unwrap() < 0.5 * errors.fit, "{errors:?}");
+        assert!(
+            errors.fit > 1e-3 && errors.fit < 0.1 && errors.table.unwrap() < 0.5 * errors.fit,
+            "{errors:?}"
+        );
         // Twice the light is an error of the integral alone
         let twice: Vec<DVec3> = of_table.iter().map(|radiance| *radiance * 2.0).collect();
         let wrong = known.judge(exact, &table, &twice);

@@ -1,6 +1,6 @@
 //! What was found, for people: as text for a terminal, as Markdown for the documents.
 
-use super::{Ladder, Row, SplitErrors, Spread};
+use super::{BASELINE, Ladder, Row, SplitErrors, Spread};
 use crate::table::Table;
 use std::fmt::Write as _;
 
@@ -17,6 +17,10 @@ pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
         errors.all.not_finite.to_string(),
     ]
 }
+
+/// How lights are read by what is compared: ratios of time depend on it.
+pub const READS: &str =
+    "Yardsticks read each light once for both lobes, in the same loop over the same buffers as ours.";
 
 /// A table of those heads.
 fn table(heads: &[&str], rows: Vec<Vec<String>>) -> Table {
@@ -152,9 +156,13 @@ impl Ladder {
         };
         format!(
             "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are of a frame of {} pixels \
-             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. Ratios are to {BASELINE} \
+             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. Ratios are to {} \
              on the same device. {READS}",
-            self.points, self.pixels, self.scaling.lights, self.rounds
+            self.points,
+            self.pixels,
+            self.scaling.lights,
+            self.rounds,
+            BASELINE.name()
         )
     }
 
