@@ -15,8 +15,8 @@ const int METHOD_OUTLINE = 0;
 const int METHOD_OUTLINE_DIFFERENCE = 1;
 const int METHOD_QUAD = 8;
 const int METHOD_QUAD_DIFFERENCE = 9;
-const int METHOD_TEXTBOOK = 32;
-const int METHOD_PRACTICE = 33;
+const int METHOD_YARDSTICK = 32; // plus a school of yardsticks.glsl
+const int METHOD_CLIP_AND_ACOS = 35;
 
 struct HardPolygon {
     vec3 anchor;
@@ -57,7 +57,7 @@ vec3 yardstick_vertex(uint index) {
     return polygon_anchor + polygon_offset(index);
 }
 
-#include "yardsticks.glsl"
+#include "outline_yardsticks.glsl"
 
 // A convex polygon of up to four vertices, from the anchor; the last one of a triangle comes twice.
 ArealightQuad polygon_quad(uint count) {
@@ -131,10 +131,12 @@ void main() {
     }
 
     float form_factor;
-    if (METHOD == METHOD_TEXTBOOK) {
-        form_factor = yardstick_textbook(count);
-    } else if (METHOD == METHOD_PRACTICE) {
-        form_factor = yardstick_practice(count);
+    if (METHOD == METHOD_CLIP_AND_ACOS) {
+        form_factor = yardstick_clip_and_acos(count);
+    } else if (METHOD == METHOD_YARDSTICK + YARDSTICK_CLIP_BY_CASES) {
+        form_factor = yardstick_cases(count);
+    } else if (METHOD >= METHOD_YARDSTICK) {
+        form_factor = yardstick_outline(METHOD - METHOD_YARDSTICK, count);
     } else {
         form_factor = library_form_factor(count, sqrt(square), sizes);
     }
