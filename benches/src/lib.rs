@@ -5,6 +5,7 @@
 //! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
 //! | [`effects`] | the time of the shade kernel by effect, and of what is stripped by hand |
 //! | [`instructions`] | what each effect and rung adds in instructions |
+//! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`cost`] | the time of each rung of the form factor, as a ratio to the practice |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
@@ -22,6 +23,7 @@
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
+pub mod compiled;
 pub mod cost;
 pub mod effects;
 pub mod footprints;
