@@ -39,6 +39,19 @@ pub enum HostError {
         /// The usable devices, as `index: name`.
         available: Vec<String>,
     },
+    /// The device that was asked for is there, and cannot be used.
+    #[error(
+        "the Vulkan device {name} cannot be used ({lack}): take one of {}, by index or a part of its name",
+        list(available)
+    )]
+    DeviceUnusable {
+        /// The device.
+        name: String,
+        /// What it lacks.
+        lack: String,
+        /// The usable devices, as `index: name`.
+        available: Vec<String>,
+    },
     /// Validation was asked for and its layer is not installed.
     #[error(
         "the Vulkan validation layer is not installed: on Debian, apt-get install vulkan-validationlayers"

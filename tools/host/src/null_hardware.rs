@@ -20,12 +20,12 @@ pub fn is_null_hardware(device: &str) -> bool {
 }
 
 /// The file by which the Vulkan loader finds RADV: one that `VK_DRIVER_FILES` or `VK_ICD_FILENAMES` names, else one of the
-/// loader's folders. `None` where RADV is not installed.
+/// loader's folders, whatever those variables name. `None` where RADV is not installed.
 pub fn driver_file() -> Option<PathBuf> {
-    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().find_map(std::env::var_os);
-    let named = named.map(|files| std::env::split_paths(&files).collect::<Vec<_>>());
-    if let Some(files) = named {
-        return files.into_iter().find(|file| is_radv(file) && file.is_file());
+    let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().filter_map(std::env::var_os);
+    let mut named = named.flat_map(|files| std::env::split_paths(&files).collect::<Vec<_>>());
+    if let Some(file) = named.find(|file| is_radv(file) && file.is_file()) {
+        return Some(file);
     }
     let data = std::env::var("XDG_DATA_DIRS").unwrap_or_else(|_| "/usr/local/share:/usr/share".to_owned());
     let folders =
