@@ -1,6 +1,7 @@
 //! Statistics held against those that are checked in.
 
 use super::{Compiled, Family, Measured};
+use std::fmt::Write as _;
 
 /// How much more than the file an inverse throughput may be, as a part of it: what a change of the code before moves by other
 /// choices of the compiler's, where nothing was added.
@@ -109,16 +110,15 @@ impl Check {
 
     /// What there is to say, a line each, and what to run where the file is to be brought up to date.
     pub fn to_text(&self, update: &str) -> String {
-        let mut text: String = self
-            .findings
-            .iter()
-            .map(|(family, row, finding)| format!("{family}: {row}: {finding}\n"))
-            .collect();
+        let mut text = String::new();
+        for (family, row, finding) in &self.findings {
+            let _ = writeln!(text, "{family}: {row}: {finding}");
+        }
         let state = if self.passes() { "no row takes more than the file says" } else { "FAILED" };
-        text += &format!("{} rows compared: {state}\n", self.compared);
+        let _ = writeln!(text, "{} rows compared: {state}", self.compared);
         let is_stale = |finding: &Finding| !matches!(finding, Finding::Worse { .. } | Finding::Spill { .. });
         if self.findings.iter().any(|(_, _, finding)| is_stale(finding)) {
-            text += &format!("to bring the file up to date, run: {update}\n");
+            let _ = writeln!(text, "to bring the file up to date, run: {update}");
         }
         text
     }
