@@ -30,6 +30,7 @@ vulkan_file() {
 has_program() { command -v "$1" >/dev/null; }
 has_shared_library() { PATH="$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -qF "$1"; }
 has_driver() { [[ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]] || vulkan_file icd.d '*.json'; }
+has_radv() { vulkan_file icd.d 'radeon_icd*.json'; }
 has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*khronos_validation*.json'; }
 # The validator is a program, whichever library the compiler is linked with.
 has_spirv_tools() { has_program spirv-val && has_library libSPIRV-Tools-opt.a; }
@@ -74,6 +75,7 @@ if [[ "$mode" == window ]]; then
     need xvfb "a screen that needs no monitor" has_program Xvfb
 fi
 if [[ "$mode" == test ]]; then
+    has_driver && need mesa-vulkan-drivers "the compiler whose statistics are held against those checked in" has_radv
     need g++ "the C++ library, for the shader compiler" has_program c++
     need libshaderc-dev "the shader compiler" has_library libshaderc_combined.a
     need glslang-dev "a part of it" has_library libMachineIndependent.a

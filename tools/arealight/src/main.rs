@@ -26,7 +26,9 @@ Without a command, the demo scene is rendered.
 
 Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, or a \
 rung falls short of its promises in bench stability or misses a bar in bench textures, \
-2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written.";
+or a kernel takes more than bench compiled --check allows, \
+2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written, \
+6 no compiler for bench compiled.";
 
 #[derive(Subcommand)]
 enum Command {

@@ -2,6 +2,7 @@
 
 use crate::error::{HostError, NameCall as _};
 use crate::instance::{Instance, version_text};
+use crate::null_hardware::is_null_hardware;
 use crate::validation::{Message, MessageLog, Validation};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
@@ -264,7 +265,10 @@ fn candidate(instance: &Instance, index: usize, physical_device: vk::PhysicalDev
     };
     let computes = |family: &vk::QueueFamilyProperties| family.queue_flags.contains(vk::QueueFlags::COMPUTE);
     let family = families.iter().position(computes);
-    let lack = if properties.api_version < vk::API_VERSION_1_1 {
+    let name = properties.device_name_as_c_str().unwrap_or_default().to_string_lossy().into_owned();
+    let lack = if is_null_hardware(&name) {
+        Some("it compiles shaders and runs none: see arealight bench compiled".to_owned())
+    } else if properties.api_version < vk::API_VERSION_1_1 {
         Some(format!("only Vulkan {}", version_text(properties.api_version)))
     } else if family.is_none() {
         Some("no compute queue".to_owned())
@@ -276,7 +280,7 @@ fn candidate(instance: &Instance, index: usize, physical_device: vk::PhysicalDev
         index,
         physical_device,
         properties,
-        name: properties.device_name_as_c_str().unwrap_or_default().to_string_lossy().into_owned(),
+        name,
         queue_family: family as u32,
         timestamp_valid_bits: families.get(family).map_or(0, |family| family.timestamp_valid_bits),
         lack,
@@ -298,9 +302,15 @@ fn choose(candidates: Vec<Candidate>, wanted: Option<&str>) -> Result<Candidate,
         Some((_, Ok(index))) => one.index == index,
         Some((name, Err(_))) => one.name.to_lowercase().contains(&name.to_lowercase()),
     };
-    let found = usable.into_iter().find(asked_for);
-    found
-        .ok_or_else(|| HostError::DeviceNotFound { wanted: wanted.unwrap_or_default().to_owned(), available })
+    if let Some(found) = usable.into_iter().find(asked_for) {
+        return Ok(found);
+    }
+    Err(match others.into_iter().find(asked_for) {
+        Some(Candidate { name, lack, .. }) => {
+            HostError::DeviceUnusable { name, lack: lack.unwrap_or_default(), available }
+        }
+        None => HostError::DeviceNotFound { wanted: wanted.unwrap_or_default().to_owned(), available },
+    })
 }
 
 /// The index of the device that is taken when none is asked for: the first usable one of the best kind.
@@ -370,9 +380,17 @@ mod tests {
 
     #[test]
     fn what_cannot_be_had_says_what_can() {
-        let error = choose(three(), Some("1")).map(|one| one.index).unwrap_err();
-        let text = error.to_string();
-        assert!(text.contains("`1`: take one of 0: llvmpipe (LLVM 15), 2: Radiance RX"), "{text}");
+        let refused = |wanted| choose(three(), Some(wanted)).map(|one| one.index).unwrap_err();
+        let text = refused("titan").to_string();
+        assert!(text.contains("`titan`: take one of 0: llvmpipe (LLVM 15), 2: Radiance RX"), "{text}");
+        for one in ["1", "old"] {
+            assert!(matches!(refused(one), HostError::DeviceUnusable { .. }));
+            let text = refused(one).to_string();
+            assert!(
+                text.contains("Old 9000 cannot be used (only Vulkan 1.0.3): take one of 0: llvm"),
+                "{text}"
+            );
+        }
         let only_old = three().into_iter().filter(|one| one.index == 1).collect();
         let error = choose(only_old, None).map(|one| one.index).unwrap_err();
         assert!(error.to_string().contains("found: Old 9000 (only Vulkan 1.0.3)"), "{error}");

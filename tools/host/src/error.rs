@@ -39,6 +39,19 @@ pub enum HostError {
         /// The usable devices, as `index: name`.
         available: Vec<String>,
     },
+    /// The device that was asked for is there, and cannot be used.
+    #[error(
+        "the Vulkan device {name} cannot be used ({lack}): take one of {}, by index or a part of its name",
+        list(available)
+    )]
+    DeviceUnusable {
+        /// The device.
+        name: String,
+        /// What it lacks.
+        lack: String,
+        /// The usable devices, as `index: name`.
+        available: Vec<String>,
+    },
     /// Validation was asked for and its layer is not installed.
     #[error(
         "the Vulkan validation layer is not installed: on Debian, apt-get install vulkan-validationlayers"
@@ -53,6 +66,15 @@ pub enum HostError {
     /// The device lacks a feature that was asked for.
     #[error("the device lacks the feature {0}: do not ask for it, or choose another device")]
     MissingFeature(&'static str),
+    /// There is no null hardware to compile for ([`crate::null_hardware`]).
+    #[error("the driver offers no null hardware of that family (found: {})", list(found))]
+    NoNullHardware {
+        /// Devices that there are.
+        found: Vec<String>,
+    },
+    /// The driver does not say that of a pipeline.
+    #[error("the driver's statistics of a pipeline have no \"{0}\": another version of Mesa may")]
+    MissingStatistic(&'static str),
     /// Memory of the host or the device ran out.
     #[error("out of memory: {what}. Use a smaller image or scene, or another device")]
     OutOfMemory {

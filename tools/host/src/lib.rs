@@ -26,6 +26,7 @@ mod image;
 mod instance;
 mod listing;
 mod memory;
+pub mod null_hardware;
 mod submit;
 pub mod testing;
 mod validation;

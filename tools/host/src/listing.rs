@@ -97,7 +97,7 @@ fn summary(instance: &Instance, candidate: Candidate, default: Option<usize>) ->
 }
 
 /// What the driver calls itself; before Vulkan 1.2, its version number.
-fn driver(instance: &Instance, candidate: &Candidate) -> String {
+pub(crate) fn driver(instance: &Instance, candidate: &Candidate) -> String {
     if candidate.properties.api_version < vk::API_VERSION_1_2 {
         return format!("version {:#x}", candidate.properties.driver_version);
     }

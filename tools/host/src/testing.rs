@@ -13,9 +13,11 @@
 use crate::device::{Host, HostOptions};
 use crate::error::HostError;
 use crate::instance::Instance;
+use crate::null_hardware::driver_file;
 use crate::validation::{Message, MessageLog, Validation};
 use ash::vk;
 use std::io::Write as _;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// A host that fails the test when the validation layer has said anything by the time it is dropped.
@@ -123,23 +125,48 @@ pub fn device_with(validation: Validation) -> Option<TestHost> {
     Some(TestHost { log: host.message_log(), host: Some(host) })
 }
 
+/// The file of the driver whose compiler a test asks ([`crate::null_hardware`]). `None` where it is not installed: return then.
+/// A test that runs says so by [`ran`].
+///
+/// # Panics
+/// Where `AREALIGHT_REQUIRE_GPU=1` and it is missing.
+pub fn radv_or_skip() -> Option<PathBuf> {
+    let found = driver_file();
+    if found.is_none() {
+        skip("RADV is not installed: apt-get install mesa-vulkan-drivers");
+    }
+    found
+}
+
+/// Notes that a test had the driver that it needs.
+pub fn ran() {
+    record("ran");
+}
+
+/// Notes that a test had not.
+///
+/// # Panics
+/// Where `AREALIGHT_REQUIRE_GPU=1`.
+pub fn skip(reason: &str) {
+    let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
+    assert!(!required, "AREALIGHT_REQUIRE_GPU=1, and: {reason}");
+    println!("skipped: {reason}");
+    record("skipped");
+}
+
 /// What was made, and a line in the log; `None` where there is no device and none is required.
 fn made_or_skip<T>(made: Result<T, HostError>) -> Option<T> {
-    let required = std::env::var("AREALIGHT_REQUIRE_GPU").is_ok_and(|value| value == "1");
     match made {
         Ok(made) => {
-            record("ran");
+            ran();
             Some(made)
         }
-        Err(error) if required => panic!("AREALIGHT_REQUIRE_GPU=1, and: {error}"),
         Err(error @ (HostError::LoaderMissing(_) | HostError::NoDevice { .. })) => {
-            println!("skipped: no Vulkan device ({error})");
-            record("skipped");
+            skip(&format!("no Vulkan device ({error})"));
             None
         }
         Err(error @ HostError::ValidationLayerMissing) => {
-            println!("skipped: {error}");
-            record("skipped");
+            skip(&error.to_string());
             None
         }
         Err(error) => panic!("{error}"),

@@ -15,11 +15,12 @@ struct KernelSet {
     modules: &'static str,
 }
 
-/// What the crate `arealight` embeds, what only the benchmarks and the tests run, the wrong-doers that the host's
-/// tests must catch, and what the example hosts draw with.
-const SETS: [KernelSet; 5] = [
+/// What the crate `arealight` embeds, what only the benchmarks and the tests run, the GLSL library's example, whose statistics
+/// the benchmarks read, the wrong-doers that the host's tests must catch, and what the example hosts draw with.
+const SETS: [KernelSet; 6] = [
     KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
     KernelSet { sources: "benches/kernels", modules: "benches/spirv" },
+    KernelSet { sources: "shaders/examples", modules: "benches/spirv/examples" },
     KernelSet { sources: "tests/kernels", modules: "tests/spirv" },
     KernelSet { sources: "tools/host/tests/canary", modules: "tools/host/tests/canary" },
     KernelSet { sources: "examples/rust/shaders", modules: "examples/rust/spirv" },
@@ -29,8 +30,8 @@ const SETS: [KernelSet; 5] = [
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
 /// the sources' hash, the module's hash and the compiler. Likewise benches/kernels into
-/// benches/spirv, tests/kernels into tests/spirv, and tools/host/tests/canary; examples/rust/shaders into
-/// examples/rust/spirv, of which shaders of other stages (*.vert, *.frag) keep that ending in their names.
+/// benches/spirv, shaders/examples into benches/spirv/examples, tests/kernels into tests/spirv, and tools/host/tests/canary;
+/// examples/rust/shaders into examples/rust/spirv, of which shaders of other stages (*.vert, *.frag) keep that ending in their names.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.

@@ -1,6 +1,7 @@
 //! `arealight bench`
 
 mod compare;
+mod compiled;
 mod ladder;
 mod page;
 mod stability;
@@ -30,6 +31,7 @@ pub struct Arguments {
 #[derive(clap::Subcommand)]
 enum Bench {
     Compare(compare::Arguments),
+    Compiled(compiled::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
 }
@@ -38,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match &arguments.bench {
         None => ladder::run(&arguments.ladder),
         Some(Bench::Compare(arguments)) => compare::run(arguments),
+        Some(Bench::Compiled(arguments)) => compiled::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),
     }

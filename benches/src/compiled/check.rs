@@ -1,0 +1,256 @@
+//! Statistics held against those that are checked in.
+
+use super::{Compiled, Family, Measured};
+use std::fmt::Write as _;
+
+/// How much more than the file an inverse throughput may be, as a part of it: what a change of the code before moves by other
+/// choices of the compiler's, where nothing was added.
+pub const THROUGHPUT_TOLERANCE: f64 = 0.03;
+
+/// What differs from the file.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Finding {
+    /// Registers went to memory.
+    Spill {
+        /// How many.
+        spills: u64,
+    },
+    /// The row takes more than the file has.
+    Worse {
+        /// What of it.
+        what: &'static str,
+        /// The file's.
+        file: u64,
+        /// This one's.
+        found: u64,
+    },
+    /// It takes less.
+    Better {
+        /// What of it.
+        what: &'static str,
+        /// The file's.
+        file: u64,
+        /// This one's.
+        found: u64,
+    },
+    /// The file has no such row.
+    Missing,
+    /// The file has it, and there is no such row any more.
+    Gone,
+}
+
+/// Statistics held against a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// Family, row, and what there is to say of it.
+    pub findings: Vec<(String, String, Finding)>,
+    /// How many rows were compared.
+    pub compared: usize,
+}
+
+/// Why nothing can be compared.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the file's numbers of {family} are by {file}, and this is {here}: another version of the compiler makes other code, so that \
+     they can't be compared"
+)]
+pub struct OtherDriver {
+    family: String,
+    file: String,
+    here: String,
+}
+
+impl Check {
+    /// Holds `found` against `file`. Rows that the file alone has are [`Finding::Gone`] where `all` were compiled.
+    ///
+    /// # Errors
+    /// [`OtherDriver`] where the file was made by another version of the driver.
+    pub fn new(found: &Compiled, file: &Compiled, all: bool) -> Result<Self, OtherDriver> {
+        let mut check = Self { findings: vec![], compared: 0 };
+        for family in &found.families {
+            let Some(older) = file.find(&family.family) else {
+                check.add(family, family.rows.iter().map(|row| (row.name(), Finding::Missing)));
+                continue;
+            };
+            if older.driver != family.driver {
+                let (file, here) = (older.driver.clone(), family.driver.clone());
+                return Err(OtherDriver { family: family.family.clone(), file, here });
+            }
+            check.compare(family, older);
+            if all {
+                let gone = older.rows.iter().filter(|row| family.find(&row.name()).is_none());
+                check.add(family, gone.map(|row| (row.name(), Finding::Gone)));
+            }
+        }
+        Ok(check)
+    }
+
+    fn compare(&mut self, family: &Family, older: &Family) {
+        for row in &family.rows {
+            let findings = match older.find(&row.name()) {
+                None => vec![Finding::Missing],
+                Some(older) => {
+                    self.compared += 1;
+                    compare(row, older)
+                }
+            };
+            let spill = (row.spills > 0).then_some(Finding::Spill { spills: row.spills });
+            self.add(family, spill.into_iter().chain(findings).map(|finding| (row.name(), finding)));
+        }
+    }
+
+    fn add(&mut self, family: &Family, findings: impl Iterator<Item = (String, Finding)>) {
+        self.findings.extend(findings.map(|(row, finding)| (family.family.clone(), row, finding)));
+    }
+
+    /// Whether every row is in the file and takes no more than that.
+    pub fn passes(&self) -> bool {
+        self.compared > 0 && self.findings.iter().all(|(_, _, one)| matches!(one, Finding::Better { .. }))
+    }
+
+    /// What there is to say, a line each, and what to run where the file is to be brought up to date.
+    pub fn to_text(&self, update: &str) -> String {
+        let mut text = String::new();
+        for (family, row, finding) in &self.findings {
+            let _ = writeln!(text, "{family}: {row}: {finding}");
+        }
+        let state = if self.passes() { "no row takes more than the file says" } else { "FAILED" };
+        let _ = writeln!(text, "{} rows compared: {state}", self.compared);
+        let is_stale = |finding: &Finding| !matches!(finding, Finding::Worse { .. } | Finding::Spill { .. });
+        if self.findings.iter().any(|(_, _, finding)| is_stale(finding)) {
+            let _ = writeln!(text, "to bring the file up to date, run: {update}");
+        }
+        text
+    }
+}
+
+/// One row against the file's.
+fn compare(row: &Measured, file: &Measured) -> Vec<Finding> {
+    let most = (file.inverse_throughput as f64 * (1.0 + THROUGHPUT_TOLERANCE)).floor() as u64;
+    let numbers = [
+        ("VGPRs", row.vgprs, file.vgprs, file.vgprs),
+        ("inverse throughput", row.inverse_throughput, file.inverse_throughput, most),
+    ];
+    let finding = |(what, found, file, most): (&'static str, u64, u64, u64)| match found {
+        more if more > most => Some(Finding::Worse { what, file, found }),
+        less if less < file => Some(Finding::Better { what, file, found }),
+        _ => None,
+    };
+    numbers.into_iter().filter_map(finding).collect()
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Spill { spills } => write!(f, "FAILED: {spills} registers spilled to memory"),
+            Self::Worse { what, file, found } => {
+                write!(f, "FAILED: {what} {found}, where the file says {file}")
+            }
+            Self::Better { what, file, found } => {
+                write!(f, "better: {what} {found}, where the file says {file}")
+            }
+            Self::Missing => f.write_str("FAILED: the file has no such row"),
+            Self::Gone => f.write_str("FAILED: the file has it, and it is gone"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(level: &str, vgprs: u64, inverse_throughput: u64) -> Measured {
+        Measured {
+            kernel: "shade".into(),
+            lights: "quads".into(),
+            level: level.into(),
+            ratio: None,
+            inverse_throughput,
+            vgprs,
+            sgprs: 32,
+            waves: 16,
+            spills: 0,
+            scratch: 0,
+            instructions: 1000,
+            branches: 3,
+            code_size: 8000,
+            latency: 5000,
+            subgroup_size: 64,
+            seconds: Some(1.0),
+        }
+    }
+
+    fn compiled(rows: Vec<Measured>) -> Compiled {
+        Compiled { families: vec![Family { family: "navi21".into(), driver: "radv 1".into(), rows }] }
+    }
+
+    fn check(found: Vec<Measured>, file: Vec<Measured>) -> Check {
+        Check::new(&compiled(found), &compiled(file), true).unwrap()
+    }
+
+    #[test]
+    fn the_same_passes_and_more_does_not() {
+        let file = || vec![row("exact", 64, 1000), row("split", 80, 2000)];
+        assert!(check(file(), file()).passes());
+        // 3 % of throughput are allowed, and not a register
+        assert!(check(vec![row("exact", 64, 1030), row("split", 80, 2060)], file()).passes());
+        let slower = check(vec![row("exact", 64, 1031), row("split", 80, 2000)], file());
+        let worse = Finding::Worse { what: "inverse throughput", file: 1000, found: 1031 };
+        assert_eq!(slower.findings, [("navi21".into(), "shade: quads, exact".into(), worse)]);
+        assert!(!slower.passes() && slower.to_text("X").contains("FAILED: inverse throughput 1031"));
+        assert!(!slower.to_text("X").contains("run: X"), "what is worse is not to be written down");
+        assert!(!check(vec![row("exact", 65, 1000), row("split", 80, 2000)], file()).passes());
+    }
+
+    #[test]
+    fn less_passes_and_says_how_to_keep_it() {
+        let better = check(vec![row("exact", 56, 900)], vec![row("exact", 64, 1000)]);
+        assert!(better.passes());
+        let text = better.to_text("arealight bench compiled --update");
+        assert!(text.contains("better: VGPRs 56, where the file says 64"), "{text}");
+        assert!(text.contains("better: inverse throughput 900") && text.contains("--update"), "{text}");
+    }
+
+    #[test]
+    fn a_row_that_one_side_lacks_fails() {
+        let two = || vec![row("exact", 64, 1000), row("split", 80, 2000)];
+        let missing = check(two(), vec![row("exact", 64, 1000)]);
+        assert!(
+            !missing.passes() && missing.to_text("X").contains("split: FAILED: the file has no such row")
+        );
+        assert!(missing.to_text("X").contains("run: X"));
+        let gone = check(vec![row("exact", 64, 1000)], two());
+        assert!(!gone.passes() && gone.to_text("X").contains("it is gone"));
+        // Where only some were compiled, the others are not gone
+        let some = Check::new(&compiled(vec![row("exact", 64, 1000)]), &compiled(two()), false).unwrap();
+        assert!(some.passes());
+        assert!(!check(vec![], vec![]).passes(), "nothing compared is no success");
+        let other_family = Check::new(&compiled(two()), &Compiled::default(), true).unwrap();
+        assert!(!other_family.passes() && other_family.findings.len() == 2);
+    }
+
+    #[test]
+    fn a_spill_fails_whatever_the_file_says() {
+        let spilling = || vec![Measured { spills: 4, ..row("exact", 64, 1000) }];
+        let check = check(spilling(), spilling());
+        assert!(!check.passes() && check.to_text("X").contains("4 registers spilled"));
+    }
+
+    #[test]
+    fn another_driver_cannot_be_compared() {
+        let mut file = compiled(vec![row("exact", 64, 1000)]);
+        file.families[0].driver = "radv 2".into();
+        let error = Check::new(&compiled(vec![row("exact", 64, 1000)]), &file, true).unwrap_err();
+        assert!(error.to_string().contains("by radv 2, and this is radv 1"), "{error}");
+    }
+
+    #[test]
+    fn the_file_reads_back_without_what_differs_from_run_to_run() {
+        let found = compiled(vec![row("exact", 64, 1000), row("split", 80, 2000)]);
+        let text = found.to_checked_in();
+        assert!(!text.contains("seconds"));
+        assert_eq!(text.lines().filter(|line| line.contains("\"vgprs\"")).count(), 2);
+        let read: Compiled = serde_json::from_str(&text).unwrap();
+        assert!(Check::new(&found, &read, true).unwrap().findings.is_empty());
+    }
+}

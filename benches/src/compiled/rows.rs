@@ -1,0 +1,245 @@
+//! The shaders whose statistics are read: kernel x lights x quality level.
+//!
+//! Another row is a line in [`rows`].
+
+use crate::ladder::methods::{SHADE_YARDSTICK, Yardstick};
+use arealight::kernels::{self, BindingKind, Kernel};
+use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality, TileClass};
+use arealight_host::null_hardware::ComputeShader;
+use arealight_vk::prune;
+use ash::vk;
+
+/// What rows of the shade kernel are held against: quads by the clipless method, in a kernel of the same branches and loops, that
+/// reads lights, surfaces and the table as the shade kernel does.
+pub const YARDSTICK: &str = "shade_yardstick: quads, practice";
+
+/// Likewise of the README's pixel.
+pub const DEFERRED_YARDSTICK: &str = "deferred_yardstick: quads, practice";
+
+const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
+
+/// The README's pixel: the GLSL library in a deferred engine's own shader.
+static DEFERRED: &[u8] = include_bytes!("../../spirv/examples/deferred.spv");
+
+/// The same with the clipless method.
+static CLIPLESS: &[u8] = include_bytes!("../../spirv/deferred_yardstick.spv");
+
+/// A shader, specialised.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// The kernel.
+    pub kernel: &'static str,
+    /// What it shades with, or works on.
+    pub lights: &'static str,
+    /// The quality level, lobe or option.
+    pub level: &'static str,
+    /// The row whose inverse throughput it is held against: one of the same branches and loops, since the compiler's estimate
+    /// depends on how deep code lies in them. `None` where there is none.
+    pub yardstick: Option<&'static str>,
+    source: Source,
+}
+
+/// What is compiled.
+#[derive(Debug, Clone)]
+enum Source {
+    /// A kernel with values of its specialisation constants.
+    Kernel(&'static Kernel, Vec<(u32, u32)>),
+    /// A module with the bindings of shaders/examples/deferred.comp.
+    Deferred(&'static [u8]),
+}
+
+impl Row {
+    /// The row's name, which no other has.
+    pub fn name(&self) -> String {
+        format!("{}: {}, {}", self.kernel, self.lights, self.level)
+    }
+
+    /// What a driver is handed: the module as the recorder prunes it, and its layout.
+    pub fn shader(&self) -> ComputeShader {
+        match &self.source {
+            Source::Kernel(kernel, specialization) => ComputeShader {
+                words: prune(&kernel.words(), specialization),
+                specialization: specialization.clone(),
+                bindings: kernel.bindings.iter().map(|binding| (descriptor(binding.kind), 1)).collect(),
+                push_constant_size: kernel.push_constant_size,
+            },
+            Source::Deferred(module) => ComputeShader {
+                words: prune(&words(module), &[]),
+                specialization: vec![],
+                bindings: vec![
+                    (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1), // table
+                    (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 3), // g_buffer
+                    (vk::DescriptorType::STORAGE_IMAGE, 1),          // radiance_image
+                    (vk::DescriptorType::STORAGE_BUFFER, 1),         // Lamps
+                    (vk::DescriptorType::STORAGE_BUFFER, 1),         // Vertices
+                ],
+                push_constant_size: 16,
+            },
+        }
+    }
+}
+
+fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
+}
+
+fn descriptor(kind: BindingKind) -> vk::DescriptorType {
+    match kind {
+        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+    }
+}
+
+/// Every row, in the order of the table.
+pub fn rows() -> Vec<Row> {
+    let (exact, none) = (Quality::default(), Effects::empty());
+    let difference = Quality { form_factor: FormFactor::ExactDifference, ..exact };
+    let both = Quality { horizon: Horizon::Both, ..exact };
+    let split = Quality { fresnel: Fresnel::Split, ..exact };
+    let formula = Quality { lobes: Lobes::Formula, ..exact };
+    let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
+    let footprint = |footprint| Quality { footprint, ..exact };
+    let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
+    let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
+    vec![
+        // Others' ways to shade quads, with our reads
+        yardstick("quads", "practice", Yardstick::Practice),
+        yardstick("quads", "textbook", Yardstick::Textbook),
+        // The README's pixel, and the same by another method
+        deferred("deferred_yardstick", "practice", CLIPLESS),
+        deferred("deferred", "exact", DEFERRED),
+        // Quads, by quality level
+        quads("quads", "exact", LOBES, exact),
+        quads("quads", "both horizons", LOBES, both),
+        quads("quads", "split Fresnel", LOBES, split),
+        quads("quads", "difference", LOBES, difference),
+        quads("quads", "formula", LOBES, formula),
+        quads("quads", "difference, both horizons, split Fresnel", LOBES, everything),
+        // Quads, by lobe
+        quads("quads", "exact, diffuse alone", Effects::DIFFUSE, exact),
+        quads("quads", "exact, specular alone", Effects::GLOSSY, exact),
+        // Quads and nothing else, with more asked of them or of the surface
+        quads("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, exact),
+        quads("quads", "exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
+        // Other kinds of light in place of quads
+        others("polygons", "exact", polygon, exact),
+        others("polygons", "both horizons", polygon, both),
+        others("polygons", "difference", polygon, difference),
+        others("textured quads", "exact, round footprint", Effects::TEXTURED, exact),
+        others("textured quads", "exact, ellipse", Effects::TEXTURED, footprint(Footprint::Ellipse)),
+        others("textured quads", "exact, 2 x 2 parts", Effects::TEXTURED, footprint(Footprint::SplitTwo)),
+        others("textured quads", "exact, 4 x 4 parts", Effects::TEXTURED, footprint(Footprint::SplitFour)),
+        others("meshes", "exact", mesh, exact),
+        others("disks", "exact", disk, exact),
+        others("textured disks", "exact, round footprint", textured_disk, exact),
+        others("textured disks", "exact, ellipse", textured_disk, footprint(Footprint::Ellipse)),
+        others("spheres", "exact", Effects::SPHERE, exact),
+        others("tubes", "exact", Effects::TUBE, exact),
+        // Several kinds
+        shade("quads and polygons", "exact", LOBES | polygon, true, exact),
+        shade("quads and disks", "exact", LOBES | disk, true, exact),
+        shade("every kind", "exact", Effects::all() - Effects::FAR, true, exact),
+        // Tiles
+        classify("quads", "no culling", none, 0.0),
+        classify("quads", "culling", none, 0.01),
+        classify("every kind", "culling", Effects::all() - Effects::FAR - LOBES, 0.01),
+        tiles("quads", "exact", TileClass::Quads, none),
+        tiles("every kind", "exact", TileClass::Any, Effects::all() - Effects::FAR - LOBES),
+        // Images of lights
+        load("copied", 0),
+        load("resampled, sRGB", 3),
+        blur("3 taps a side", plan::BLUR_RADII[0]),
+        blur("4 taps a side", plan::BLUR_RADII[1]),
+        blur("most taps", plan::BLUR_RADII[2]),
+    ]
+}
+
+fn yardstick(lights: &'static str, level: &'static str, which: Yardstick) -> Row {
+    let specialization = vec![(kernels::constant::EFFECTS, LOBES.bits()), (1, which as u32)];
+    row(&SHADE_YARDSTICK, lights, level, Some(YARDSTICK), specialization)
+}
+
+/// A whole pixel as a host writes it.
+fn deferred(kernel: &'static str, level: &'static str, module: &'static [u8]) -> Row {
+    let yardstick = Some(DEFERRED_YARDSTICK);
+    Row { kernel, lights: "quads", level, yardstick, source: Source::Deferred(module) }
+}
+
+/// The shade pass where all lights are quads.
+fn quads(lights: &'static str, level: &'static str, effects: Effects, quality: Quality) -> Row {
+    shade(lights, level, effects, true, quality)
+}
+
+/// The shade pass of both lobes where no light is a quad without an image.
+fn others(lights: &'static str, level: &'static str, kinds: Effects, quality: Quality) -> Row {
+    shade(lights, level, LOBES | kinds, false, quality)
+}
+
+fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: bool, quality: Quality) -> Row {
+    let options = ShadeOptions { quality, ..ShadeOptions::all() };
+    let specialization = plan::shade_variant_specialization(options, ShadeVariant { effects, quads });
+    row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+}
+
+fn classify(lights: &'static str, level: &'static str, kinds: Effects, negligible: f32) -> Row {
+    let variant = ShadeVariant { effects: LOBES | kinds, quads: true };
+    let tiles = TileOptions { negligible, ..TileOptions::default() };
+    let specialization = plan::classify_specialization(ShadeOptions::all(), variant, tiles);
+    row(&kernels::CLASSIFY, lights, level, None, specialization)
+}
+
+fn tiles(lights: &'static str, level: &'static str, class: TileClass, kinds: Effects) -> Row {
+    let variant = ShadeVariant { effects: LOBES | kinds, quads: true };
+    let specialization = plan::shade_tiles_specialization(ShadeOptions::all(), variant, class);
+    row(&kernels::SHADE_TILES, lights, level, None, specialization)
+}
+
+fn load(level: &'static str, called_for: u32) -> Row {
+    row(&kernels::TEXTURE_LOAD, "images", level, None, vec![(kernels::constant::CALLED_FOR, called_for)])
+}
+
+fn blur(level: &'static str, radius: u32) -> Row {
+    row(&kernels::TEXTURE_BLUR, "images", level, None, vec![(kernels::constant::RADIUS, radius)])
+}
+
+fn row(
+    kernel: &'static Kernel,
+    lights: &'static str,
+    level: &'static str,
+    yardstick: Option<&'static str>,
+    specialization: Vec<(u32, u32)>,
+) -> Row {
+    Row { kernel: kernel.name, lights, level, yardstick, source: Source::Kernel(kernel, specialization) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn rows_have_names_of_their_own_and_yardsticks_are_rows() {
+        let rows = rows();
+        let names: BTreeSet<String> = rows.iter().map(Row::name).collect();
+        assert_eq!(names.len(), rows.len());
+        for yardstick in rows.iter().filter_map(|row| row.yardstick) {
+            assert!(names.contains(yardstick), "{yardstick}");
+        }
+    }
+
+    #[test]
+    fn rows_that_are_not_the_same_have_modules_or_constants_that_are_not() {
+        let rows = rows();
+        let shaders: Vec<ComputeShader> = rows.iter().map(Row::shader).collect();
+        for (place, shader) in shaders.iter().enumerate() {
+            let same = |other: &ComputeShader| {
+                other.words == shader.words && other.specialization == shader.specialization
+            };
+            let first = shaders.iter().position(same).expect("the shader itself");
+            assert_eq!(rows[first].name(), rows[place].name());
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! `arealight bench compiled`
+
+mod driver;
+
+use super::write;
+use crate::failure::Failure;
+use crate::output::print;
+use arealight_benches::compiled::{Check, Compiled, Markers, matching, replace_section, rows};
+use arealight_host::null_hardware::driver_file;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The statistics that are checked in, from the root of a checkout.
+const FILE: &str = "benches/data/compiled.json";
+
+/// What brings everything that is checked in up to date.
+const UPDATE: &str = "arealight bench compiled --family navi21,vega10 --update --markdown docs/gpu.md";
+
+/// Ask a GPU's compiler what it makes of the kernels: registers, waves, instructions, estimated cycles.
+///
+/// Mesa's driver of Radeon cards (RADV) compiles for any family of them without a card; nothing runs. Each row is a kernel, a kind
+/// of light and a quality level, as a pass hands it to the driver; beside them are other methods with the same reads. The ratio is that
+/// of inverse throughput to the clipless method's in a kernel of the same form. These are a compiler's statistics, not times: docs/gpu.md explains them.
+///
+/// Exit code 1 if --check finds a spill, or a row that takes more than the file says or that the file lacks; 6 if the driver is not
+/// installed, or is another version than the file's.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', default_value = "navi21", value_parser = family)]
+    family: Vec<String>,
+    /// Only rows whose names contain this, and those that their ratios are of.
+    #[arg(long, value_name = "PATTERN")]
+    only: Option<String>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+    /// Write JSON.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
+    /// Write the tables as Markdown: in a file that has tables of this command, in their place.
+    #[arg(long, value_name = "FILE", conflicts_with = "only")]
+    markdown: Option<PathBuf>,
+    /// Hold the rows against a file of --update; benches/data/compiled.json by default.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "update")]
+    check: Option<PathBuf>,
+    /// Write the rows to such a file; its other families stay.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "only")]
+    update: Option<PathBuf>,
+    /// Compile here, where the environment names the driver and the family, and print each row as it is done.
+    #[arg(long, hide = true, conflicts_with_all = ["json", "save", "markdown", "check", "update"])]
+    on_null_hardware: bool,
+}
+
+/// The name of a family; whether there is one, the driver knows.
+fn family(name: &str) -> Result<String, String> {
+    let is_name = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if is_name { Ok(name.to_lowercase()) } else { Err("a name such as navi21 or vega10".to_owned()) }
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    // Choose the rows
+    let wanted = arguments.only.as_deref().map_or_else(rows, matching);
+    if let Some(pattern) = &arguments.only
+        && wanted.is_empty()
+    {
+        let message = format!("no row's name contains '{pattern}'; there are:\n{}", names());
+        return Err(Failure::Argument { argument: "--only", message });
+    }
+    if arguments.on_null_hardware {
+        return driver::compile_here(&wanted);
+    }
+
+    // Look at every file before the work
+    let file = arguments.check.as_deref().map(read).transpose()?;
+    let older = match arguments.update.as_deref() {
+        Some(path) if path.exists() => read(path)?,
+        _ => Compiled::default(),
+    };
+    for path in [&arguments.save, &arguments.markdown, &arguments.update].into_iter().flatten() {
+        let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
+        opened.map_err(|error| Failure::output(path, error))?;
+    }
+
+    let driver = driver_file().ok_or_else(|| {
+        let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install mesa-vulkan-drivers";
+        Failure::NoCompiler(message.to_owned())
+    })?;
+    let found = driver::compile(&arguments.family, arguments.only.as_deref(), &wanted, &driver)?;
+
+    // Write and print
+    if let Some(path) = &arguments.markdown {
+        write(path, &document(path, &found))?;
+    }
+    // Strings and numbers, with strings for keys, always serialise
+    let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
+    if let Some(path) = &arguments.save {
+        write(path, &json)?;
+    }
+    if let Some(path) = &arguments.update {
+        write(path, &found.clone().replacing(older).to_checked_in())?;
+    }
+    let printed = print(&if arguments.json { json } else { found.to_text() })?;
+    let Some(file) = file else { return Ok(printed) };
+    let check = Check::new(&found, &file, arguments.only.is_none())
+        .map_err(|error| Failure::NoCompiler(error.to_string()))?;
+    eprint!("{}", check.to_text(UPDATE));
+    Ok(if check.passes() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// The rows' names, a line each.
+fn names() -> String {
+    rows().iter().map(|row| format!("  {}", row.name())).collect::<Vec<_>>().join("\n")
+}
+
+fn read(path: &Path) -> Result<Compiled, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    if text.is_empty() {
+        return Ok(Compiled::default());
+    }
+    serde_json::from_str(&text).map_err(|error| Failure::input(path, error))
+}
+
+/// The document with the tables: in their place where it has one, else alone.
+fn document(path: &Path, found: &Compiled) -> String {
+    let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
+    let there = std::fs::read_to_string(path).unwrap_or_default();
+    replace_section(&there, Markers::TABLES, &tables).unwrap_or_else(|| {
+        let Markers { begin, end } = Markers::TABLES;
+        format!("{begin}\n\n{}\n\n{end}\n", tables.trim())
+    })
+}
