@@ -9,7 +9,6 @@
 //! | [`instructions`] | what each effect and rung adds in instructions |
 //! | [`cost`] | the time of each rung of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
-//! | [`cost`] | the time of each rung of the form factor, as a ratio to the practice |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |

@@ -1,7 +1,8 @@
-//! The rational functions of `arc.glsl`, evaluated in float64 from the GLSL's own text, have the errors that their comments
+//! The rational functions of `arc.glsl` and `difference.glsl`, evaluated in float64 from the GLSL's own text, have the errors that their comments
 //! state.
 
-const ARC_GLSL: &str = include_str!("../../shaders/include/arealight/arc.glsl");
+const ARC_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/arc.glsl");
+const DIFFERENCE_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/difference.glsl");
 
 /// Evaluates a GLSL expression of numbers, names, `+ - * /` and parentheses.
 struct Expression<'a> {
@@ -67,17 +68,12 @@ impl Expression<'_> {
     }
 }
 
-/// The fast and the exact expression that a function returns.
-fn returned(function: &str) -> [String; 2] {
-    let (_, body) = ARC_GLSL.split_once(&format!("vec3 {function}(")).expect("the function");
+/// The expression that a function of a GLSL source returns.
+fn returned(source: &str, function: &str) -> String {
+    let (_, body) = source.split_once(&format!(" {function}(")).expect("the function");
     let (body, _) = body.split_once("\n}").expect("its end");
-    let expressions: Vec<String> = body
-        .split("return ")
-        .skip(1)
-        .map(|statement| statement.split_once(';').expect("a statement").0.to_owned())
-        .filter(|expression| !expression.contains("arealight_"))
-        .collect();
-    expressions.try_into().expect("two expressions")
+    let (_, statement) = body.split_once("return ").expect("what it returns");
+    statement.split_once(';').expect("a statement").0.to_owned()
 }
 
 /// theta / sin(theta), from theta.
@@ -98,37 +94,34 @@ fn largest_error(
         .fold(0.0, f64::max)
 }
 
-/// Asserts the errors of both rungs, and that one part in a thousand of one coefficient would show.
-fn assert_errors(
-    function: &str,
-    bounds: [f64; 2],
+/// Asserts the error of a function, and that one part in a thousand of one coefficient would show.
+fn assert_error(
+    (source, function): (&str, &str),
+    bound: f64,
     end: f64,
     variables: impl Fn(f64) -> Vec<(&'static str, f64)> + Copy,
     exact: impl Fn(f64) -> f64 + Copy,
 ) {
-    for (name, expression, bound) in
-        std::iter::zip(["fast", "exact"], returned(function)).zip(bounds).map(|((n, e), b)| (n, e, b))
-    {
-        let error = largest_error(&expression, end, variables, exact);
-        println!("{function}, {name}: {error:.2e} (stated {bound:.1e})");
-        assert!(error <= bound, "{function}, {name}: {error:e}, stated {bound:e}");
-        let wrong = expression.replacen("(1.", "(1.001 * 1.", 1).replacen("(3.", "(1.001 * 3.", 1);
-        assert_ne!(wrong, expression);
-        assert!(largest_error(&wrong, end, variables, exact) > 5e-4, "{function}, {name}: the twin shows");
-    }
+    let expression = returned(source, function);
+    let error = largest_error(&expression, end, variables, exact);
+    println!("{function}: {error:.2e} (stated {bound:.1e})");
+    assert!(error <= bound, "{function}: {error:e}, stated {bound:e}");
+    let wrong = expression.replacen("(1.", "(1.001 * 1.", 1).replacen("(3.", "(1.001 * 3.", 1);
+    assert_ne!(wrong, expression);
+    assert!(largest_error(&wrong, end, variables, exact) > 5e-4, "{function}: the twin shows");
 }
 
 #[test]
 fn the_weight_of_an_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("y", 2.0 * (0.5 * theta).cos())];
     // Up to where the weight is a million
-    assert_errors("arealight_arc_weight", [2.7e-5, 7e-8], std::f64::consts::PI - 3e-6, variables, ratio);
+    assert_error((ARC_GLSL, "arealight_arc_weight"), 7e-8, std::f64::consts::PI - 3e-6, variables, ratio);
 }
 
 #[test]
 fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("x", theta.cos())];
-    assert_errors("arealight_acute_weight", [2.7e-5, 7e-8], std::f64::consts::FRAC_PI_2, variables, ratio);
+    assert_error((ARC_GLSL, "arealight_acute_weight"), 7e-8, std::f64::consts::FRAC_PI_2, variables, ratio);
 }
 
 #[test]
@@ -142,5 +135,6 @@ fn the_excess_of_an_arc_has_the_error_that_it_states() {
         vec![("scaled", half.sin().powi(2)), ("y", 2.0 * half.cos())]
     };
     let exact = move |theta: f64| ratio(shifted(theta)) - 1.0;
-    assert_errors("arealight_arc_excess", [7e-5, 1.5e-7], std::f64::consts::PI - 2e-3, variables, exact);
+    let function = (DIFFERENCE_GLSL, "arealight_arc_excess");
+    assert_error(function, 1.5e-7, std::f64::consts::PI - 2e-3, variables, exact);
 }

@@ -3,7 +3,7 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -31,13 +31,11 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
     assert_eq!(glsl_constants(source, prefix), expected, "{prefix}*");
 }
 
-const EFFECTS_GLSL: &str = include_str!("../../shaders/include/arealight/effects.glsl");
+const EFFECTS_GLSL: &str = include_str!("../../shaders/kernels/effects.glsl");
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
-const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/footprint.glsl");
-const BUFFERS_GLSL: &str = include_str!("../../shaders/kernels/buffers.glsl");
-const SHAPES_GLSL: &str = include_str!("../../shaders/include/arealight/shapes.glsl");
-const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/tube_outline.glsl");
-const SHAPE_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/shape_buffer.glsl");
+const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/textures/footprint.glsl");
+const LIGHT_RECORDS_GLSL: &str = include_str!("../../shaders/kernels/light_records.glsl");
+const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/tube_outline.glsl");
 const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
 const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
 const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
@@ -51,7 +49,7 @@ fn effects_have_the_same_bits_in_glsl() {
     let effects: Vec<_> =
         Effects::all().iter().map(|e| (e.names()[0].to_uppercase(), f64::from(e.bits()))).collect();
     let effects: Vec<_> = effects.iter().map(|(name, bits)| (name.as_str(), *bits)).collect();
-    assert_constants(EFFECTS_GLSL, "AREALIGHT_EFFECT_", &effects);
+    assert_constants(EFFECTS_GLSL, "EFFECT_", &effects);
 }
 /// The names that follow `prefix` in a text, each as often as it is there.
 fn names_after<'a>(text: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
@@ -66,13 +64,13 @@ fn every_effect_is_asked_for_and_no_other() {
     let shaders = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shaders");
     let mut uses: BTreeMap<String, usize> =
         Effects::all().iter().map(|effect| (effect.names()[0].to_uppercase(), 0)).collect();
-    for folder in ["include/arealight", "kernels"] {
+    for folder in ["kernels"] {
         for entry in std::fs::read_dir(shaders.join(folder)).unwrap() {
             let path = entry.unwrap().path();
             let source = std::fs::read_to_string(&path).unwrap();
-            // What is said in comments, as AREALIGHT_EFFECT_*, asks for nothing
+            // Comments ask for nothing
             let code: Vec<_> = source.lines().filter_map(|line| line.split("//").next()).collect();
-            for name in names_after(&code.join("\n"), "AREALIGHT_EFFECT_") {
+            for name in names_after(&code.join("\n"), "EFFECT_") {
                 let count = uses.get_mut(name).unwrap_or_else(|| panic!("{}: {name}", path.display()));
                 *count += 1;
             }
@@ -87,9 +85,13 @@ fn every_effect_is_asked_for_and_no_other() {
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
     use gpu::{GpuLight, GpuMaterial, GpuTexture};
-    let flags = [("TWO_SIDED", GpuLight::TWO_SIDED.into()), ("FLAT", GpuLight::FLAT.into())];
-    assert_constants(BUFFERS_GLSL, "LIGHT_", &flags);
-    assert_constants(BUFFERS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
+    let flags = [
+        ("TWO_SIDED", GpuLight::TWO_SIDED.into()),
+        ("FLAT", GpuLight::FLAT.into()),
+        ("MESH", GpuLight::MESH.into()),
+    ];
+    assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
+    assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
@@ -110,15 +112,15 @@ fn flags_have_the_same_bits_in_glsl() {
 #[test]
 fn choices_have_the_same_numbers_in_glsl() {
     let number = |value: u32| f64::from(value);
-    let rungs =
-        [("EXACT", number(FormFactor::Exact as u32)), ("DIFFERENCE", number(FormFactor::Difference as u32))];
-    assert_constants(EFFECTS_GLSL, "AREALIGHT_FORM_FACTOR_", &rungs);
-    let horizons = [("COSINE", number(Horizon::Cosine as u32)), ("BOTH", number(Horizon::Both as u32))];
-    assert_constants(EFFECTS_GLSL, "AREALIGHT_HORIZON_", &horizons);
-    let fresnel = [("BY_F0", number(Fresnel::ByF0 as u32)), ("SPLIT", number(Fresnel::Split as u32))];
-    assert_constants(EFFECTS_GLSL, "AREALIGHT_FRESNEL_", &fresnel);
-    let lobes = [("TABLE", number(Lobes::Table as u32)), ("FORMULA", number(Lobes::Formula as u32))];
-    assert_constants(EFFECTS_GLSL, "AREALIGHT_LOBES_", &lobes);
+    for (prefix, name, value) in [
+        ("FORM_FACTOR_", "DIFFERENCE", FormFactor::Difference as u32),
+        ("HORIZON_", "BOTH", Horizon::Both as u32),
+        ("FRESNEL_", "SPLIT", Fresnel::Split as u32),
+        ("LOBES_", "FORMULA", Lobes::Formula as u32),
+        ("FOOTPRINT_", "ELLIPSE", Footprint::Ellipse as u32),
+    ] {
+        assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
+    }
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(POSITION_GLSL, "POSITION_FROM_", &depth);
     let classes = TileClass::ALL.map(|class| {
@@ -154,16 +156,12 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(OUTPUT_GLSL, "OUTPUT_", &output);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
     let shapes = [
-        ("ELLIPSE", number(ShapeKind::Ellipse as u32)),
+        ("DISK", number(ShapeKind::Ellipse as u32)),
         ("SPHERE", number(ShapeKind::Sphere as u32)),
         ("TUBE", number(ShapeKind::Tube as u32)),
+        ("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)),
     ];
-    assert_constants(SHAPES_GLSL, "AREALIGHT_SHAPE_", &shapes);
-    assert_constants(
-        SHAPE_BUFFER_GLSL,
-        "SHAPE_",
-        &[("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)), ("ANY", number(ShapeKind::Any as u32))],
-    );
+    assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &shapes);
     let ends = [
         ("OPEN", number(TubeEnds::Open as u32)),
         ("FLAT", number(TubeEnds::Flat as u32)),

@@ -238,10 +238,8 @@ fn copy(kernel: &Kernel) -> Kernel {
 }
 
 fn light_layout() -> Vec<(String, u32)> {
-    layout!(gpu::GpuLight, radiance, first_vertex, center, radius, area, vertex_count, flags,
-                        texture_layer, reserved as "reserved0", texture_corner, reserved_corner as "reserved2",
-                        texture_axis_u, reserved_axis_u as "reserved3", texture_axis_v,
-                        reserved_axis_v as "reserved4", texture_low, texture_size)
+    layout!(gpu::GpuLight, radiance, first_vertex, center, radius, normal, area, vertex_count, flags,
+                        texture_layer, reserved)
 }
 
 #[test]

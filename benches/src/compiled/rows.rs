@@ -2,7 +2,8 @@
 //!
 //! Another row is a line in [`rows`].
 
-use crate::ladder::methods::{SHADE_YARDSTICK, Yardstick};
+use crate::ladder::methods::SHADE_YARDSTICK;
+use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
 use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality, TileClass};
@@ -12,10 +13,10 @@ use ash::vk;
 
 /// What rows of the shade kernel are held against: quads by the clipless method, in a kernel of the same branches and loops, that
 /// reads lights, surfaces and the table as the shade kernel does.
-pub const YARDSTICK: &str = "shade_yardstick: quads, practice";
+pub const YARDSTICK: &str = "shade_yardstick: quads, clipless";
 
 /// Likewise of the README's pixel.
-pub const DEFERRED_YARDSTICK: &str = "deferred_yardstick: quads, practice";
+pub const DEFERRED_YARDSTICK: &str = "deferred_yardstick: quads, clipless";
 
 const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
 
@@ -72,7 +73,6 @@ impl Row {
                     (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 3), // g_buffer
                     (vk::DescriptorType::STORAGE_IMAGE, 1),          // radiance_image
                     (vk::DescriptorType::STORAGE_BUFFER, 1),         // Lamps
-                    (vk::DescriptorType::STORAGE_BUFFER, 1),         // Vertices
                 ],
                 push_constant_size: 16,
             },
@@ -96,7 +96,7 @@ fn descriptor(kind: BindingKind) -> vk::DescriptorType {
 /// Every row, in the order of the table.
 pub fn rows() -> Vec<Row> {
     let (exact, none) = (Quality::default(), Effects::empty());
-    let difference = Quality { form_factor: FormFactor::ExactDifference, ..exact };
+    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
     let split = Quality { fresnel: Fresnel::Split, ..exact };
     let formula = Quality { lobes: Lobes::Formula, ..exact };
@@ -106,10 +106,11 @@ pub fn rows() -> Vec<Row> {
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
-        yardstick("quads", "practice", Yardstick::Practice),
-        yardstick("quads", "textbook", Yardstick::Textbook),
+        yardstick(School::Clipless),
+        yardstick(School::SphereHorizon),
+        yardstick(School::ClipByCases),
         // The README's pixel, and the same by another method
-        deferred("deferred_yardstick", "practice", CLIPLESS),
+        deferred("deferred_yardstick", "clipless", CLIPLESS),
         deferred("deferred", "exact", DEFERRED),
         // Quads, by quality level
         quads("quads", "exact", LOBES, exact),
@@ -141,13 +142,13 @@ pub fn rows() -> Vec<Row> {
         // Several kinds
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
-        shade("every kind", "exact", Effects::all() - Effects::FAR, true, exact),
+        shade("every kind", "exact", Effects::all(), true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),
-        classify("every kind", "culling", Effects::all() - Effects::FAR - LOBES, 0.01),
+        classify("every kind", "culling", Effects::all() - LOBES, 0.01),
         tiles("quads", "exact", TileClass::Quads, none),
-        tiles("every kind", "exact", TileClass::Any, Effects::all() - Effects::FAR - LOBES),
+        tiles("every kind", "exact", TileClass::Any, Effects::all() - LOBES),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -157,9 +158,9 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-fn yardstick(lights: &'static str, level: &'static str, which: Yardstick) -> Row {
-    let specialization = vec![(kernels::constant::EFFECTS, LOBES.bits()), (1, which as u32)];
-    row(&SHADE_YARDSTICK, lights, level, Some(YARDSTICK), specialization)
+fn yardstick(school: School) -> Row {
+    let specialization = vec![(kernels::constant::EFFECTS, LOBES.bits()), (1, school as u32)];
+    row(&SHADE_YARDSTICK, "quads", school.name(), Some(YARDSTICK), specialization)
 }
 
 /// A whole pixel as a host writes it.
@@ -184,9 +185,9 @@ fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: boo
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
 }
 
-fn classify(lights: &'static str, level: &'static str, kinds: Effects, negligible: f32) -> Row {
+fn classify(lights: &'static str, level: &'static str, kinds: Effects, cull_threshold: f32) -> Row {
     let variant = ShadeVariant { effects: LOBES | kinds, quads: true };
-    let tiles = TileOptions { negligible, ..TileOptions::default() };
+    let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
     let specialization = plan::classify_specialization(ShadeOptions::all(), variant, tiles);
     row(&kernels::CLASSIFY, lights, level, None, specialization)
 }

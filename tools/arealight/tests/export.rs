@@ -26,6 +26,21 @@ fn manifest(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("DIR/manifest.json")).unwrap()).unwrap()
 }
 
+/// Compares each file of a folder, and of those in it, with that of the same name in another. How many there are.
+fn compare_folders(folder: &Path, other: &Path) -> usize {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .map(|path| {
+            let twin = other.join(path.file_name().unwrap());
+            if path.is_dir() {
+                return compare_folders(&path, &twin);
+            }
+            assert_eq!(std::fs::read(&twin).unwrap(), std::fs::read(&path).unwrap(), "{}", path.display());
+            1
+        })
+        .sum()
+}
+
 #[test]
 fn everything_that_the_manifest_names_is_there() {
     let folder = tempfile::tempdir().unwrap();
@@ -40,11 +55,8 @@ fn everything_that_the_manifest_names_is_there() {
     }
     // The library is that of the checkout, every file of it
     let library = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shaders/include/arealight");
-    for entry in std::fs::read_dir(library).unwrap() {
-        let path = entry.unwrap().path();
-        let exported = folder.join("DIR/include/arealight").join(path.file_name().unwrap());
-        assert_eq!(std::fs::read(&exported).unwrap(), std::fs::read(&path).unwrap(), "{}", path.display());
-    }
+    let compared = compare_folders(&library, &folder.join("DIR/include/arealight"));
+    assert!(compared > 20, "{compared} files");
     // The tables are tables, of the sizes that are said
     for name in ["ggx.ktx2", "ggx.dds", "ggx.exr"] {
         let table = arealight_table::load(&folder.join("DIR/tables").join(name)).unwrap();
@@ -93,22 +105,22 @@ fn an_export_replaces_its_own_files_and_nobody_elses() {
     assert_eq!(std::fs::read(folder.join("DIR/manifest.json")).unwrap(), first, "the same each time");
 
     // One that was changed
-    let quad = folder.join("DIR/include/arealight/quad.glsl");
+    let quad = folder.join("DIR/include/arealight/lights/quad.glsl");
     let original = std::fs::read(&quad).unwrap();
     std::fs::write(&quad, "mine").unwrap();
-    refuse(folder, "include/arealight/quad.glsl");
+    refuse(folder, "include/arealight/lights/quad.glsl");
     assert_eq!(std::fs::read(&quad).unwrap(), b"mine");
     let said = export(folder, &["--force", "--json"]);
     assert_eq!(std::fs::read(&quad).unwrap(), original);
     let said: Value = serde_json::from_str(&said).unwrap();
-    assert_eq!(said["replaced"][0], "include/arealight/quad.glsl");
+    assert_eq!(said["replaced"][0], "include/arealight/lights/quad.glsl");
 
     // One that an earlier version wrote is replaced, and one that is no longer a part is named
     std::fs::write(&quad, "earlier").unwrap();
     let mut earlier = manifest(folder);
     let hash: Vec<String> = Sha256::digest("earlier").iter().map(|byte| format!("{byte:02x}")).collect();
-    earlier["files"]["include/arealight/quad.glsl"]["sha256"] = hash.concat().into();
-    earlier["files"]["include/arealight/gone.glsl"] = earlier["files"]["include/arealight/quad.glsl"].clone();
+    earlier["files"]["include/arealight/lights/quad.glsl"]["sha256"] = hash.concat().into();
+    earlier["files"]["include/arealight/gone.glsl"] = earlier["files"]["include/arealight/lights/quad.glsl"].clone();
     std::fs::write(folder.join("DIR/manifest.json"), earlier.to_string()).unwrap();
     let said = export(folder, &[]);
     assert_eq!(std::fs::read(&quad).unwrap(), original);

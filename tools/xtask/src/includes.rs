@@ -2,7 +2,7 @@
 
 use crate::TaskError;
 use crate::lint::{Bridge, bridges, lint};
-use crate::shaders::stems;
+use crate::shaders::stems_below;
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::Path;
@@ -14,7 +14,7 @@ const LIBRARY: &str = "shaders/include/arealight";
 pub fn run(root: &Path) -> Result<bool, TaskError> {
     let folder = root.join(LIBRARY);
     let mut texts = BTreeMap::new();
-    for name in stems(&folder, "glsl")? {
+    for name in stems_below(&folder, "glsl")? {
         let path = folder.join(format!("{name}.glsl"));
         let text = std::fs::read_to_string(&path).map_err(TaskError::file(&path))?;
         texts.insert(name, text);

@@ -1,7 +1,7 @@
 //! What the GLSL library can be asked for, read from its text.
 
 use crate::TaskError;
-use crate::shaders::stems;
+use crate::shaders::stems_below;
 use std::path::Path;
 
 /// The library's files, and its vocabulary.
@@ -23,7 +23,7 @@ impl Library {
     /// Reads the files of a folder.
     pub fn read(folder: &Path) -> Result<Self, TaskError> {
         let mut files = vec![];
-        for name in stems(folder, "glsl")? {
+        for name in stems_below(folder, "glsl")? {
             let path = folder.join(format!("{name}.glsl"));
             files.push((name, std::fs::read_to_string(&path).map_err(TaskError::file(&path))?));
         }

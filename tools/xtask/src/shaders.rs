@@ -270,6 +270,20 @@ pub fn stems(folder: &Path, ending: &str) -> Result<Vec<String>, TaskError> {
     Ok(stems)
 }
 
+/// As [`stems`], of the folders in it too: those of files in `lights` begin with `lights/`.
+pub fn stems_below(folder: &Path, ending: &str) -> Result<Vec<String>, TaskError> {
+    let mut all = stems(folder, ending)?;
+    for entry in std::fs::read_dir(folder).map_err(TaskError::file(folder))? {
+        let path = entry.map_err(TaskError::file(folder))?.path();
+        if path.is_dir() {
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            all.extend(stems_below(&path, ending)?.into_iter().map(|stem| format!("{name}/{stem}")));
+        }
+    }
+    all.sort();
+    Ok(all)
+}
+
 /// Leaves a file alone that is right already, so that nothing is built anew for it.
 fn write_if_changed(path: &Path, bytes: &[u8]) -> Result<bool, TaskError> {
     if std::fs::read(path).is_ok_and(|there| there == bytes) {
