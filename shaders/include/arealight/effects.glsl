@@ -46,8 +46,7 @@ const int AREALIGHT_LOBES_FORMULA = 1; // formulas: no texture is read; the tabl
 // How a light's texture is looked up, see footprint.glsl. The same as arealight::Footprint.
 const int AREALIGHT_FOOTPRINT_ROUND = 0;      // one fetch
 const int AREALIGHT_FOOTPRINT_ELLIPSE = 1;    // four fetches along the longer axis
-const int AREALIGHT_FOOTPRINT_SPLIT_TWO = 2;  // two by two parts of the light, two fetches each
-const int AREALIGHT_FOOTPRINT_SPLIT_FOUR = 3; // four by four parts
+const int AREALIGHT_FOOTPRINT_SPLIT = 2;      // four by four parts of the light, two fetches each
 
 // How a pass shades. Make the fields from specialisation constants or literals.
 struct ArealightQuality {

@@ -91,7 +91,7 @@ vec4 arealight_part_color(ArealightLobeView view, ArealightSeenImage image, Area
 // the center of any other outline. No more than the image, as the parts of a flat outline make up no more than all there is.
 vec3 arealight_lobe_parts(ArealightLobeView view, float gain, ArealightSeenImage image, ArealightPolygonLight light,
                           ArealightSeenLight seen, ArealightQuad quad, uint effects, ArealightQuality quality) {
-    float parts = quality.footprint == AREALIGHT_FOOTPRINT_SPLIT_FOUR ? 4.0 : 2.0;
+    const float parts = 4.0;
     ArealightPart part;
     if ((effects & AREALIGHT_EFFECT_POLYGON) == 0u) {
         part.quad = quad;
@@ -127,7 +127,7 @@ vec3 arealight_lobe_polygon(ArealightLobe lobe, ArealightLobeView view, Arealigh
 #if AREALIGHT_LIGHT_TEXTURES
     bool textured = arealight_shows_image(light, effects);
     ArealightSeenImage image = arealight_see_image(light.image, view.center, view.transform);
-    if (quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && textured) {
+    if (quality.footprint == AREALIGHT_FOOTPRINT_SPLIT && textured) {
         return lobe.albedo * arealight_lobe_parts(view, lobe.gain, image, light, seen, quad, effects, quality);
     }
 #endif
@@ -147,7 +147,7 @@ bool arealight_is_walked(ArealightPolygonLight light, uint effects, ArealightQua
         return false;
     }
 #if AREALIGHT_LIGHT_TEXTURES
-    return !(quality.footprint >= AREALIGHT_FOOTPRINT_SPLIT_TWO && arealight_shows_image(light, effects));
+    return !(quality.footprint == AREALIGHT_FOOTPRINT_SPLIT && arealight_shows_image(light, effects));
 #else
     return true;
 #endif

@@ -119,7 +119,7 @@ ArealightImage arealight_ellipse_image(ArealightShape shape) {
 }
 
 // The mean colour that a lobe sees of an ellipse's image: where the light comes from in its cosine space, as of polygons
-// (arealight_footprint). The rungs that split the light are ELLIPSE here.
+// (arealight_footprint). SPLIT is ELLIPSE here.
 vec3 arealight_lobe_ellipse_image(ArealightLobe lobe, ArealightSeenShape seen, ArealightShape shape,
                                   ArealightQuality quality) {
     mat3 transform = lobe.space.to_cosine;
