@@ -36,7 +36,7 @@ pub struct Method {
 }
 
 /// Every method, the yardstick first.
-pub static METHODS: [Method; 5] = [
+pub static METHODS: [Method; 4] = [
     Method {
         name: "article",
         description: "the filter of Heitz et al. 2016: one fetch at the foot of the perpendicular",
@@ -44,8 +44,7 @@ pub static METHODS: [Method; 5] = [
     },
     rung("round", "one fetch where the light comes from", Footprint::Round),
     rung("ellipse", "four fetches along the footprint's longer axis", Footprint::Ellipse),
-    rung("split-two", "2 x 2 parts of the light, two fetches each", Footprint::SplitTwo),
-    rung("split-four", "4 x 4 parts of the light, two fetches each", Footprint::SplitFour),
+    rung("split", "4 x 4 parts of the light, two fetches each", Footprint::Split),
 ];
 
 const fn rung(name: &'static str, description: &'static str, footprint: Footprint) -> Method {

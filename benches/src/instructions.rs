@@ -99,7 +99,7 @@ mod tests {
             assert!(count(dearer).instructions > plain.instructions, "{dearer}");
         }
         assert_eq!(count("lobes:formula").fetches, plain.fetches - 12);
-        let footprints = ["textured", "footprint:ellipse", "footprint:split_two", "footprint:split_four"];
+        let footprints = ["textured", "footprint:ellipse", "footprint:split"];
         let counts = footprints.map(|name| count(name).instructions);
         assert!(counts.is_sorted(), "{counts:?}");
     }

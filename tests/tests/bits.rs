@@ -156,7 +156,7 @@ fn outline(given: &Buffers, light: &GpuLight, effects: Effects) -> Vec<[f32; 4]>
 
 fn check(engine: &TestEngine, given: &Buffers, effects: Effects, quality: Quality) {
     let (mut wrong, mut dark, mut partial, mut infinite) = (Vec::new(), 0, 0, 0);
-    let in_parts = matches!(quality.footprint, Footprint::SplitTwo | Footprint::SplitFour);
+    let in_parts = quality.footprint == Footprint::Split;
     for (index, answer) in answers(engine, given, effects, quality).iter().enumerate() {
         let factors = [answer[0], answer[1], answer[2]].map(f32::from_bits);
         let glossy = given.cases[index].f90 == 1.0;
@@ -236,7 +236,7 @@ fn every_bit_pattern_of_an_image_gives_a_form_factor() {
     let mut given = buffers();
     show_images(&mut given);
     for effects in [Effects::all(), Effects::all() - Effects::POLYGON] {
-        for footprint in [Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour] {
+        for footprint in [Footprint::Round, Footprint::Ellipse, Footprint::Split] {
             check(&engine, &given, effects, Quality { footprint, ..Quality::default() });
         }
     }

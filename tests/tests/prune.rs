@@ -101,7 +101,7 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     for quality in [
         Quality { horizon: Horizon::Both, ..plain },
         Quality { fresnel: Fresnel::Split, ..plain },
-        Quality { footprint: Footprint::SplitFour, ..plain },
+        Quality { footprint: Footprint::Split, ..plain },
     ] {
         all.push(shade(Effects::all(), quality));
     }

@@ -9,8 +9,7 @@ use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use glam::{DVec2, DVec3, Vec3};
 
-const FOOTPRINTS: [Footprint; 4] =
-    [Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour];
+const FOOTPRINTS: [Footprint; 3] = [Footprint::Round, Footprint::Ellipse, Footprint::Split];
 
 /// Layers of the test's textures.
 const WHITE: u32 = 0;
@@ -107,16 +106,16 @@ fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
 
 /// Rungs with textures; the dearest with the dearest of the other choices. A software driver takes a second for each
 /// pipeline, and there are four for a quality: of quads and of polygons, with and without images.
-fn qualities() -> [Quality; 5] {
+fn qualities() -> [Quality; 4] {
     let rung = |footprint| Quality { footprint, ..Quality::default() };
-    let [round, ellipse, two, four] = FOOTPRINTS.map(rung);
+    let [round, ellipse, split] = FOOTPRINTS.map(rung);
     let dear = Quality {
         form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,
         horizon: Horizon::Both,
-        ..four
+        ..split
     };
-    [round, ellipse, two, four, dear]
+    [round, ellipse, split, dear]
 }
 
 #[test]
@@ -133,8 +132,7 @@ fn a_white_image_changes_nothing() {
             // White is exact in binary16, at every level; the parts' form factors are rounded one by one, by 1e-6 each
             let parts = match quality.footprint {
                 Footprint::Round | Footprint::Ellipse => 0.0,
-                Footprint::SplitTwo => 4.0,
-                Footprint::SplitFour => 16.0,
+                Footprint::Split => 16.0,
             };
             let bound = 1e-3 * f64::from(without.x) + 1e-6 * (1.0 + parts);
             comparison.add(with.x.into(), without.x.into(), bound, || format!("point {index}"));

@@ -82,7 +82,7 @@ fn qualities() -> [Quality; 2] {
     let four = Quality {
         form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
-        footprint: Footprint::SplitFour,
+        footprint: Footprint::Split,
         ..Quality::default()
     };
     [Quality { footprint: Footprint::Round, ..Quality::default() }, four]

@@ -170,8 +170,7 @@ pub fn workloads() -> Vec<Workload> {
             methods: vec![
                 textured("round", "one fetch", Footprint::Round),
                 textured("ellipse", "four fetches", Footprint::Ellipse),
-                textured("split in two", "2 x 2 parts", Footprint::SplitTwo),
-                textured("split in four", "4 x 4 parts", Footprint::SplitFour),
+                textured("split", "4 x 4 parts", Footprint::Split),
             ],
             share: 1.0,
         },

@@ -35,12 +35,8 @@ const FORM_FACTORS: [(&str, FormFactor); 2] =
 const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Horizon::Both)];
 const FRESNELS: [(&str, Fresnel); 2] = [("by-f0", Fresnel::ByF0), ("split", Fresnel::Split)];
 const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
-const FOOTPRINTS: [(&str, Footprint); 4] = [
-    ("round", Footprint::Round),
-    ("ellipse", Footprint::Ellipse),
-    ("split-two", Footprint::SplitTwo),
-    ("split-four", Footprint::SplitFour),
-];
+const FOOTPRINTS: [(&str, Footprint); 3] =
+    [("round", Footprint::Round), ("ellipse", Footprint::Ellipse), ("split", Footprint::Split)];
 
 impl From<Quality> for RungNames {
     fn from(quality: Quality) -> Self {

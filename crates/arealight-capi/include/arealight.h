@@ -101,11 +101,8 @@
 // With four along the longer axis.
 #define AREALIGHT_FOOTPRINT_ELLIPSE 1
 
-// With two by two parts of the light, two fetches each.
-#define AREALIGHT_FOOTPRINT_SPLIT_TWO 2
-
-// With four by four parts.
-#define AREALIGHT_FOOTPRINT_SPLIT_FOUR 3
+// With four by four parts of the light, a form factor and two fetches each.
+#define AREALIGHT_FOOTPRINT_SPLIT 2
 
 // ArealightResources.position holds positions; w = 0 where there is no surface.
 #define AREALIGHT_POSITION_IMAGE 0

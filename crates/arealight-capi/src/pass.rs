@@ -121,7 +121,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         lobes: rung(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
         footprint: rung(
             options.footprint,
-            &[Footprint::Round, Footprint::Ellipse, Footprint::SplitTwo, Footprint::SplitFour],
+            &[Footprint::Round, Footprint::Ellipse, Footprint::Split],
             "footprint",
         )?,
     };
@@ -406,10 +406,10 @@ mod tests {
         let quality = made(options(
             c::AREALIGHT_FORM_FACTOR_DIFFERENCE,
             c::AREALIGHT_HORIZON_BOTH,
-            c::AREALIGHT_FOOTPRINT_SPLIT_FOUR,
+            c::AREALIGHT_FOOTPRINT_SPLIT,
         ));
         assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Difference, Horizon::Both));
-        assert_eq!(quality.footprint, Footprint::SplitFour);
+        assert_eq!(quality.footprint, Footprint::Split);
         // Zero is the default of everything
         assert_eq!(made(ArealightPassOptions::default()), Quality::default());
     }
@@ -426,7 +426,7 @@ mod tests {
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { fresnel: 2, ..zero }, "options.fresnel"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
-            (ArealightPassOptions { footprint: 4, ..zero }, "options.footprint"),
+            (ArealightPassOptions { footprint: 3, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),
             (ArealightPassOptions { output: u32::MAX, ..zero }, "options.output"),
             (ArealightPassOptions { g_buffer: 4, ..zero }, "options.g_buffer"),

@@ -54,10 +54,8 @@ pub const AREALIGHT_LOBES_FORMULA: u32 = 1;
 pub const AREALIGHT_FOOTPRINT_ROUND: u32 = 0;
 /// With four along the longer axis.
 pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
-/// With two by two parts of the light, two fetches each.
-pub const AREALIGHT_FOOTPRINT_SPLIT_TWO: u32 = 2;
-/// With four by four parts.
-pub const AREALIGHT_FOOTPRINT_SPLIT_FOUR: u32 = 3;
+/// With four by four parts of the light, a form factor and two fetches each.
+pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
 
 /// ArealightResources.position holds positions; w = 0 where there is no surface.
 pub const AREALIGHT_POSITION_IMAGE: u32 = 0;

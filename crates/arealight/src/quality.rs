@@ -65,11 +65,9 @@ pub enum Footprint {
     Round = 0,
     /// Four fetches along the footprint's longer axis.
     Ellipse = 1,
-    /// The light is split into two by two parts, each with a form factor of its own and two fetches. Lights with
-    /// more than four vertices, and concave ones, are split into triangles.
-    SplitTwo = 2,
-    /// Four by four parts.
-    SplitFour = 3,
+    /// The light is split into four by four parts, each with a form factor of its own and two fetches: 16 form factors and 32
+    /// fetches per lobe. Lights with more than four vertices, and concave ones, are split into triangles, each into two by two parts.
+    Split = 2,
 }
 
 /// The quality levels that a pass is specialised for.

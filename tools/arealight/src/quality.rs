@@ -19,7 +19,7 @@ pub struct QualityArguments {
     /// Where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
     lobes: Source,
-    /// How light textures are looked up [default: round for render, split-four for eval]
+    /// How light textures are looked up [default: round for render, split for eval]
     #[arg(long, value_enum, value_name = "HOW")]
     footprint: Option<Lookup>,
     /// A fitted table, of any format that `arealight table` writes; the built-in one if absent
@@ -70,10 +70,8 @@ pub enum Lookup {
     Round,
     /// Four fetches along the footprint's longer axis
     Ellipse,
-    /// The light in two by two parts, two fetches each
-    SplitTwo,
-    /// The light in four by four parts
-    SplitFour,
+    /// The light in four by four parts, a form factor and two fetches each
+    Split,
 }
 
 impl Default for QualityArguments {
@@ -114,8 +112,7 @@ impl QualityArguments {
             None => default.footprint,
             Some(Lookup::Round) => Footprint::Round,
             Some(Lookup::Ellipse) => Footprint::Ellipse,
-            Some(Lookup::SplitTwo) => Footprint::SplitTwo,
-            Some(Lookup::SplitFour) => Footprint::SplitFour,
+            Some(Lookup::Split) => Footprint::Split,
         };
         Quality { form_factor, horizon, fresnel, lobes, footprint }
     }

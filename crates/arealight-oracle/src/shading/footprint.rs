@@ -57,8 +57,7 @@ pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -
             let taps = [-1.363, -0.378, 0.378, 1.363];
             light.part(&light.vertices, &whole, &taps, &lookup)
         }
-        Filter::Rung(Footprint::SplitTwo) => light.parts(2, &lookup),
-        Filter::Rung(Footprint::SplitFour) => light.parts(4, &lookup),
+        Filter::Rung(Footprint::Split) => light.parts(4, &lookup),
     }
 }
 

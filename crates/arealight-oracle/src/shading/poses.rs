@@ -211,8 +211,7 @@ impl Bar {
         let [sharp, rough, diffuse] = match rung {
             Footprint::Round => [(12.0, 6.0), (7.5, 5.5), (9.0, 6.0)],
             Footprint::Ellipse => [(7.0, 4.5), (6.5, 4.5), (9.0, 6.0)],
-            Footprint::SplitTwo => [(7.0, 3.5), (4.0, 2.0), (5.0, 2.5)],
-            Footprint::SplitFour => [(6.5, 2.2), (2.2, 1.0), (3.0, 1.0)],
+            Footprint::Split => [(6.5, 2.2), (2.2, 1.0), (3.0, 1.0)],
         };
         let (rmse, median) = match family {
             Family::Sharp => sharp,

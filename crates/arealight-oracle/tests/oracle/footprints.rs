@@ -13,12 +13,11 @@ use std::sync::Arc;
 
 const SIDE: usize = 256;
 
-const FILTERS: [(&str, Filter); 5] = [
+const FILTERS: [(&str, Filter); 4] = [
     ("article", Filter::Article),
-    ("R1", Filter::Rung(Footprint::Round)),
-    ("R2", Filter::Rung(Footprint::Ellipse)),
-    ("R3", Filter::Rung(Footprint::SplitTwo)),
-    ("R4", Filter::Rung(Footprint::SplitFour)),
+    ("round", Filter::Rung(Footprint::Round)),
+    ("ellipse", Filter::Rung(Footprint::Ellipse)),
+    ("split", Filter::Rung(Footprint::Split)),
 ];
 
 /// Errors of each filter through the pyramid, for poses of a family that show each of `textures`.

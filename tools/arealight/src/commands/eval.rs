@@ -193,7 +193,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let precise = Quality {
         form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,
-        footprint: Footprint::SplitFour,
+        footprint: Footprint::Split,
         ..Quality::default()
     };
     let quality = arguments.quality.quality_or(precise);
