@@ -25,7 +25,7 @@ layout(constant_id = 14) const uint CULL = 0u;
 #define TILE_LISTS_ACCESS
 #define LOBE_HORIZONS_BINDING 12
 #define AREALIGHT_DIFFERENCE 0
-#define AREALIGHT_FOOTPRINT_ELLIPSE 0
+#define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
 #include "arealight/options.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;

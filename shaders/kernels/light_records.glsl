@@ -26,6 +26,7 @@ layout(set = 0, binding = LIGHTS_BINDING, std430) readonly buffer Lights {
 const uint LIGHT_TWO_SIDED = 1u;
 const uint LIGHT_FLAT = 2u; // its vertices lie in a plane, to 1e-4 of its size
 const uint LIGHT_MESH = 4u; // several faces
+const uint LIGHT_QUAD = 8u; // convex, of at most four vertices
 const uint NO_LIGHT_TEXTURE = 0xffffffffu;
 
 struct ArealightGpuShape {

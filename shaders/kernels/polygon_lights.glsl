@@ -47,7 +47,8 @@ ArealightImage load_image(ArealightGpuLight record, bool textured) {
 
 ArealightPolygonLight load_polygon(ArealightGpuLight record, bool textured) {
     return ArealightPolygonLight(record.radiance, record.center, record.normal, record.first_vertex, record.vertex_count,
-                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record, textured));
+                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record, textured),
+                                 (record.flags & LIGHT_QUAD) != 0u);
 }
 
 ArealightMeshLight load_mesh(ArealightGpuLight record) {

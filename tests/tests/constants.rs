@@ -32,6 +32,7 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
 }
 
 const EFFECTS_GLSL: &str = include_str!("../../shaders/kernels/effects.glsl");
+const OPTIONS_GLSL: &str = include_str!("../../shaders/include/arealight/options.glsl");
 const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
 const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/textures/footprint.glsl");
 const LIGHT_RECORDS_GLSL: &str = include_str!("../../shaders/kernels/light_records.glsl");
@@ -89,6 +90,7 @@ fn flags_have_the_same_bits_in_glsl() {
         ("TWO_SIDED", GpuLight::TWO_SIDED.into()),
         ("FLAT", GpuLight::FLAT.into()),
         ("MESH", GpuLight::MESH.into()),
+        ("QUAD", GpuLight::QUAD.into()),
     ];
     assert_constants(LIGHT_RECORDS_GLSL, "LIGHT_", &flags);
     assert_constants(LIGHT_RECORDS_GLSL, "NO_LIGHT_", &[("TEXTURE", GpuLight::NO_TEXTURE.into())]);
@@ -117,10 +119,15 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("HORIZON_", "BOTH", Horizon::Both as u32),
         ("FRESNEL_", "SPLIT", Fresnel::Split as u32),
         ("LOBES_", "FORMULA", Lobes::Formula as u32),
-        ("FOOTPRINT_", "ELLIPSE", Footprint::Ellipse as u32),
     ] {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
     }
+    let footprints = [
+        ("ROUND", number(Footprint::Round as u32)),
+        ("ELLIPSE", number(Footprint::Ellipse as u32)),
+        ("SPLIT", number(Footprint::Split as u32)),
+    ];
+    assert_constants(OPTIONS_GLSL, "AREALIGHT_FOOTPRINT_", &footprints);
     let depth = [("DEPTH", number(PositionSource::Depth as u32))];
     assert_constants(POSITION_GLSL, "POSITION_FROM_", &depth);
     let classes = TileClass::ALL.map(|class| {

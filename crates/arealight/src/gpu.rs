@@ -21,7 +21,7 @@ pub struct GpuLight {
     pub area: f32,
     /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`] and [`GpuLight::MESH`], where they are so.
+    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`] and [`GpuLight::QUAD`], where they are so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
@@ -36,6 +36,8 @@ impl GpuLight {
     pub const FLAT: u32 = 2;
     /// It has several faces ([`PolygonLight::is_mesh`](crate::PolygonLight::is_mesh)).
     pub const MESH: u32 = 4;
+    /// It is convex and has at most four vertices ([`PolygonLight::is_convex_quad`](crate::PolygonLight::is_convex_quad)).
+    pub const QUAD: u32 = 8;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }

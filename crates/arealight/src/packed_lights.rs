@@ -15,6 +15,7 @@ fn flags(light: &PolygonLight) -> u32 {
     flag(light.two_sided, GpuLight::TWO_SIDED)
         | flag(light.is_flat(), GpuLight::FLAT)
         | flag(light.is_mesh(), GpuLight::MESH)
+        | flag(light.is_convex_quad(), GpuLight::QUAD)
 }
 
 /// Lights as the GPU reads them, relative to an origin.

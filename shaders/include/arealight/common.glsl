@@ -65,13 +65,13 @@ float arealight_horizon_width(mat3 space) {
     return AREALIGHT_HORIZON_WIDTH * sqrt(dot(height, height) / (longest + AREALIGHT_TINY));
 }
 
-// Whether a light shines onto a shading point: whether the point is before the light's front, or for a two-sided light on either
-// side, and not in its plane, so that a light in the plane of a surface does not light it by the last bit. `offset` goes from
-// the point to the light's center; `normal` is that of the front, unit. False where a component of `offset` is not finite.
-bool arealight_is_lit(vec3 offset, vec3 normal, bool two_sided) {
-    float side = -dot(offset, normal);
+// The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided light, else 0. A point
+// in the light's plane is on neither side, so that a light in the plane of a surface does not light it by the last bit. `offset`
+// goes from the point to the light's center; `normal` is that of the front, unit. 0 where a component of `offset` is not finite.
+float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided) {
+    float height = -dot(offset, normal);
     float width = AREALIGHT_PLANE_WIDTH * (abs(offset.x) + abs(offset.y) + abs(offset.z));
-    return (two_sided ? abs(side) : side) > width;
+    return height > width ? 1.0 : two_sided && -height > width ? -1.0 : 0.0;
 }
 
 // A height that is a rounding of zero for a vector of the size that `width` is of, as zero.

@@ -9,7 +9,7 @@
 //     // The light in the shading frame; false where it does not shine onto the point's side
 //     bool arealight_to_local(ArealightPoint point, Light light, out Local local);
 //     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the light comes from,
-//     // and its z is the form factor, of either sign where the light is seen from its back
+//     // and its z is the form factor
 //     vec3 arealight_vector_form_factor(mat3 space, Local local);
 //     // The colour that a lobe sees of its image, 1 without: what the radiance is multiplied with
 //     vec3 arealight_image_seen(mat3 space, Local local, vec3 vector);
@@ -22,11 +22,11 @@ struct ArealightReflected {
     vec3 specular;
 };
 
-// A form factor from z of a vector form factor: in [0, 1] for any bits, 0 for NaN, and for light from behind where no light
-// has two sides. It compares bits, where no compiler may assume that there is no NaN: the patterns of [0, 1] are those
-// up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN lies beyond.
+// A form factor from z of a vector form factor: in [0, 1] for any bits, 0 for NaN. It compares bits, where no compiler may assume
+// that there is no NaN: the patterns of [0, 1] are those up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN
+// lies beyond.
 float arealight_form_factor(vec3 vector) {
-    uint bits = floatBitsToUint(AREALIGHT_HAS_TWO_SIDED ? abs(vector.z) : vector.z);
+    uint bits = floatBitsToUint(vector.z);
     return bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
 }
 

@@ -38,9 +38,9 @@
 #define AREALIGHT_DIFFERENCE 0
 #endif
 
-// Look up images by four fetches along the footprint's longer axis (arealight::Footprint::Ellipse); else by one.
-#ifndef AREALIGHT_FOOTPRINT_ELLIPSE
-#define AREALIGHT_FOOTPRINT_ELLIPSE 0
+// How images are looked up, one of AREALIGHT_FOOTPRINT_* (arealight::Footprint).
+#ifndef AREALIGHT_FOOTPRINT
+#define AREALIGHT_FOOTPRINT 0
 #endif
 
 // The remaining options are 0 or 1, and nothing else: they decide which bridges a host has to define.
@@ -77,6 +77,10 @@ const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_SPLITS_FRESNEL = bool(AREALIGHT_FRESNEL_SPLIT);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
-const bool AREALIGHT_USES_FOOTPRINT_ELLIPSE = bool(AREALIGHT_FOOTPRINT_ELLIPSE);
+
+const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch
+const int AREALIGHT_FOOTPRINT_ELLIPSE = 1; // four fetches along the footprint's longer axis; of disks split is this, too
+const int AREALIGHT_FOOTPRINT_SPLIT = 2;   // four by four parts of the light, each with a form factor of its own and two fetches
+const bool AREALIGHT_SPLITS_IMAGES = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_SPLIT;
 
 #endif

@@ -23,7 +23,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define AREALIGHT_FRESNEL_SPLIT FRESNEL_SPLIT
 #define AREALIGHT_FORMULA FORMULA
 #define AREALIGHT_DIFFERENCE DIFFERENCE
-#define AREALIGHT_FOOTPRINT_ELLIPSE (FOOTPRINT == 1)
+#define AREALIGHT_FOOTPRINT FOOTPRINT
 #endif
 
 #include "arealight/arealight.glsl"
@@ -125,6 +125,7 @@ vec3 shade(int first) {
 #if AREALIGHT_LIGHT_TEXTURES
     polygon.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz, numbers[first + 12].xyz,
                                    numbers[first + 13].xy, numbers[first + 13].zw);
+    polygon.is_quad = two_sided;
 #endif
     sum += arealight_radiance(point, polygon);
 #endif

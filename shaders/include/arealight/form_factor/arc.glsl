@@ -31,8 +31,8 @@ vec3 arealight_unit(vec3 v) {
 // s theta / sin(theta) of an arc with y = 2 cos(theta / 2), from sqrt(AREALIGHT_LEAST_SQUARE) to 2: relative error 7e-8
 // before rounding.
 vec3 arealight_arc_weight(vec3 s, float y) {
-    return s * ((3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
-                / (y + y * y * (0.66850024 + y * 0.096849829)));
+    return s * (3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
+         / (y + y * y * (0.66850024 + y * 0.096849829));
 }
 
 // s theta / sin(theta) of an angle of at most a right one with the cosine x: relative error 7e-8 before rounding.

@@ -43,10 +43,10 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
         uint first = row + 1u;
         uint end = first + clamp(uint(face.w), 1u, local.end - first);
         vec3 offset = local.offset + arealight_bridge_vertex(first);
-        if (arealight_is_lit(offset, face.xyz, local.two_sided)) {
-            vec3 vector = arealight_outline_form_factor(space, center, local.to_frame, first, end);
+        float side = arealight_lit_side(offset, face.xyz, local.two_sided);
+        if (side != 0.0) {
             // Seen from the back an outline goes around the other way
-            sum += dot(offset, face.xyz) < 0.0 ? vector : -vector;
+            sum += side * arealight_outline_form_factor(space, center, local.to_frame, first, end);
         }
         row = end;
     }

@@ -20,6 +20,7 @@ struct ArealightLocalQuad {
     ArealightQuad triangle; // what the cut leaves beside a quad where three vertices are above, its last vertex twice
     bool has_triangle;
     vec3 center;            // from the shading point
+    float side;             // arealight_lit_side
 };
 
 // A quad in the shading frame, whose vertices are offsets from `center`.
@@ -54,14 +55,11 @@ void arealight_cut_quad(inout ArealightLocalQuad local) {
     local.has_triangle = c_above;
 }
 
-bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out ArealightLocalQuad local) {
-    vec3 offset = light.center - point.position;
-    if (!arealight_is_lit(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided)
-        || !arealight_is_finite(light.quad)) {
-        return false;
-    }
-    local.center = point.to_frame * offset;
-    local.quad = arealight_quad_in_frame(point.to_frame, local.center, light.quad);
+// Takes a quad whose center is at `center` in the shading frame there, and clips it at the surface's horizon where that is on. False
+// where nothing is left.
+bool arealight_quad_to_local(mat3 to_frame, vec3 center, ArealightQuad quad, out ArealightLocalQuad local) {
+    local.center = center;
+    local.quad = arealight_quad_in_frame(to_frame, center, quad);
     local.has_triangle = false;
     bool is_cut = false;
     if (AREALIGHT_CLIPS_AT_SURFACE) {
@@ -74,11 +72,20 @@ bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out Area
         }
     }
     if (AREALIGHT_USES_DIFFERENCE) {
-        local.quad = is_cut ? arealight_moved(local.quad, -local.center)
-                            : arealight_quad_in_frame(point.to_frame, vec3(0.0), light.quad);
-        local.triangle = arealight_moved(local.triangle, -local.center);
+        local.quad = is_cut ? arealight_moved(local.quad, -center) : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
+        local.triangle = arealight_moved(local.triangle, -center);
     }
     return true;
+}
+
+bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out ArealightLocalQuad local) {
+    vec3 offset = light.center - point.position;
+    local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided);
+    bool lit = local.side != 0.0 && arealight_is_finite(light.quad);
+    if (lit) {
+        lit = arealight_quad_to_local(point.to_frame, point.to_frame * offset, light.quad, local);
+    }
+    return lit;
 }
 
 // The vector form factor of a quad as ArealightLocalQuad has it.
@@ -95,7 +102,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
         vector += arealight_quad_part(space, local.center, local.triangle);
     }
-    return vector;
+    return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
 }
 
 vec3 arealight_image_seen(mat3 space, ArealightLocalQuad local, vec3 vector) {

@@ -14,10 +14,10 @@
 //
 //     d^2 / (1.5 A + 6 d^2)
 //
-// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point where the mean direction meets the plane is a better place than the
-// plane's foot, and as the light ends, so must the footprint: the widest is that of an even spread, nearly, as the image is
-// mirrored at its ends. The bump is longer than wide where the plane is seen at an angle; better rungs fetch along its
-// longer axis, and split the light. The numbers were found by search, against the integral of image times lobe: errors are
+// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point where the mean direction meets the plane is a
+// better place than the plane's foot, and as the light ends, so must the footprint: the widest is that of an even spread, nearly,
+// as the image is mirrored at its ends. The bump is longer than wide where the plane is seen at an angle; better quality levels
+// fetch along its longer axis, and split the light (split.glsl). The numbers were found by search, against the integral of image times lobe: errors are
 // in docs/textures.md.
 
 // The layer of a light without an image.
@@ -163,11 +163,11 @@ ArealightFootprintEllipse arealight_footprint_ellipse(ArealightLobeImage image, 
 }
 
 // The mean colour that a lobe sees of a light's image, `toward` being where the light comes from in its cosine space: finite and not
-// negative for any input, if the image is. One fetch, or with AREALIGHT_FOOTPRINT_ELLIPSE four along the longer axis.
+// negative for any input, if the image is. One fetch, or four along the longer axis.
 vec3 arealight_footprint(ArealightLobeImage image, vec3 toward) {
     ArealightPlaneHit hit = arealight_plane_hit(image, toward);
     vec2 box = arealight_clamp_coordinate(hit.box, vec2(0.0), vec2(1.0));
-    if (!AREALIGHT_USES_FOOTPRINT_ELLIPSE) {
+    if (AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_ROUND) {
         float area = sqrt(dot(image.normal, image.normal));
         return arealight_image_blurred(image, box, hit.square / (1.5 * area + image.end * hit.square));
     }
