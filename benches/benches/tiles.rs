@@ -144,8 +144,10 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
         for cull_threshold in THRESHOLDS {
             let first = frames.len();
             for count in LAMPS {
-                let against =
-                    (TileOptions { cull_threshold, capacity: 512, ..TileOptions::default() }, Baseline::Clipless);
+                let against = (
+                    TileOptions { cull_threshold, capacity: 512, ..TileOptions::default() },
+                    Baseline::Clipless,
+                );
                 let mut scene = floor(roughness)?;
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });

@@ -7,6 +7,7 @@ use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Pyramid
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::{Random, TestEngine};
 use arealight_vk::{ComputePass, Resource};
+use glam::DVec3;
 
 const COUNT: usize = 50_000;
 
@@ -73,6 +74,15 @@ impl Numbers {
     }
 }
 
+/// The direction from a light to the shading point, the origin, or its opposite, as the light's first vertices run; what there is
+/// of it.
+fn facing_normal(center: [f32; 3], vertices: [[f32; 4]; 3]) -> [f32; 3] {
+    let [a, b, c] = vertices.map(|v| DVec3::new(v[0].into(), v[1].into(), v[2].into()));
+    let normal = (b - a).cross(c - a);
+    let center = DVec3::from_array(center.map(f64::from));
+    (if normal.dot(center + a) > 0.0 { center } else { -center }).normalize_or_zero().as_vec3().to_array()
+}
+
 /// Albedo and radiance are one, so that the answer is a form factor: Lambert's, or the lobe's times its albedo.
 fn buffers() -> Buffers {
     let mut random = Random::new(21);
@@ -95,10 +105,17 @@ fn buffers() -> Buffers {
             texture_layer: GpuLight::NO_TEXTURE,
             ..bytemuck::Zeroable::zeroed()
         });
-        for _ in 0..vertex_count {
-            let [x, y, z] = outline.vector(&mut random);
-            buffers.vertices.push([x, y, z, outline.number(&mut random)]);
+        let rows: Vec<[f32; 4]> = (0..vertex_count)
+            .map(|_| {
+                let [x, y, z] = outline.vector(&mut random);
+                [x, y, z, outline.number(&mut random)]
+            })
+            .collect();
+        if index % 4 != 0 {
+            let light = buffers.lights.last_mut().expect("the light");
+            light.normal = facing_normal(light.center, [rows[0], rows[1], rows[2]]);
         }
+        buffers.vertices.extend(rows);
         // Where a light's image is, if it has one
         buffers.vertices.extend([[0.0; 4]; IMAGE_ROWS]);
         let glossy = (index % 2) as f32;

@@ -3,12 +3,14 @@
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED,
-    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost, ArealightLight,
-    ArealightPackedLights, ArealightPass, ArealightResources, ArealightResult, ArealightShape,
-    ArealightTable, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
-    arealight_pass_create, arealight_pass_destroy, arealight_pass_pack_lights, arealight_pass_pack_shapes,
-    arealight_pass_prepare, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
-    arealight_table_memory, arealight_table_upload,
+    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost,
+    ArealightLight, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
+    ArealightResult, ArealightShape, ArealightTable, ArealightTileMemory, ArealightUpload,
+    arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
+    arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy,
+    arealight_pass_pack_lights, arealight_pass_pack_shapes, arealight_pass_prepare, arealight_pass_record,
+    arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set, arealight_table_memory,
+    arealight_table_upload,
 };
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};
@@ -405,5 +407,74 @@ fn a_pass_outlives_what_made_it() {
         let mut out = null_mut();
         let gone = arealight_pass_create(arealight, null(), &raw mut out);
         refused(gone, ArealightResult::ErrorArgument, "arealight: is no Arealight that is alive");
+    }
+}
+
+#[test]
+fn passes_with_tiles_ask_for_their_buffers() {
+    use ArealightResult::{ErrorArgument, ErrorTooSmall};
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let tiles = ArealightPassOptions {
+        effects: AREALIGHT_EFFECT_DIFFUSE,
+        tile_capacity: 64,
+        ..ArealightPassOptions::default()
+    };
+    let mut pass = null_mut();
+    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
+    unsafe {
+        let wrong = ArealightPassOptions { tile_cull_threshold: 1.0, ..tiles };
+        let create =
+            |options: &ArealightPassOptions, out| arealight_pass_create(library.arealight, options, out);
+        refused(create(&wrong, &raw mut pass), ErrorArgument, "cull_threshold: is 1");
+        let words = [0_u32; 4];
+        let with_module = arealight_pass_create_with_module(
+            library.arealight,
+            &raw const tiles,
+            words.as_ptr(),
+            16,
+            &raw mut pass,
+        );
+        refused(with_module, ErrorArgument, "options.tile_capacity: must be 0");
+        good(create(&tiles, &raw mut pass));
+
+        // What to allocate; a pass without tiles needs nothing
+        let mut memory = ArealightTileMemory { size: 1, usage: 1, reserved: 1 };
+        good(arealight_pass_tile_memory(pass, 17, 8, &raw mut memory));
+        assert_eq!(memory.size, arealight::tiles::memory([17, 8], 64));
+        let indirect = vk::BufferUsageFlags::INDIRECT_BUFFER.as_raw();
+        assert_eq!((memory.usage & indirect, memory.reserved), (indirect, 0));
+        let plain = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+        good(arealight_pass_tile_memory(plain, 17, 8, &raw mut memory));
+        assert_eq!((memory.size, memory.usage), (0, 0));
+
+        // The horizons of the table's lobes
+        let mut size = 0;
+        let horizons = |data: *mut u8, size| arealight_lobe_horizons(library.arealight, data.cast(), size);
+        good(horizons(null_mut(), &raw mut size));
+        let mut bytes = vec![0_u8; size as usize];
+        size -= 1;
+        refused(horizons(bytes.as_mut_ptr(), &raw mut size), ErrorTooSmall, "are needed");
+        good(horizons(bytes.as_mut_ptr(), &raw mut size));
+        let expected = arealight_table::ggx().lobe_horizons();
+        assert!(bytes == bytemuck::cast_slice::<_, u8>(&expected));
+
+        // A frame without its lists
+        let frame = ArealightFrame {
+            width: 8,
+            height: 8,
+            camera: [0.0; 3],
+            light_count: 0,
+            shape_count: 0,
+            quad_count: 0,
+            unused: 0,
+            reserved: 0,
+            position_from_clip: null(),
+            tile_lists: ArealightBuffer::default(),
+        };
+        refused(arealight_pass_prepare(pass, &raw const frame), ErrorArgument, "tile_lists: is missing");
+        good(arealight_pass_prepare(plain, &raw const frame));
+        good(arealight_pass_destroy(pass));
+        good(arealight_pass_destroy(plain));
     }
 }

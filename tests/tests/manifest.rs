@@ -207,8 +207,7 @@ fn the_comparison_can_fail() {
             Access::None => kernels::Binding { access, ..*binding },
             _ => *binding,
         });
-        let changed =
-            Kernel { bindings: bindings.collect::<Vec<_>>().leak(), ..copy(&kernels::CLASSIFY) };
+        let changed = Kernel { bindings: bindings.collect::<Vec<_>>().leak(), ..copy(&kernels::CLASSIFY) };
         assert!(compare(&changed, &module(&kernels::CLASSIFY)).unwrap_err().contains("the module binds"));
     }
     // Two bindings of one kind in each other's place: buffers, then images

@@ -79,9 +79,9 @@ fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, rungs: &[Rung]) 
 fn a_mesh_sends_what_its_faces_do() {
     let Some(engine) = TestEngine::new() else { return };
     let all = Rung::of(&[Path::Mesh], &[Horizon::Cosine]);
-    assert_sums(&engine, None, &[all[0], all[2]]);
+    assert_sums(&engine, None, &all);
     let twice = Rung::of(&[Path::Mesh], &[Horizon::Both]);
-    assert_sums(&engine, Some(&TABLE), &[all[1], twice[2]]);
+    assert_sums(&engine, Some(&TABLE), &[all[1], twice[1]]);
     faces_in_front_alone_count(&engine, all[0]);
     any_bits_give_a_form_factor(&engine, all[0]);
     far_meshes_keep_relative_precision(&engine, all[0]);

@@ -314,7 +314,11 @@ fn lights_that_are_culled_contribute_less_than_the_threshold() {
         let what = lost(&found.plain, &found.tiled);
         assert!(what <= 0.05, "{squares} and {rounds}: {what}");
         let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * (squares + rounds) as u64;
-        assert!(found.counts.lights * 10 < all * 9, "{squares} and {rounds}: {} of {all}", found.counts.lights);
+        assert!(
+            found.counts.lights * 10 < all * 9,
+            "{squares} and {rounds}: {} of {all}",
+            found.counts.lights
+        );
         // The twin: two rows of lamps too few are seen
         scene.shapes.drain(..scene.shapes.len().min(20));
         let few = plain(&engine, &scene, &lights[lights.len().min(20)..], effects);
@@ -328,8 +332,7 @@ fn lists(engine: &TestEngine, squares: usize, rounds: usize, tiles: TileOptions)
     scene.shapes = round_lamps(rounds, center + DVec3::X * 0.3);
     let lights = lamps(squares, center);
     with_view(engine, &scene, &lights, |renderer| {
-        let options =
-            ShadeOptions { effects: scene.effects() | Effects::SHAPES, ..ShadeOptions::all() };
+        let options = ShadeOptions { effects: scene.effects() | Effects::SHAPES, ..ShadeOptions::all() };
         let view = renderer.tiled(options, tiles).unwrap();
         renderer.shade_tiled(&view).unwrap();
         let lists = view.lists().unwrap();

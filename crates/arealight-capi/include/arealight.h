@@ -41,9 +41,6 @@
 // Some light shows an image: ArealightResources.light_textures is read.
 #define AREALIGHT_EFFECT_TEXTURED 32
 
-// Some light may be so far that its center alone stands for it: ArealightPassOptions.one_point counts only with this.
-#define AREALIGHT_EFFECT_FAR 64
-
 // Some light is a disk or an ellipse.
 #define AREALIGHT_EFFECT_ELLIPSE 256
 
@@ -60,28 +57,19 @@
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
 
 // Every effect: right for any lights, at the highest cost.
-#define AREALIGHT_EFFECTS_ALL 8063
+#define AREALIGHT_EFFECTS_ALL 7999
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
-// 2.7e-5 of each edge's share, fewer instructions.
-#define AREALIGHT_FORM_FACTOR_FAST 1
-
 // As EXACT, and relative precision for lights that look small.
-#define AREALIGHT_FORM_FACTOR_EXACT_DIFFERENCE 2
-
-// As FAST, likewise.
-#define AREALIGHT_FORM_FACTOR_FAST_DIFFERENCE 3
+#define AREALIGHT_FORM_FACTOR_DIFFERENCE 1
 
 // Polygons are clipped at the horizon of the lobe's cosine space.
 #define AREALIGHT_HORIZON_COSINE 0
 
 // And at the surface's horizon: nothing leaks from behind the surface.
 #define AREALIGHT_HORIZON_BOTH 1
-
-// Nowhere: the host knows that it need not be.
-#define AREALIGHT_HORIZON_BARE 2
 
 // One integral a glossy lobe.
 #define AREALIGHT_FRESNEL_BY_F0 0
@@ -355,7 +343,7 @@ typedef struct ArealightShape {
     uint32_t texture_layer;
 } ArealightShape;
 
-// What a pass is specialised for. All zero is the exact rung without an effect.
+// What a pass is specialised for. All zero is exact without an effect.
 typedef struct ArealightPassOptions {
     // AREALIGHT_EFFECT_* that the scene calls for. More only costs time; less is an error when lights are packed.
     uint32_t effects;
@@ -367,8 +355,6 @@ typedef struct ArealightPassOptions {
     uint32_t fresnel;
     // One of AREALIGHT_LOBES_*.
     uint32_t lobes;
-    // 1: far lights are taken from their center alone where that is within 1e-4. With AREALIGHT_EFFECT_FAR.
-    uint32_t one_point;
     // One of AREALIGHT_FOOTPRINT_*.
     uint32_t footprint;
     // One of AREALIGHT_POSITION_*.
@@ -809,22 +795,21 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 60);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, effects) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, fresnel) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, one_point) == 20);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 36);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 44);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 52);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, output) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_images) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, radiance_format) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 44);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 52);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);

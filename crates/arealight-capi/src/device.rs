@@ -223,8 +223,9 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
 ) -> ArealightResult {
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
-        let (arealight, given) =
-            unsafe { (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?) };
+        let (arealight, given) = unsafe {
+            (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?)
+        };
         let cells = u64::from(arealight.table.size() - 1).pow(2);
         let needed = cells * size_of::<LobeHorizon>() as u64;
         // SAFETY: as above.

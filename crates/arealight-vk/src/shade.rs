@@ -208,7 +208,8 @@ impl ShadePass {
     pub fn accesses(&self) -> Vec<ResourceAccess> {
         let mut accesses = accesses_of(&SHADE);
         if self.tiles.is_some() {
-            accesses.extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
+            accesses
+                .extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
         }
         accesses
     }

@@ -184,7 +184,10 @@ impl Tiles {
             self.record_barrier(
                 command_buffer,
                 (compute, write),
-                (compute | vk::PipelineStageFlags::DRAW_INDIRECT, read | vk::AccessFlags::INDIRECT_COMMAND_READ),
+                (
+                    compute | vk::PipelineStageFlags::DRAW_INDIRECT,
+                    read | vk::AccessFlags::INDIRECT_COMMAND_READ,
+                ),
             );
             for class in dispatched(options, frame) {
                 let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;

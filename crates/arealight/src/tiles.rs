@@ -112,7 +112,10 @@ mod tests {
 
     #[test]
     fn tiles_of_quads_have_the_code_of_quads_alone() {
-        assert_eq!(TileClass::Quads.effects(Effects::all()) & (Effects::POLYGON | Effects::SHAPES), Effects::empty());
+        assert_eq!(
+            TileClass::Quads.effects(Effects::all()) & (Effects::POLYGON | Effects::SHAPES),
+            Effects::empty()
+        );
         assert_eq!(TileClass::Any.effects(Effects::all()), Effects::all());
     }
 

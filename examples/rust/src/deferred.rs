@@ -12,7 +12,8 @@ use arealight::plan::{
 };
 use arealight::{Effects, Quality};
 use arealight_vk::{
-    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage, TileResources,
+    Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
+    TileResources,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
