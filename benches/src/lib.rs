@@ -30,6 +30,7 @@ pub mod kernel;
 pub mod ladder;
 pub mod method;
 pub mod pictures;
+pub mod published;
 pub mod report;
 pub mod shape_cost;
 pub mod shape_stability;
