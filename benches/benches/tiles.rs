@@ -105,13 +105,13 @@ fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
 
 /// Frames of our scenes.
 fn scene_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
-    let against = (TileOptions::default(), Baseline::Practice);
+    let against = (TileOptions::default(), Baseline::Clipless);
     let mut frames = vec![];
     for name in ["demo", "room", "sweep"] {
         frames.push(frame(engine, (name, &scene(name)?), SIZE, Quality::default(), against, rounds)?);
     }
     // What is classified all the same, though it has a single quad
-    let every = (TileOptions { least_quads: 0, ..TileOptions::default() }, Baseline::Practice);
+    let every = (TileOptions { least_quads: 0, ..TileOptions::default() }, Baseline::Clipless);
     let name = "sweep, classified";
     frames.push(frame(engine, (name, &scene("sweep")?), SIZE, Quality::default(), every, rounds)?);
     Ok(frames)
@@ -125,7 +125,7 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
             let first = frames.len();
             for count in LAMPS {
                 let against =
-                    (TileOptions { negligible, capacity: 512, ..TileOptions::default() }, Baseline::Practice);
+                    (TileOptions { negligible, capacity: 512, ..TileOptions::default() }, Baseline::Clipless);
                 let mut scene = floor(roughness)?;
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });

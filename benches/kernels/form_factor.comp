@@ -13,8 +13,8 @@ layout(constant_id = 0) const int METHOD = 0;
 const int METHOD_RUNG = 1;
 const int METHOD_WALK = 0;
 const int METHOD_QUAD = 8;
-const int METHOD_TEXTBOOK = 32;
-const int METHOD_PRACTICE = 33;
+const int METHOD_YARDSTICK = 32; // plus a school of yardsticks.glsl
+const int METHOD_CLIP_AND_ACOS = 35;
 
 struct HardPolygon {
     vec3 anchor;
@@ -55,7 +55,7 @@ vec3 yardstick_vertex(uint index) {
     return polygon_anchor + polygon_offset(index);
 }
 
-#include "yardsticks.glsl"
+#include "outline_yardsticks.glsl"
 
 // A convex polygon of up to four vertices; the last one of a triangle comes twice.
 ArealightQuad polygon_quad(uint count) {
@@ -109,10 +109,12 @@ void main() {
     }
 
     float form_factor;
-    if (METHOD == METHOD_TEXTBOOK) {
-        form_factor = yardstick_textbook(count);
-    } else if (METHOD == METHOD_PRACTICE) {
-        form_factor = yardstick_practice(count);
+    if (METHOD == METHOD_CLIP_AND_ACOS) {
+        form_factor = yardstick_clip_and_acos(count);
+    } else if (METHOD == METHOD_YARDSTICK + YARDSTICK_CLIP_BY_CASES) {
+        form_factor = yardstick_cases(count);
+    } else if (METHOD >= METHOD_YARDSTICK) {
+        form_factor = yardstick_outline(METHOD - METHOD_YARDSTICK, count);
     } else {
         form_factor = library_form_factor(polygon_anchor, count, sqrt(square), METHOD & ~METHOD_RUNG,
                                           METHOD & METHOD_RUNG);

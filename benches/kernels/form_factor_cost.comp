@@ -17,8 +17,7 @@ const int METHOD_QUAD = 0;
 const int METHOD_BOTH = 8;
 const int METHOD_WALK = 12;
 const int METHOD_NOTHING = 16;
-const int METHOD_PRACTICE = 17;
-const int METHOD_TEXTBOOK = 18;
+const int METHOD_YARDSTICK = 17; // plus a school of yardsticks.glsl
 
 layout(set = 0, binding = 0, std430) readonly buffer Vertices {
     vec4 vertices[]; // four a work item, in a box above the horizon
@@ -65,12 +64,6 @@ float library(vec3 center, ArealightQuad quad) {
     return arealight_form_factor(library_arcs(center, quad), false);
 }
 
-ArealightQuad yardstick;
-
-vec3 yardstick_vertex(uint index) {
-    return index == 0u ? yardstick.v0 : index == 1u ? yardstick.v1 : index == 2u ? yardstick.v2 : yardstick.v3;
-}
-
 #include "yardsticks.glsl"
 
 void main() {
@@ -84,12 +77,9 @@ void main() {
     for (int i = 0; i < REPEATS; i++) {
         // Moving the quad costs three additions a vertex; the library's adds its center to its offsets anyway
         vec3 shift = vec3(1.0, 1.0, 0.5) * (float(i) / 512.0);
-        if (METHOD == METHOD_PRACTICE) {
+        if (METHOD >= METHOD_YARDSTICK) {
             ArealightQuad there = moved(quad, shift);
-            sum += yardstick_practice_quad(there.v0, there.v1, there.v2, there.v3);
-        } else if (METHOD == METHOD_TEXTBOOK) {
-            yardstick = moved(quad, shift);
-            sum += yardstick_textbook(4u);
+            sum += yardstick_quad(METHOD - METHOD_YARDSTICK, there.v0, there.v1, there.v2, there.v3);
         } else if (METHOD == METHOD_NOTHING) {
             ArealightQuad there = moved(quad, shift);
             sum += dot(there.v0 + there.v1, there.v2 + there.v3);

@@ -2,6 +2,8 @@
 // transformed cosines", written anew from the method. The cone's eigenvalues are the roots of a cubic (Blinn 2007); the
 // horizon is that of a sphere of the same form factor. A yardstick: nothing is guarded.
 
+#include "clipped_sphere.glsl"
+
 // The roots of x^3 + c.z x^2 + c.y x + c.x, the middle one in y.
 vec3 published_cubic(vec3 c, bool clamped) {
     float b = c.z / 3.0;
@@ -29,21 +31,6 @@ vec3 published_cubic(vec3 c, bool clamped) {
         return roots.yxz;
     }
     return roots.z < roots.x && roots.z < roots.y ? roots.xzy : roots;
-}
-
-// The form factor of a sphere that has the form factor `whole` facing and whose center has the height z over its
-// distance, clipped at the horizon.
-float published_horizon(float whole, float z) {
-    float s = sqrt(whole);
-    if (z >= s) {
-        return whole * z;
-    }
-    if (z <= -s) {
-        return 0.0;
-    }
-    float q = sqrt(whole - z * z);
-    float c = sqrt(1.0 - whole);
-    return (whole * z * atan(q, -c * z) - c * q + atan(q, c)) / 3.1415927;
 }
 
 // x: as it is; y: as (length^2 + z) / (length + 1), the cheap horizon. `clamped`: not 0 to keep the cubic's discriminant from
@@ -86,5 +73,5 @@ vec2 published_disk(vec3 center, vec3 axis_u, vec3 axis_v, int clamped) {
     float l1 = sqrt(-e.y / e.z);
     float l2 = sqrt(-e.y / e.x);
     float whole = l1 * l2 * inversesqrt((1.0 + l1 * l1) * (1.0 + l2 * l2));
-    return vec2(published_horizon(whole, mean.z), max(0.0, (whole * whole + mean.z * whole) / (whole + 1.0)));
+    return vec2(clipped_sphere(whole, mean.z), max(0.0, (whole * whole + mean.z * whole) / (whole + 1.0)));
 }

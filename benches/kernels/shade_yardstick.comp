@@ -2,16 +2,17 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The shade kernel as others write it: the same bindings, table and lobes, but the form factors of yardsticks.glsl. For
-// lights of one colour; outlines other than convex quads, and the backs of lights, are the practice's alone.
+// The shade kernel with the form factors that others ship: see yardsticks.glsl. The same bindings, table lookup, lobes, light reads and
+// loop over the lights as shade.comp, so that only the form factor differs, and the table where another is bound. Lights that are
+// seen from the back are left by a branch, as three.js does.
+//
+// For lights of one colour. Outlines other than convex quads are shaded by the two schools that clip nothing; clipping by cases
+// is for quads alone.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 1) const int METHOD = 0;
-
-const int METHOD_PRACTICE = 0;
-const int METHOD_TEXTBOOK = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
@@ -30,41 +31,79 @@ layout(push_constant, std430) uniform ShadeConstants {
     uint quad_count;
 } constants;
 
-ArealightQuad yardstick;
-
-vec3 yardstick_vertex(uint index) {
-    return index == 0u ? yardstick.v0 : index == 1u ? yardstick.v1 : index == 2u ? yardstick.v2 : yardstick.v3;
-}
-
 #include "yardsticks.glsl"
 
-// A lobe's form factor of the quad, which is relative to the shading point and seen from the front.
-float seen_by(ArealightLobe lobe, ArealightQuad quad) {
-    mat3 to_cosine = lobe.space.to_cosine;
-    quad = ArealightQuad(to_cosine * quad.v0, to_cosine * quad.v1, to_cosine * quad.v2, to_cosine * quad.v3);
-    if (METHOD == METHOD_PRACTICE) {
-        return yardstick_practice_quad(quad.v0, quad.v1, quad.v2, quad.v3);
+// What the library gives: a shading point's position, and its two lobes.
+struct YardstickPoint {
+    vec3 position;
+    mat3 diffuse_space; // into the lobe's cosine space
+    mat3 glossy_space;
+    vec3 diffuse_albedo;
+    vec3 glossy_albedo;
+};
+
+YardstickPoint yardstick_point(ivec2 pixel, vec3 position) {
+    ArealightSurface surface = load_surface(pixel, position, constants.camera, EFFECTS);
+    ArealightQuality quality = ArealightQuality(AREALIGHT_FORM_FACTOR_EXACT, AREALIGHT_HORIZON_COSINE,
+                                                AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
+                                                AREALIGHT_FOOTPRINT_ROUND);
+    ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+    return YardstickPoint(point.position, point.diffuse.space.to_cosine, point.glossy.space.to_cosine,
+                          point.diffuse.albedo, point.glossy.albedo);
+}
+
+const bool HAS_OTHERS = (EFFECTS & AREALIGHT_EFFECT_POLYGON) != 0u && METHOD != YARDSTICK_CLIP_BY_CASES;
+const bool HAS_TWO_SIDED = (EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u;
+
+// A lobe's form factor of a quad around the shading point.
+float quad_form_factor(mat3 space, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
+    return yardstick_quad(METHOD, space * v0, space * v1, space * v2, space * v3);
+}
+
+vec3 reflected_quad(YardstickPoint point, ArealightPolygonLight light, vec3 center, bool front) {
+    ArealightQuad quad = arealight_light_quad(light);
+    // Seen from the back, the outline runs the other way
+    vec3 v0 = center + quad.v0;
+    vec3 v1 = center + (front ? quad.v1 : quad.v3);
+    vec3 v2 = center + quad.v2;
+    vec3 v3 = center + (front ? quad.v3 : quad.v1);
+    return point.diffuse_albedo * quad_form_factor(point.diffuse_space, v0, v1, v2, v3)
+         + point.glossy_albedo * quad_form_factor(point.glossy_space, v0, v1, v2, v3);
+}
+
+// Any outline, by one loop over its vertices for both lobes.
+vec3 reflected_outline(YardstickPoint point, ArealightPolygonLight light, vec3 center, bool front) {
+    uint end = light.first_vertex + light.vertex_count;
+    vec3 last = center + arealight_bridge_vertex(end - 1u);
+    vec3 diffuse_from = normalize(point.diffuse_space * last);
+    vec3 glossy_from = normalize(point.glossy_space * last);
+    vec3 diffuse = vec3(0.0);
+    vec3 glossy = vec3(0.0);
+    for (uint index = light.first_vertex; index < end; index++) {
+        vec3 vertex = center + arealight_bridge_vertex(index);
+        vec3 diffuse_to = normalize(point.diffuse_space * vertex);
+        vec3 glossy_to = normalize(point.glossy_space * vertex);
+        diffuse += yardstick_edge(diffuse_from, diffuse_to);
+        glossy += yardstick_edge(glossy_from, glossy_to);
+        diffuse_from = diffuse_to;
+        glossy_from = glossy_to;
     }
-    yardstick = quad;
-    return yardstick_textbook(4u);
+    float side = front ? 1.0 : -1.0;
+    return point.diffuse_albedo * yardstick_unclipped(METHOD, side * diffuse)
+         + point.glossy_albedo * yardstick_unclipped(METHOD, side * glossy);
 }
 
-// As yardstick_practice_quad, of any outline, seen from the front or from the back.
-float practice_outline(ArealightLobe lobe, ArealightPolygonLight light, vec3 center, bool front) {
-    uint index = light.first_vertex;
-    uint end = index + light.vertex_count;
-    vec3 a = normalize(lobe.space.to_cosine * (center + arealight_bridge_vertex(end - 1u)));
-    vec3 sum = vec3(0.0);
-    do {
-        vec3 b = normalize(lobe.space.to_cosine * (center + arealight_bridge_vertex(index)));
-        sum += yardstick_practice_edge(a, b);
-        a = b;
-    } while (++index < end);
-    float l = length(sum);
-    return max((l * l + (front ? -sum.z : sum.z)) / (l + 1.0), 0.0);
+// What a light adds.
+vec3 radiance_of(YardstickPoint point, uint index, bool is_quad) {
+    ArealightPolygonLight light = load_light(index);
+    vec3 center = light.center - point.position;
+    bool front = dot(light.area, center) < 0.0;
+    if (!front && !(HAS_TWO_SIDED && light.two_sided)) {
+        return vec3(0.0);
+    }
+    return light.radiance * (is_quad ? reflected_quad(point, light, center, front)
+                                     : reflected_outline(point, light, center, front));
 }
-
-const bool HAS_OTHERS = (EFFECTS & AREALIGHT_EFFECT_POLYGON) != 0u;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -74,40 +113,15 @@ void main() {
     vec4 position = texelFetch(g_position, pixel, 0);
     vec3 radiance = vec3(0.0);
     if (position.w != 0.0) {
-        ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera, EFFECTS);
-        ArealightQuality quality = ArealightQuality(AREALIGHT_FORM_FACTOR_EXACT, AREALIGHT_HORIZON_COSINE,
-                                                    AREALIGHT_FRESNEL_BY_F0, AREALIGHT_LOBES_TABLE,
-                                                    AREALIGHT_FOOTPRINT_ROUND);
-        ArealightShadingPoint point = arealight_shading_point(surface, EFFECTS, quality);
+        YardstickPoint point = yardstick_point(pixel, position.xyz);
         uint quad_count = HAS_OTHERS ? constants.quad_count : constants.light_count;
-        uint index = 0u;
-        if (quad_count != 0u) {
-            do {
-                ArealightPolygonLight light = load_light(index);
-                vec3 center = light.center - point.position;
-                bool front = dot(light.area, center) < 0.0;
-                if (front || ((EFFECTS & AREALIGHT_EFFECT_TWO_SIDED) != 0u && light.two_sided)) {
-                    // Seen from the back, the outline runs the other way
-                    ArealightQuad quad = arealight_light_quad(light);
-                    quad = ArealightQuad(center + quad.v0, center + (front ? quad.v1 : quad.v3), center + quad.v2,
-                                         center + (front ? quad.v3 : quad.v1));
-                    radiance += light.radiance * (point.glossy.albedo * seen_by(point.glossy, quad)
-                                                  + point.diffuse.albedo * seen_by(point.diffuse, quad));
-                }
-                index++;
-            } while (index < quad_count);
+        for (uint index = 0u; index < quad_count; index++) {
+            radiance += radiance_of(point, index, true);
         }
-        if (HAS_OTHERS && index < constants.light_count) {
-            do {
-                ArealightPolygonLight light = load_light(index);
-                vec3 center = light.center - point.position;
-                bool front = dot(light.area, center) < 0.0;
-                if (front || light.two_sided) {
-                    radiance += light.radiance * (point.glossy.albedo * practice_outline(point.glossy, light, center, front)
-                                                  + point.diffuse.albedo * practice_outline(point.diffuse, light, center, front));
-                }
-                index++;
-            } while (index < constants.light_count);
+        if (HAS_OTHERS) {
+            for (uint index = quad_count; index < constants.light_count; index++) {
+                radiance += radiance_of(point, index, false);
+            }
         }
     }
     imageStore(radiance_image, pixel, vec4(radiance, position.w != 0.0 ? 1.0 : 0.0));

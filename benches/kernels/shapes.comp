@@ -83,7 +83,7 @@ float sphere_horizon(ShapeArguments given) {
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
     float whole = area * sqrt(reciprocals.x) * sqrt(reciprocals.y) * inversesqrt(dot(axis, axis));
     float cosine = normalize(ellipse.frame * axis).z;
-    return whole > 0.0 ? published_horizon(min(whole, 1.0), cosine) : 0.0;
+    return whole > 0.0 ? clipped_sphere(min(whole, 1.0), cosine) : 0.0;
 }
 
 // An inscribed polygon of CHOICE vertices, grown until it has the ellipse's area.

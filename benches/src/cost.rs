@@ -1,8 +1,9 @@
 //! What the form factor of a quad costs on a device, by the library's rungs and by the yardsticks.
 //!
 //! The machines that this runs on are shared: every method is run in turn, round after round, and read as a ratio to
-//! the practice in the same run.
+//! a yardstick in the same round. All read the same quads, once each.
 
+use crate::school::School;
 use arealight::FormFactor;
 use arealight::kernels::{Access, Binding, Kernel};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
@@ -48,18 +49,19 @@ const fn rung(name: &'static str, shape: u32, rung: FormFactor) -> CostMethod {
     CostMethod { name, promise, id: shape | rung as u32 }
 }
 
-const fn yardstick(name: &'static str, id: u32) -> CostMethod {
-    CostMethod { name, promise: "none", id }
+const fn yardstick(school: School) -> CostMethod {
+    CostMethod { name: school.name(), promise: "none", id: YARDSTICK + school as u32 }
 }
 
-/// The yardstick that the others are ratios to.
-pub const PRACTICE: &str = "practice";
+/// The first of the kernel's yardsticks, `METHOD_YARDSTICK`.
+const YARDSTICK: u32 = 17;
 
 /// Every method, the yardstick of the ratios first.
 pub static METHODS: &[CostMethod] = &[
-    yardstick(PRACTICE, 17),
-    yardstick("textbook", 18),
-    yardstick("an empty loop", 16),
+    yardstick(School::Clipless),
+    yardstick(School::SphereHorizon),
+    yardstick(School::ClipByCases),
+    CostMethod { name: "an empty loop", promise: "none", id: 16 },
     rung("quad, exact", QUAD, FormFactor::Exact),
     rung("quad, difference", QUAD, FormFactor::Difference),
     rung("any outline, exact", WALK, FormFactor::Exact),
@@ -75,7 +77,7 @@ pub struct Cost {
     pub method: &'static str,
     /// Nanoseconds a form factor: the median over the rounds. Only ratios mean something on a shared machine.
     pub nanoseconds: f64,
-    /// The median over the rounds of the ratio to the practice in the same round.
+    /// The median over the rounds of the ratio to the first method, [`School::Clipless`], in the same round.
     pub ratio: f64,
     /// The quartiles of that ratio.
     pub quartiles: [f64; 2],
@@ -180,7 +182,7 @@ fn quads() -> Vec<[f32; 4]> {
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[Cost]) -> String {
     let mut text = String::from(
-        "| form factor of a quad | error promised | time, practice = 1 | quartiles |\n|---|---|---|---|\n",
+        "| form factor of a quad | error promised | time, clipless = 1 | quartiles |\n|---|---|---|---|\n",
     );
     for (cost, method) in costs.iter().zip(METHODS) {
         let [low, high] = cost.quartiles;

@@ -1,5 +1,5 @@
 //! What accuracy costs in time: every rung of the quality ladder on a device, its error against the integral of the true BRDF and
-//! its time, beside Monte Carlo, the textbook and the practice.
+//! its time, beside Monte Carlo and what others ship.
 
 mod compare;
 mod errors;
@@ -8,17 +8,19 @@ pub(crate) mod methods;
 mod names;
 mod pictures;
 mod points;
+mod reference;
 mod scaling;
 mod text;
 mod timing;
 
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
-pub use methods::{DEFAULT, PRACTICE};
+pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
 pub use names::{RungNames, UnknownRung};
 pub use pictures::{Picture, Pictures};
+pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
-pub use text::{error_cells, number, percent};
+pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
 use crate::instructions::Instructions;

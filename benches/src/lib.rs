@@ -2,14 +2,16 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`method`] | the ways to compute a form factor: every rung of the library, and two yardsticks |
+//! | [`school`] | the yardsticks: how others compute a form factor |
+//! | [`published`] | a table of the quality that others ship |
+//! | [`method`] | the ways to compute a form factor: every quality level of the library, and the yardsticks |
 //! | [`effects`] | the time of the shade kernel by effect, and of what is stripped by hand |
 //! | [`instructions`] | what each effect and rung adds in instructions |
-//! | [`cost`] | the time of each rung of the form factor, as a ratio to the practice |
+//! | [`cost`] | the time of each rung of the form factor, as a ratio to a yardstick's |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
-//! | [`tiles`] | the time of frames by tiles, beside the practice and the same shading without |
+//! | [`tiles`] | the time of frames by tiles, beside a yardstick and the same shading without |
 //! | [`kernel`] | the kernel that computes form factors of hard cases by one of them |
 //! | [`stability`] | every family of hard cases through every method, judged |
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
@@ -32,6 +34,7 @@ pub mod method;
 pub mod pictures;
 pub mod published;
 pub mod report;
+pub mod school;
 pub mod shape_cost;
 pub mod shape_stability;
 pub mod shapes;

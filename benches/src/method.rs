@@ -1,6 +1,7 @@
 //! The ways to compute a form factor that are compared: the library's rungs by each of its ways in, and the
 //! yardsticks, which are what others do.
 
+use crate::school::School;
 use arealight::FormFactor;
 use arealight_oracle::hard::HardCase;
 use arealight_oracle::hard::promise::Promises;
@@ -30,6 +31,9 @@ enum Shape {
     Quad = 8,
 }
 
+/// The first of the kernel's yardsticks, `METHOD_YARDSTICK`.
+const YARDSTICK: u32 = 32;
+
 /// What each rung promises.
 pub const fn promises(rung: FormFactor) -> Promises {
     match rung {
@@ -55,6 +59,11 @@ impl Method {
         Self { name, description, promises, is_yardstick: true, quads_only: false, id }
     }
 
+    const fn school(name: &'static str, school: School) -> Self {
+        let quads_only = matches!(school, School::ClipByCases);
+        Self { quads_only, ..Self::yardstick(name, school.description(), YARDSTICK + school as u32) }
+    }
+
     /// The method of that name.
     pub fn find(name: &str) -> Option<&'static Self> {
         METHODS.iter().find(|method| method.name == name)
@@ -75,6 +84,12 @@ pub static METHODS: &[Method] = &[
     Method::rung("walk-difference", "any outline, difference form", Shape::Walk, FormFactor::Difference),
     Method::rung("quad-exact", "convex, exact", Shape::Quad, FormFactor::Exact),
     Method::rung("quad-difference", "convex, difference form", Shape::Quad, FormFactor::Difference),
-    Method::yardstick("textbook", "clipped, acos(clamp(x, -.9999, .9999)), normalised cross products", 32),
-    Method::yardstick("practice", "rational theta / sin(theta), guarded; a sphere's horizon, no clip", 33),
+    Method::school("sphere-horizon", School::SphereHorizon),
+    Method::school("clipless", School::Clipless),
+    Method::school("clip-by-cases", School::ClipByCases),
+    Method::yardstick(
+        "clip-and-acos",
+        "any outline clipped; acos(clamp(x, -.9999, .9999)), normalised cross products (the first listing of Heitz et al. 2016)",
+        35,
+    ),
 ];

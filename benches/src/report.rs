@@ -9,13 +9,22 @@ use std::fmt::Write as _;
 const HEADS: [&str; 6] = ["family", "error", "backward", "small light", "not finite", "verdict"];
 
 /// The methods that stand side by side in the document's first table.
-const OVERVIEW: [&str; 5] = ["walk-exact", "quad-exact", "quad-difference", "textbook", "practice"];
+const OVERVIEW: [&str; 7] = [
+    "walk-exact",
+    "quad-exact",
+    "quad-difference",
+    "sphere-horizon",
+    "clipless",
+    "clip-by-cases",
+    "clip-and-acos",
+];
 
 /// The document's words on the first table.
 const PROMISES: &str = "\
-Each family's polygons go through every rung of the form factor, and through two yardsticks: the textbook's formula (clip, \
-normalise, arc cosine) and the practice of real-time engines (nothing is clipped, a rational function, a sphere's \
-horizon). The bits of each result are judged against a reference of 106 bits:
+Each family's polygons go through every quality level of the form factor, and through what others ship: sphere-horizon \
+(EEVEE, LearnOpenGL: no clip, a clipped sphere of the same form factor), clipless (three.js, HDRP's default: no clip, a rational \
+function in its place), clip-by-cases (Bevy, Godot, ltc_code: quads clipped by 16 cases); and clip-and-acos, which \
+clips any outline and takes arc cosines, as the first listing of Heitz et al. 2016. The bits of each result are judged against a reference of 106 bits:
 
 1. A finite number in [0, 1]; exactly 0 where a vertex is NaN or infinite.
 2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most 4 x 2^-24 of their distance.
@@ -106,7 +115,8 @@ impl Stability {
             0 => "keeps every promise".to_owned(),
             _ => format!("breaks promises in {broken} of {} families", rows.len()),
         };
-        let whose = if method.is_yardstick { " (a yardstick, held to the best rung's promises)" } else { "" };
+        let whose =
+            if method.is_yardstick { " (a yardstick, held to the best level's promises)" } else { "" };
         format!("{told}{whose}; {polygons} polygons, {not_finite} results not finite")
     }
 

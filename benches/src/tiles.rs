@@ -4,7 +4,8 @@
 //! Every method runs in turn, round after round, and is read as a ratio to the yardstick in the same round.
 
 use crate::ladder::Spread;
-use crate::ladder::methods::{LOBES, SHADE_YARDSTICK, Yardstick};
+use crate::ladder::methods::{LOBES, SHADE_YARDSTICK};
+use crate::school::School;
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
 use arealight::kernels::{Kernel, SHADE};
@@ -21,8 +22,8 @@ const METHODS: usize = 3;
 /// What a frame is held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {
-    /// Polygons without images as others shade them: nothing clipped.
-    Practice,
+    /// Polygons without images as [`School::Clipless`] shades them, with our table and light reads.
+    Clipless,
     /// The shade kernel over the same shapes without the images that they show.
     Plain,
 }
@@ -31,7 +32,7 @@ impl Baseline {
     /// A word for the head of a table.
     fn name(self) -> &'static str {
         match self {
-            Self::Practice => "practice",
+            Self::Clipless => School::Clipless.name(),
             Self::Plain => "no image",
         }
     }
@@ -40,9 +41,9 @@ impl Baseline {
     fn kernel(self, options: ShadeOptions) -> (&'static Kernel, Vec<(u32, u32)>) {
         let shade = &SHADE;
         match self {
-            Self::Practice => {
-                let practice = Yardstick::Practice as u32;
-                (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, practice)])
+            Self::Clipless => {
+                let school = School::Clipless as u32;
+                (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, school)])
             }
             Self::Plain => {
                 let effects = options.effects - Effects::TEXTURED_ELLIPSE;
@@ -179,7 +180,7 @@ pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLi
 
 /// Frames as a Markdown table, all of them held against the same.
 pub fn markdown(frames: &[TiledFrame]) -> String {
-    let baseline = frames.first().map_or(Baseline::Practice, |frame| frame.baseline);
+    let baseline = frames.first().map_or(Baseline::Clipless, |frame| frame.baseline);
     let time = format!("{}, ms", baseline.name());
     let heads = [
         "frame",

@@ -3,6 +3,7 @@
 use super::methods::{Method, Workload};
 use super::points::{Point, lights, points};
 use crate::footprints;
+use crate::school::YardstickTable;
 use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality};
 use arealight_fit::{Aim, GgxBrdf, fit_at};
 use arealight_oracle::cubature::Settings;
@@ -67,8 +68,9 @@ pub struct SplitErrors {
     pub all: Errors,
     /// What the lobes cannot follow: those fitted to just this roughness and view, integrated in float64, against the truth.
     pub fit: f64,
-    /// What the table's nodes, or the formula, lose between them: integrals of their lobes against those of the fit.
-    pub table: f64,
+    /// What the table's nodes, or the formula, lose between them: integrals of their lobes against those of the fit. None of a
+    /// yardstick with a table of its own, to which no lobes are fitted point by point: then `fit` holds both.
+    pub table: Option<f64>,
     /// What the device's integral loses: its answer against the table's lobes integrated in float64.
     pub integral: f64,
 }
@@ -83,6 +85,8 @@ pub struct Known {
     pub truths: Vec<DVec3>,
     relative: Vec<Vec<RelativeLight>>,
     fits: Vec<LightTable>,
+    /// The yardsticks' table.
+    published: LightTable,
     /// What was integrated of the lobes so far.
     integrals: Vec<(Integrand, Vec<DVec3>)>,
 }
@@ -92,8 +96,18 @@ pub struct Known {
 struct Integrand {
     both_horizons: bool,
     fresnel: Fresnel,
-    /// None: those fitted to each point.
-    lobes: Option<Lobes>,
+    lobes: LobesFrom,
+}
+
+/// Where a lobe comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum LobesFrom {
+    /// Fitted to each point.
+    Fit,
+    /// Our table, or the formula.
+    Ours(Lobes),
+    /// The yardsticks' table.
+    Published,
 }
 
 /// Estimates of 1e-4 of the integral: errors of about 1e-6, a hundredth of the smallest that is looked for.
@@ -134,7 +148,8 @@ impl Known {
             (integral, fit)
         });
         let (truths, fits) = known.unzip();
-        Self { points, lights, truths, relative, fits, integrals: vec![] }
+        let published = crate::published::table();
+        Self { points, lights, truths, relative, fits, published, integrals: vec![] }
     }
 
     /// Judges what a method made of the points.
@@ -143,13 +158,19 @@ impl Known {
             Method::Rung { quality, .. } => quality,
             Method::Yardstick { .. } | Method::Samples { .. } => Quality::default(),
         };
+        let has_published =
+            matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let integrand = Integrand {
             both_horizons: quality.horizon == Horizon::Both,
             fresnel: quality.fresnel,
-            lobes: Some(quality.lobes),
+            lobes: if has_published { LobesFrom::Published } else { LobesFrom::Ours(quality.lobes) },
         };
         let of_table = self.integrals(integrand, table).to_vec();
-        let of_fit = self.integrals(Integrand { lobes: None, ..integrand }, table).to_vec();
+        let of_fit = if has_published {
+            of_table.clone()
+        } else {
+            self.integrals(Integrand { lobes: LobesFrom::Fit, ..integrand }, table).to_vec()
+        };
         let truths = &self.truths;
 
         let all = Errors::of(found.iter().zip(truths));
@@ -164,7 +185,7 @@ impl Known {
         SplitErrors {
             all,
             fit: part(&of_fit, truths),
-            table: part(&of_table, &of_fit),
+            table: (!has_published).then(|| part(&of_table, &of_fit)),
             integral: part(found, &of_table),
         }
     }
@@ -183,12 +204,16 @@ impl Known {
     fn integrate(&self, of: Integrand, table: &LightTable) -> Vec<DVec3> {
         let Integrand { both_horizons, fresnel, lobes } = of;
         let horizon = if both_horizons { Horizon::Both } else { Horizon::Cosine };
-        let quality =
-            Quality { horizon, fresnel, lobes: lobes.unwrap_or(Lobes::Table), ..Quality::default() };
+        let kind = if let LobesFrom::Ours(kind) = lobes { kind } else { Lobes::Table };
+        let quality = Quality { horizon, fresnel, lobes: kind, ..Quality::default() };
         let points = self.points.par_iter().zip(&self.relative).zip(&self.fits);
         let integral = |((point, lights), fit): ((&Point, &Vec<RelativeLight>), &LightTable)| {
             let (surface, normal, view) = (point.surface(), point.normal.as_dvec3(), point.view());
-            let table = if lobes.is_none() { fit } else { table };
+            let table = match lobes {
+                LobesFrom::Fit => fit,
+                LobesFrom::Ours(_) => table,
+                LobesFrom::Published => &self.published,
+            };
             lights.iter().map(|light| ltc_on(quality, table, &surface, normal, view, light)).sum()
         };
         points.map(integral).collect()
@@ -230,11 +255,15 @@ mod tests {
         let mut known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
         let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;
         // The table's lobes in float64: all that is left is the fit's and the table's
-        let of_table = Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: Some(Lobes::Table) };
+        let of_table =
+            Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: LobesFrom::Ours(Lobes::Table) };
         let of_table = known.integrate(of_table, &table);
         let errors = known.judge(exact, &table, &of_table);
         assert_eq!(errors.integral, 0.0);
-        assert!(errors.fit > 1e-3 && errors.fit < 0.1 && errors.table < 0.5 * errors.fit, "{errors:?}");
+        assert!(
+            errors.fit > 1e-3 && errors.fit < 0.1 && errors.table.unwrap() < 0.5 * errors.fit,
+            "{errors:?}"
+        );
         // Twice the light is an error of the integral alone
         let twice: Vec<DVec3> = of_table.iter().map(|radiance| *radiance * 2.0).collect();
         let wrong = known.judge(exact, &table, &twice);

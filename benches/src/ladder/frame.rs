@@ -2,14 +2,15 @@
 
 use super::methods::{Method, SHADE_YARDSTICK};
 use super::points::Point;
+use crate::school::YardstickTable;
 use crate::textures::{is_software, timed};
 use arealight::gpu::{ReferenceConstants, ShadeConstants};
 use arealight::kernels::{Kernel, REFERENCE, SHADE};
 use arealight::plan::{ShadeOptions, ShadeVariant, shade_variant_specialization};
 use arealight::{LightSampling, PackedLights, PolygonLight};
-use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass};
+use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass, UploadedTable};
 use arealight_host::{Buffer, Usage};
-use arealight_vk::Resource;
+use arealight_vk::{Resource, TableFormat};
 use glam::{DVec3, Mat4, Vec3};
 use half::f16;
 
@@ -63,6 +64,8 @@ pub struct Frame<'a> {
     vertices: Buffer,
     sampling: Buffer,
     triangles: Buffer,
+    /// The table of yardsticks that don't have the engine's.
+    published: UploadedTable,
 }
 
 /// A method ready to run on a frame.
@@ -95,6 +98,7 @@ impl<'a> Frame<'a> {
             vertices: host.storage_buffer("light vertices", &packed.vertices)?,
             sampling: host.storage_buffer("light sampling", &sampling.lights)?,
             triangles: host.storage_buffer("light triangles", &sampling.triangles)?,
+            published: engine.upload_table(&crate::published::table(), TableFormat::default())?,
         };
         frame.clear()?;
         Ok(frame)
@@ -123,8 +127,8 @@ impl<'a> Frame<'a> {
                 let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
                 (&SHADE, shade_variant_specialization(options, variant))
             }
-            Method::Yardstick { effects, which } => {
-                (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, which as u32)])
+            Method::Yardstick { effects, school, table: _ } => {
+                (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, school as u32)])
             }
             Method::Samples { .. } => (&REFERENCE, vec![]),
         }
@@ -134,7 +138,7 @@ impl<'a> Frame<'a> {
     pub fn ready(&self, method: Method) -> Result<Ready, EngineError> {
         let (kernel, specialization) = self.pipeline(method);
         let resources: Vec<Resource> =
-            kernel.bindings.iter().map(|binding| self.resource(binding.name)).collect();
+            kernel.bindings.iter().map(|binding| self.resource(binding.name, method)).collect();
         let pass = self.engine.passes().pass(kernel, &specialization)?;
         // SAFETY: The frame and the engine outlive what is made of them here, and submissions are waited for.
         let set = unsafe { self.engine.passes().bind(&pass, &resources) }?;
@@ -142,10 +146,13 @@ impl<'a> Frame<'a> {
     }
 
     /// What a kernel's binding is for. Shapes, of which there are none, have any buffer.
-    fn resource(&self, binding: &str) -> Resource {
+    fn resource(&self, binding: &str, method: Method) -> Resource {
+        let has_published =
+            matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
         let [position, normal, base_color, specular] = self.g_buffer.sampled();
         match binding {
+            "table_image" if has_published => self.published.resource(),
             "table_image" => self.engine.table(),
             "light_textures" => self.engine.light_textures(),
             "light_vertices" => buffer(&self.vertices),

@@ -1,24 +1,15 @@
 //! What is measured: the rungs one by one, the yardsticks, and Monte Carlo.
 
 use super::points::LightKind;
+use crate::school::{School, YardstickTable};
 use arealight::kernels::{Kernel, SHADE};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 
-/// The shade kernel as others write it.
+/// The shade kernel with the form factors that others ship.
 pub static SHADE_YARDSTICK: Kernel = Kernel {
     constants: &[0, 1],
     ..SHADE.like("shade_yardstick", include_bytes!("../../spirv/shade_yardstick.spv"))
 };
-
-/// Whose form factor a yardstick has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Yardstick {
-    /// That of real-time engines: nothing is clipped, a rational function, a sphere's horizon.
-    Practice = 0,
-    /// The textbook's: clip, normalise, arc cosine.
-    Textbook = 1,
-}
 
 /// A way to shade a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,8 +25,10 @@ pub enum Method {
     Yardstick {
         /// What the pipeline is specialised for.
         effects: Effects,
-        /// Whose.
-        which: Yardstick,
+        /// Whose form factor.
+        school: School,
+        /// With which table.
+        table: YardstickTable,
     },
     /// Monte Carlo.
     Samples {
@@ -76,8 +69,13 @@ pub const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
 /// The rung that every host starts from.
 pub const DEFAULT: &str = "exact";
 
-/// The yardstick of the ratios.
-pub const PRACTICE: &str = "practice";
+/// The yardstick of the ratios: the school that is used most, with our table.
+pub const BASELINE: School = School::Clipless;
+
+/// The names of the yardsticks with a table of published quality.
+pub const CLIPLESS_PUBLISHED: &str = "clipless, published quality";
+/// As [`CLIPLESS_PUBLISHED`].
+pub const CASES_PUBLISHED: &str = "clip by cases, published quality";
 
 /// The name of the lights that show images.
 pub const TEXTURED: &str = "textured";
@@ -102,17 +100,30 @@ pub fn workloads() -> Vec<Workload> {
         method: Method::Rung { effects: LOBES | effects, quality },
     };
     let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
-    let yardstick = |name, description, which| Named {
+    let yardstick = |name, description, school, table| Named {
         name,
         description,
-        method: Method::Yardstick { effects: LOBES, which },
+        method: Method::Yardstick { effects: LOBES, school, table },
     };
-    let practice =
-        || yardstick(PRACTICE, "what engines ship: no clipping, a sphere's horizon", Yardstick::Practice);
+    let with_our_table =
+        |school: School| yardstick(school.name(), school.description(), school, YardstickTable::Ours);
 
     let ladder = vec![
-        practice(),
-        yardstick("textbook", "clip, normalise, arc cosines", Yardstick::Textbook),
+        with_our_table(BASELINE),
+        with_our_table(School::SphereHorizon),
+        with_our_table(School::ClipByCases),
+        yardstick(
+            CLIPLESS_PUBLISHED,
+            "clipless, with a table of one matrix as good as the published one (three.js, HDRP's default)",
+            School::Clipless,
+            YardstickTable::PublishedQuality,
+        ),
+        yardstick(
+            CASES_PUBLISHED,
+            "clip by cases, with a table of one matrix as good as the published one (Bevy, Godot, ltc_code)",
+            School::ClipByCases,
+            YardstickTable::PublishedQuality,
+        ),
         plain(DEFAULT, "the default: clipped in cosine space", EXACT),
         plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
         plain("split", "a lobe each for F0 and Schlick's part", Quality { fresnel: Fresnel::Split, ..EXACT }),
@@ -130,7 +141,7 @@ pub fn workloads() -> Vec<Workload> {
         ),
     ];
     let far = vec![
-        practice(),
+        with_our_table(BASELINE),
         plain(DEFAULT, "absolute precision", EXACT),
         plain("difference", "relative precision", DIFFERENCE),
     ];

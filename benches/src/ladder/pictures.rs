@@ -1,9 +1,10 @@
 //! A scene through some of the methods, to be seen.
 
 use super::LONG;
-use super::errors::Errors;
 use super::frame::Frame;
-use super::methods::{Method, Yardstick};
+use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, Method};
+use super::reference::{PictureError, Reference};
+use crate::school::{School, YardstickTable};
 use crate::textures::is_software;
 use arealight::{Effects, FormFactor, Fresnel, Horizon, LightTable, Quality};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
@@ -18,8 +19,8 @@ pub struct Picture {
     pub name: &'static str,
     /// What surfaces reflect, row after row from the top.
     pub reflected: Vec<DVec3>,
-    /// Against the reference.
-    pub errors: Errors,
+    /// Against the reference, where no light is seen.
+    pub error: PictureError,
     /// Milliseconds of the frame.
     pub milliseconds: f64,
 }
@@ -35,9 +36,9 @@ pub struct Pictures {
     pub size: [u32; 2],
     /// What the camera sees of the lights.
     pub emitted: Vec<DVec3>,
-    /// Monte Carlo of many samples.
+    /// Monte Carlo of many samples: the mean of two independent halves.
     pub reference: Vec<DVec3>,
-    /// How many.
+    /// How many samples, in both halves.
     pub samples: u32,
     /// Each method's.
     pub shown: Vec<Picture>,
@@ -46,19 +47,22 @@ pub struct Pictures {
 const SIZE: [u32; 2] = [320, 180];
 
 /// How many long steps of progress it tells of.
-pub const STEPS: usize = 8;
+pub const STEPS: usize = 10;
 
 /// Runs a frame so often, for its time.
 const REPEATS: usize = 5;
 
-/// What is shown, but for what the scene's lights are too much for.
+/// What is shown: yardsticks as they are shipped, with their table, but for scenes that are too much for them; quality levels; and
+/// Monte Carlo.
 fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let effects = scene.effects();
     let rung = |quality| Method::Rung { effects, quality };
+    let yardstick = |school| Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     let exact = Quality::default();
     let both = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..exact };
     let mut methods = vec![
-        ("practice", Method::Yardstick { effects, which: Yardstick::Practice }),
+        (CLIPLESS_PUBLISHED, yardstick(School::Clipless)),
+        (CASES_PUBLISHED, yardstick(School::ClipByCases)),
         ("exact", rung(exact)),
         ("split", rung(Quality { fresnel: Fresnel::Split, ..exact })),
         ("both horizons", rung(Quality { horizon: Horizon::Both, ..exact })),
@@ -68,19 +72,9 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     ];
     let beyond = Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED;
     if effects.intersects(beyond) {
-        methods.remove(0);
+        methods.retain(|(_, method)| !matches!(method, Method::Yardstick { .. }));
     }
     methods
-}
-
-/// Answers beside the reference's where no light is seen: on a light's own surface its form factor jumps.
-fn pairs<'a>(
-    emitted: &'a [DVec3],
-    found: &'a [DVec3],
-    reference: &'a [DVec3],
-) -> impl Iterator<Item = (&'a DVec3, &'a DVec3)> {
-    let all = emitted.iter().zip(found.iter().zip(reference));
-    all.filter(|(emitted, _)| **emitted == DVec3::ZERO).map(|(_, pair)| pair)
 }
 
 /// Renders a scene by every method, and by `samples` of Monte Carlo.
@@ -105,18 +99,27 @@ pub fn make(
     let origin = Vec3::from(constants.camera);
     let frame = Frame::new(&engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
 
-    let reference = frame.shaded(&frame.ready(Method::Samples { count: samples })?, 1)?;
-    progress(LONG);
+    // Two independent halves, whose difference is the reference's noise
+    let ready = frame.ready(Method::Samples { count: samples.div_ceil(2) })?;
+    let half = |seed| {
+        let half = frame.shaded(&ready, seed)?;
+        progress(LONG);
+        Ok::<_, EngineError>(half)
+    };
+    let reference = Reference::new([half(1)?, half(3)?]);
+    // On a light's own surface its form factor jumps
+    let is_judged: Vec<bool> = emitted.iter().map(|emitted| *emitted == DVec3::ZERO).collect();
     let mut shown = vec![];
     for (name, method) in methods(scene) {
         let ready = frame.ready(method)?;
         let reflected = frame.shaded(&ready, 2)?;
-        let errors = Errors::of(pairs(&emitted, &reflected, &reference));
+        let error = reference.error_of(&reflected, &is_judged);
         let seconds = (0..REPEATS).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
         let milliseconds = 1e3 * crate::cost::quantile(&seconds, 0.5);
-        shown.push(Picture { name, reflected, errors, milliseconds });
+        shown.push(Picture { name, reflected, error, milliseconds });
         progress(LONG);
     }
     let (lights, scene) = (scene.lights.len(), scene.name.clone());
+    let (reference, samples) = (reference.mean(), 2 * samples.div_ceil(2));
     Ok(Pictures { scene, lights, size, emitted, reference, samples, shown })
 }

@@ -2,9 +2,10 @@
 
 use super::LONG;
 use super::frame::{Frame, g_buffer};
-use super::methods::{DEFAULT, LOBES, Method, PRACTICE, Yardstick};
+use super::methods::{BASELINE, DEFAULT, LOBES, Method};
 use super::points::{LightKind, lights, many_lights, points};
 use super::timing::Spread;
+use crate::school::YardstickTable;
 use crate::textures::is_software;
 use arealight::Quality;
 use arealight_engine::{Engine, EngineError};
@@ -45,7 +46,10 @@ const SIDE: usize = 8;
 
 fn methods() -> [(&'static str, Method); 3] {
     [
-        (PRACTICE, Method::Yardstick { effects: LOBES, which: Yardstick::Practice }),
+        (
+            BASELINE.name(),
+            Method::Yardstick { effects: LOBES, school: BASELINE, table: YardstickTable::Ours },
+        ),
         (DEFAULT, Method::Rung { effects: LOBES, quality: Quality::default() }),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
     ]

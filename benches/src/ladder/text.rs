@@ -1,6 +1,6 @@
 //! What was found, for people: as text for a terminal, as Markdown for the documents.
 
-use super::{Ladder, Row, SplitErrors, Spread};
+use super::{BASELINE, Ladder, Row, SplitErrors, Spread};
 use crate::table::Table;
 use std::fmt::Write as _;
 
@@ -9,7 +9,7 @@ pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
     [
         percent(errors.all.rmse),
         percent(errors.fit),
-        percent(errors.table),
+        errors.table.map_or_else(|| "-".to_owned(), percent),
         percent(errors.integral),
         percent(errors.all.p99),
         percent(errors.all.worst),
@@ -17,6 +17,10 @@ pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
         errors.all.not_finite.to_string(),
     ]
 }
+
+/// How lights are read by what is compared: ratios of time depend on it.
+pub const READS: &str =
+    "Yardsticks read each light once for both lobes, in the same loop over the same buffers as ours.";
 
 /// A table of those heads.
 fn table(heads: &[&str], rows: Vec<Vec<String>>) -> Table {
@@ -86,7 +90,7 @@ impl Ladder {
                 "bias",
                 "NaN",
                 "ms",
-                "time, practice = 1",
+                "time, clipless = 1",
                 "samples, equal error",
                 "equal time",
             ],
@@ -132,7 +136,8 @@ impl Ladder {
     fn scaling(&self, by_lights: bool) -> Table {
         let growths = if by_lights { &self.scaling.by_lights } else { &self.scaling.by_pixels };
         let mut heads = vec![if by_lights { "lights" } else { "pixels" }];
-        heads.extend(["practice, ms", "exact", "Monte Carlo, 1 sample"]);
+        let names: Vec<String> = growths.iter().map(|growth| format!("{}, ms", growth.method)).collect();
+        heads.extend(names.iter().map(String::as_str));
         let steps = growths.first().map_or(0, |growth| growth.steps.len());
         let row = |index: usize| {
             let count = growths.first().map_or(0, |growth| growth.steps[index].0);
@@ -151,8 +156,13 @@ impl Ladder {
         };
         format!(
             "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are of a frame of {} pixels \
-             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles.",
-            self.points, self.pixels, self.scaling.lights, self.rounds
+             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. Ratios are to {} \
+             on the same device. {READS}",
+            self.points,
+            self.pixels,
+            self.scaling.lights,
+            self.rounds,
+            BASELINE.name()
         )
     }
 

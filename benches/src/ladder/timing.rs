@@ -34,7 +34,7 @@ impl Spread {
 pub struct Time {
     /// Milliseconds a light and a megapixel, all in: the frame's time over its lights and pixels.
     pub milliseconds: Spread,
-    /// The ratio to the practice over quads, in the same round.
+    /// The ratio to the first yardstick over quads, in the same round.
     pub ratio: Spread,
     /// Of them, milliseconds that a megapixel costs with no light.
     pub fixed: f64,

@@ -40,7 +40,7 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::rc::Rc;
-use table::UploadedTable;
+pub use table::UploadedTable;
 
 /// A failure of the engine.
 #[derive(Debug, thiserror::Error)]
@@ -177,6 +177,18 @@ impl Engine {
     /// The light table, as a pass takes it.
     pub fn table(&self) -> Resource {
         self.table.resource()
+    }
+
+    /// Uploads another table, to be bound in place of the engine's.
+    ///
+    /// # Errors
+    /// As [`Engine::new`].
+    pub fn upload_table(
+        &self,
+        table: &LightTable,
+        format: TableFormat,
+    ) -> Result<UploadedTable, EngineError> {
+        UploadedTable::new(self.host(), self.context(), table, format)
     }
 
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.

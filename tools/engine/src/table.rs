@@ -20,7 +20,7 @@ struct Allocated {
 }
 
 impl UploadedTable {
-    pub fn new(
+    pub(crate) fn new(
         host: &Host,
         context: &Context,
         table: &LightTable,
@@ -47,12 +47,13 @@ impl UploadedTable {
         Ok(uploaded)
     }
 
+    /// The image, as a pass takes it.
     pub fn resource(&self) -> Resource {
         self.allocated.image.resource()
     }
 
     /// As an array image with a sampler: what is bound where no light has a texture.
-    pub fn filtered(&self) -> Resource {
+    pub(crate) fn filtered(&self) -> Resource {
         self.allocated.image.in_place_of_textures()
     }
 }

@@ -13,11 +13,11 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Measure what accuracy costs in time on a device: every rung of the quality ladder, its error and its time.
+/// Measure what accuracy costs in time on a device: every quality level and what others ship, with error and time.
 ///
 /// Errors are against the integral of the true BRDF in float64, at points about four lights, and split into those of the fit, of
 /// the table and of the integral. Times are of frames of the same points, every method in turn, beside Monte Carlo on the same
-/// device, the textbook, and the practice of real-time engines.
+/// device and yardsticks: the form factors that engines ship, by school, on the same work with the same reads.
 #[derive(clap::Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {

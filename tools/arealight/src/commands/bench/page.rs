@@ -5,7 +5,8 @@ mod images;
 
 use crate::failure::Failure;
 use arealight_benches::ladder::{
-    DEFAULT, Ladder, PRACTICE, Picture, Pictures, Row, error_cells, number, percent,
+    BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Ladder, Picture, PictureError, Pictures, READS,
+    Row, error_cells, number, percent,
 };
 use arealight_benches::svg::escape;
 use glam::DVec3;
@@ -22,8 +23,9 @@ pub fn page(found: &Ladder, pictures: &Pictures) -> Result<String, Failure> {
     let mut section = |title: &str, says: &str, content: &str| {
         let _ = write!(body, "<h2>{}</h2>\n<p>{says}</p>\n{content}\n", escape(title));
     };
+    section("What is compared", says_methods(), &methods(found));
     section("Error against time", &says_pareto(found), &charts::pareto(found));
-    section("Whose error it is", &says_parts(found), &charts::parts(found));
+    section("Where the error comes from", &says_parts(found), &charts::parts(found));
     section("What an effect adds", says_effects(), &charts::effects(found));
     section("More lights", &says_growth(found), &charts::growth(&found.scaling.by_lights, "lights"));
     section("More pixels", says_pixels(), &charts::growth(&found.scaling.by_pixels, "pixels"));
@@ -50,20 +52,24 @@ fn head(found: &Ladder) -> String {
     let default = find(found, DEFAULT);
     let mut facts = vec![fact(&found.device, "the device")];
     if let Some(row) = default {
-        facts.push(fact(&percent(row.errors.all.rmse), "error of the default rung, RMSE over mean"));
+        facts.push(fact(&percent(row.errors.all.rmse), "error of our default level, RMSE over mean"));
+        if let Some(theirs) = find(found, CLIPLESS_PUBLISHED) {
+            let label = "error of clipless (three.js) with a table of published quality";
+            facts.push(fact(&percent(theirs.errors.all.rmse), label));
+        }
         facts.push(fact(
             &format!("{} x", number(row.time.ratio.median)),
-            "its time; the practice of engines is 1",
+            "time of our default level over clipless with our table, on this device; both read lights alike",
         ));
         if let Some(samples) = row.samples {
-            facts.push(fact(&format!("{:.0}", samples.error), "samples of Monte Carlo that err as much"));
+            facts.push(fact(&format!("{:.0}", samples.error), "samples of Monte Carlo for the same error"));
         }
     }
     format!(
-        "<h1>What accuracy costs in time</h1>\n<p class=\"soft\">Area lights by linearly transformed cosines, rung by rung, on one \
-         device. Again: <code>{}</code> ({:.0} s).</p>\n<div class=\"facts\">{}</div>\n<p class=\"soft\">Errors are against the \
+        "<h1>What accuracy costs in time</h1>\n<p class=\"soft\">Area lights by linearly transformed cosines: our quality \
+         levels and what others ship, on one device. Again: <code>{}</code> ({:.0} s).</p>\n<div class=\"facts\">{}</div>\n<p class=\"soft\">Errors are against the \
          integral of the true BRDF in float64 at {} points, over its mean. Times are of frames of {} pixels under {} lights, every \
-         method in turn for {} rounds ({clock}); bars and ranges are quartiles.</p>\n",
+         method in turn for {} rounds ({clock}); ranges are quartiles. {READS}</p>\n",
         escape(&found.command),
         found.seconds,
         facts.concat(),
@@ -78,26 +84,48 @@ fn find<'a>(found: &'a Ladder, name: &str) -> Option<&'a Row> {
     found.rows_of(found.first()).find(|row| row.name == name)
 }
 
+fn says_methods() -> &'static str {
+    "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same G-buffer, lights, lobes and table, \
+         so that the form factor alone differs. Those of <em>published quality</em> look up a table with one matrix for every \
+         reflectance instead, whose errors are those of the table published with Heitz et al. 2016 within 10 %."
+}
+
+/// Every method of the first lights in a line.
+fn methods(found: &Ladder) -> String {
+    let mut html = String::from("<table class=\"methods\"><tr><th>method</th><th>what it is</th></tr>");
+    for row in found.rows_of(found.first()) {
+        let class = if row.rungs.is_some() { "ours" } else { "theirs" };
+        let _ = write!(
+            html,
+            "<tr><td><i class=\"{class}\"></i>{}</td><td>{}</td></tr>",
+            escape(&row.name),
+            escape(&row.description)
+        );
+    }
+    html + "</table>\n"
+}
+
 fn says_pareto(found: &Ladder) -> String {
     let mut says = "Lower is closer to the truth, further left is faster. ".to_owned();
-    if let (Some(practice), Some(default)) = (find(found, PRACTICE), find(found, DEFAULT)) {
+    let Some(default) = find(found, DEFAULT) else { return says };
+    for name in [BASELINE.name(), CLIPLESS_PUBLISHED, CASES_PUBLISHED] {
+        let Some(theirs) = find(found, name) else { continue };
         let _ = write!(
             says,
-            "For {} times the time of the practice the default rung errs {} times less. ",
-            number(default.time.ratio.median),
-            number(practice.errors.all.rmse / default.errors.all.rmse)
+            "Against <em>{}</em> our default level errs {} times less, in {} times its time. ",
+            escape(name),
+            number(theirs.errors.all.rmse / default.errors.all.rmse),
+            number(default.time.milliseconds.median / theirs.time.milliseconds.median)
         );
-        if let Some(samples) = default.samples {
-            let _ = write!(
-                says,
-                "Monte Carlo takes {} samples to err as little, and {} to take as long: a sample costs more than all of it. ",
-                number(samples.error),
-                number(samples.time)
-            );
-            if samples.time >= 1.0 {
-                says = says.replace(": a sample costs more than all of it", "");
-            }
-        }
+    }
+    if let Some(samples) = default.samples {
+        let _ =
+            write!(says, "Monte Carlo needs about {} samples for the same error; ", number(samples.error));
+        says += &if samples.time >= 1.0 {
+            format!("in the same time it takes {}. ", number(samples.time))
+        } else {
+            "one sample takes longer. ".to_owned()
+        };
     }
     says
 }
@@ -108,29 +136,32 @@ fn says_parts(found: &Ladder) -> String {
         ours.map(pick).fold(0.0, f64::max)
     };
     format!(
-        "The shape of the fitted lobe is what is left of the error (up to {}). The table adds at most {}, and the device's float32 \
-         integral at most {}: a finer one would show nowhere but on lights that are small.",
+        "Of our levels the shape of the fitted lobe is most of the error (up to {}). The table adds at most {}, and the device's float32 \
+         integral at most {}. A yardstick's integral error is what its horizon costs. With a table of published quality, fit and table \
+         are one part.",
         percent(largest(|row| row.errors.fit)),
-        percent(largest(|row| row.errors.table)),
+        percent(largest(|row| row.errors.table.unwrap_or(0.0))),
         percent(largest(|row| row.errors.integral))
     )
 }
 
 fn says_effects() -> &'static str {
-    "Blue: the time that an effect adds to the default rung by being in the set, on a frame in which no light calls for it; of a \
+    "Blue: the time that an effect adds to the default level by being in the set, on a frame in which no light calls for it; of a \
      lobe, which every pixel has, what it adds. Orange: lights that call for it, beside quads. What is not in the set costs nothing, \
      so blue is what a set that is too large costs. Instructions are of the shade kernel's SPIR-V, specialised and optimised."
 }
 
 fn says_growth(found: &Ladder) -> String {
     let growth = found.scaling.by_lights.iter().find(|growth| growth.method == DEFAULT);
-    let at = |lights: u32| {
-        let steps = growth.map(|growth| growth.steps.as_slice()).unwrap_or_default();
-        steps.iter().find(|(count, _)| *count == lights).map_or(f64::NAN, |(_, time)| time.median)
-    };
+    let steps = growth.map(|growth| growth.steps.as_slice()).unwrap_or_default();
+    let many = steps.iter().filter(|(count, _)| *count >= 30);
+    let each = many.map(|(count, time)| time.median / f64::from(*count));
+    let (least, most) =
+        each.fold((f64::INFINITY, 0.0_f64), |(low, high), time| (low.min(time), high.max(time)));
     format!(
-        "Every light costs the same: 1000 lights take {} times as long as 10 ({} pixels, no tiles).",
-        number(at(1000) / at(10)),
+        "Our default level takes {} to {} ms a light from 30 lights on ({} pixels, no tiles). {READS}",
+        number(least),
+        number(most),
         found.scaling.pixels
     )
 }
@@ -142,7 +173,9 @@ fn says_pixels() -> &'static str {
 fn says_pictures(pictures: &Pictures) -> String {
     format!(
         "The scene '{}' under {} lights, without shadows, as in every method. Below each picture its difference from the reference \
-         (Monte Carlo of {} samples a pixel, whose own noise is in it), over the reference's mean; lights themselves are left out.",
+         (Monte Carlo of {} samples a pixel, whose own noise shows in it), over the reference's mean; lights themselves are left out. \
+         The errors in the captions are free of that noise: the reference is two independent halves, and what these differ by is \
+         subtracted. In brackets is what the noise leaves uncertain, by 95 %. Yardsticks have a table of published quality.",
         escape(&pictures.scene),
         pictures.lights,
         pictures.samples
@@ -151,10 +184,16 @@ fn says_pictures(pictures: &Pictures) -> String {
 
 fn says_numbers(found: &Ladder) -> String {
     format!(
-        "Milliseconds are for a light and a megapixel. Equal samples: those of Monte Carlo with the same error, and with the same \
-         time. Fit, table and integral are the parts of the error, seed {}.",
+        "Milliseconds are for a light and a megapixel. Ratios of time are to clipless with our table, on this device. {READS} Equal samples: those \
+         of Monte Carlo with the same error, and with the same time. Fit, table and integral are the parts of the error, seed {}.",
         found.seed
     )
+}
+
+/// An error with what is uncertain of it.
+fn caption(error: &PictureError) -> String {
+    let [low, high] = error.range.map(percent);
+    format!("{} ({low} to {high})", percent(error.rmse))
 }
 
 /// The pictures with their maps.
@@ -177,7 +216,7 @@ fn show(pictures: &Pictures) -> Result<String, Failure> {
         whole(&pictures.reference)?,
         pictures.samples
     );
-    for Picture { name, reflected, errors, milliseconds } in &pictures.shown {
+    for Picture { name, reflected, error, milliseconds } in &pictures.shown {
         // A light itself is no matter of shading
         let shown = |radiance: &[DVec3]| -> Vec<DVec3> {
             let all = radiance.iter().zip(&pictures.emitted);
@@ -191,7 +230,7 @@ fn show(pictures: &Pictures) -> Result<String, Failure> {
             "<figure><img alt=\"{name}\" src=\"{}\"><img alt=\"difference of {name}\" src=\"{map}\"><figcaption><b>{name}</b><br>\
              error {}, {} ms</figcaption></figure>",
             whole(reflected)?,
-            percent(errors.rmse),
+            caption(error),
             number(*milliseconds)
         );
     }
@@ -207,7 +246,7 @@ fn tables(found: &Ladder) -> String {
         let _ = write!(
             html,
             "<details{open}><summary>{}: {}</summary><div class=\"table\"><table><tr><th>method</th><th>RMSE</th><th>fit</th>\
-             <th>table</th><th>integral</th><th>p99</th><th>worst</th><th>bias</th><th>NaN</th><th>ms</th><th>practice = 1</th>\
+             <th>table</th><th>integral</th><th>p99</th><th>worst</th><th>bias</th><th>NaN</th><th>ms</th><th>clipless = 1</th>\
              <th>quartiles</th><th>equal error</th><th>equal time</th></tr>",
             escape(name),
             escape(description)

@@ -1,18 +1,28 @@
 //! The charts.
 
-use arealight_benches::ladder::{Growth, Ladder, Row, number, percent};
+use arealight_benches::ladder::{
+    BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Growth, Ladder, Row, number, percent,
+};
 use arealight_benches::svg::{Axis, Drawing, Labels, grid, label, number_short};
 use std::fmt::Write as _;
 
 /// The colours of what is ours, of others', and of Monte Carlo, in words.
-const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>rungs of the ladder</span>\
-    <span><i style=\"background:var(--theirs)\"></i>yardsticks</span>\
+const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>our quality levels</span>\
+    <span><i style=\"background:var(--theirs)\"></i>yardsticks: what others ship</span>\
     <span><i style=\"background:var(--noise)\"></i>Monte Carlo, by samples a pixel</span></div>";
 
 /// What has a name in the chart of everything: the others are too near to each other there.
-const NAMED: [&str; 4] = ["practice", "textbook", "exact", "everything"];
+const NAMED: [&str; 7] = [
+    "clipless",
+    "sphere horizon",
+    "clip by cases",
+    CLIPLESS_PUBLISHED,
+    CASES_PUBLISHED,
+    DEFAULT,
+    "everything",
+];
 
-/// Error against time, both logarithmic: everything, and the rungs from nearer.
+/// Error against time, both logarithmic: everything, and our quality levels from nearer.
 pub fn pareto(found: &Ladder) -> String {
     let samples: Vec<(String, f64, f64)> = found
         .monte_carlo
@@ -20,17 +30,17 @@ pub fn pareto(found: &Ladder) -> String {
         .map(|samples| (samples.count.to_string(), samples.milliseconds, samples.errors.rmse))
         .collect();
     let rows: Vec<&Row> = found.rows_of(found.first()).collect();
-    let near: Vec<&Row> = rows.iter().copied().filter(|row| row.name != NAMED[0]).collect();
+    let near: Vec<&Row> = rows.iter().copied().filter(|row| row.rungs.is_some()).collect();
     error_against_time("Error against time of every method", &rows, &samples, &NAMED)
         + KEY
-        + "<p>The rungs alone, from nearer; the dotted line joins those that none is better than in both.</p>"
-        + &error_against_time("Error against time of the rungs", &near, &[], &[])
+        + "<p>Our quality levels from nearer; dotted: the Pareto front.</p>"
+        + &error_against_time("Error against time of our quality levels", &near, &[], &[])
 }
 
 /// A chart of rows, and of Monte Carlo's samples. Rows of some names have labels; with none given, all.
 fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)], named: &[&str]) -> String {
     let (width, height) = (860.0, 480.0);
-    let bounds = [64.0, 12.0, width - 8.0, height - 46.0];
+    let bounds = [72.0, 12.0, width - 8.0, height - 46.0];
     let place = |row: &Row| (row.time.milliseconds.median, row.errors.all.rmse);
     let noise = samples.iter().map(|(_, time, error)| (*time, *error));
     let all: Vec<(f64, f64)> = rows.iter().map(|row| place(row)).chain(noise.clone()).collect();
@@ -40,8 +50,8 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
     let mut drawing = Drawing::new(width, height, title);
     grid(&mut drawing, &x, &y, bounds, &|value| percent(value));
     let middle = [0.5 * (bounds[0] + bounds[2]), 0.5 * (bounds[1] + bounds[3])];
-    drawing.text("axis", "middle", [middle[0], height - 6.0], "milliseconds a light and a megapixel");
-    drawing.upwards([14.0, middle[1]], "error: RMSE over mean");
+    drawing.text("axis", "middle", [middle[0], height - 6.0], "ms per light per megapixel");
+    drawing.upwards([10.0, middle[1]], "error: RMSE over mean");
 
     // Dots first, that no label covers one
     let mut labels = Labels::default();
@@ -61,11 +71,12 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
         let class = if row.rungs.is_some() { "ours" } else { "theirs" };
         let [low, high] = row.time.ratio.quartiles.map(number);
         let title = format!(
-            "{} ({}): error {}, time {} ({low} to {high}) of the practice's",
+            "{} ({}): error {}, time {} ({low} to {high}) of {}'s",
             row.name,
             row.description,
             percent(row.errors.all.rmse),
-            number(row.time.ratio.median)
+            number(row.time.ratio.median),
+            BASELINE.name()
         );
         drawing.dot(class, *dot, &title);
         if named.is_empty() || named.contains(&row.name.as_str()) {
@@ -75,7 +86,7 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
     drawing.into_html()
 }
 
-/// The rungs that none is better than in both, from the fastest on.
+/// Our levels that none is better than in both, from the fastest on.
 fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut ours: Vec<(&Row, [f64; 2])> = rows.iter().copied().zip(dots.iter().copied()).collect();
     ours.retain(|(row, _)| row.rungs.is_some());
@@ -91,15 +102,20 @@ fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     ours.into_iter().map(|(_, dot)| dot).collect()
 }
 
-/// The parts of each rung's error, side by side.
+/// The parts of each method's error: a line a method, a dot a part.
 pub fn parts(found: &Ladder) -> String {
     let rows: Vec<&Row> = found.rows_of(found.first()).collect();
-    let (width, line, top) = (860.0, 40.0, 8.0);
+    let (width, line, top, left) = (860.0, 26.0, 8.0, 230.0);
     let height = top + line * rows.len() as f64 + 40.0;
-    let parts = |row: &Row| [row.errors.fit, row.errors.table, row.errors.integral];
+    let parts = |row: &Row| {
+        let classes = ["fit", "table-part", "integral"].into_iter();
+        let values = [Some(row.errors.fit), row.errors.table, Some(row.errors.integral)];
+        classes.zip(values).filter_map(|(class, value)| Some((class, value?)))
+    };
     // What is below a ten-millionth is drawn as that
-    let x =
-        Axis::over(rows.iter().flat_map(|row| parts(row)).map(|part| part.max(1e-7)), 130.0, width - 70.0);
+    let drawn = |value: f64| value.max(1e-7);
+    let values = rows.iter().flat_map(|row| parts(row)).map(|(_, value)| drawn(value));
+    let x = Axis::over(values, left, width - 16.0);
     let mut drawing =
         Drawing::new(width, height, "Fit, table and integral error of every method, logarithmic");
     for tick in x.ticks() {
@@ -108,15 +124,12 @@ pub fn parts(found: &Ladder) -> String {
         drawing.text("axis", "middle", [at, height - 20.0], &percent(tick));
     }
     for (index, row) in rows.iter().enumerate() {
-        let y = top + line * index as f64;
-        drawing.text("", "end", [122.0, y + 24.0], &row.name);
-        for (part, (value, class)) in
-            parts(row).into_iter().zip(["fit", "table-part", "integral"]).enumerate()
-        {
-            let y = y + 5.0 + 10.5 * part as f64;
-            let end = x.at(value.max(1e-7));
-            drawing.bar(class, [130.0, y], [end - 130.0, 9.0]);
-            drawing.text("axis", "start", [end + 5.0, y + 9.0], &percent(value));
+        let y = top + line * (index as f64 + 0.5);
+        drawing.text("", "end", [left - 10.0, y + 4.0], &row.name);
+        drawing.line("grid", [left, y], [width - 16.0, y]);
+        for (class, value) in parts(row) {
+            let name = class.trim_end_matches("-part");
+            drawing.dot(class, [x.at(drawn(value)), y], &format!("{}: {name} {}", row.name, percent(value)));
         }
     }
     let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>fit</span>\
@@ -135,7 +148,7 @@ pub fn effects(found: &Ladder) -> String {
     // Names to the left, and what is said of the longest bar to its right
     let scale = (width - 130.0 - 200.0) / most;
     let at = |ratio: f64| 130.0 + (ratio - 1.0).max(0.0) * scale;
-    let mut drawing = Drawing::new(width, height, "What each effect adds to the time of the default rung");
+    let mut drawing = Drawing::new(width, height, "What each effect adds to the time of the default level");
     let step = [0.1, 0.25, 0.5, 1.0, 2.0, 5.0].into_iter().find(|step| most / step <= 8.0).unwrap_or(10.0);
     for tick in 0..=(most / step) as usize {
         let value = tick as f64 * step;
