@@ -33,9 +33,13 @@ impl Axis {
         self.from + part.clamp(-0.05, 1.05) * (self.to - self.from)
     }
 
-    /// Values for ticks: powers of ten, and where these are few 2 and 5 times them.
+    /// Values for ticks: powers of ten, and where these are few some multiples of them.
     pub fn ticks(&self) -> Vec<f64> {
-        let steps: &[f64] = if self.high - self.low < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let steps: &[f64] = match self.high - self.low {
+            less if less < 0.8 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
+            few if few < 2.5 => &[1.0, 2.0, 5.0],
+            _ => &[1.0],
+        };
         let powers = self.low.floor() as i32..=self.high.ceil() as i32;
         let values = powers.flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
         values.filter(|value| (self.low..=self.high).contains(&value.log10())).collect()
@@ -220,6 +224,7 @@ mod tests {
         let axis = Axis::over([1.0, 100.0, f64::NAN, 0.0].into_iter(), 0.0, 100.0);
         assert!((axis.at(10.0) - 50.0).abs() < 1e-9);
         assert_eq!(axis.ticks(), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]);
+        assert_eq!(Axis::over([1.0, 4.0].into_iter(), 0.0, 1.0).ticks(), [1.0, 1.5, 2.0, 3.0, 4.0]);
         assert!(Axis::over([0.0].into_iter(), 0.0, 1.0).at(5.0).is_finite());
     }
 

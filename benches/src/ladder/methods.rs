@@ -75,6 +75,8 @@ pub const BASELINE: School = School::Clipless;
 /// The names of the yardsticks with a table of published quality.
 pub const CLIPLESS_PUBLISHED: &str = "clipless, published quality";
 /// As [`CLIPLESS_PUBLISHED`].
+pub const SPHERE_PUBLISHED: &str = "sphere horizon, published quality";
+/// As [`CLIPLESS_PUBLISHED`].
 pub const CASES_PUBLISHED: &str = "clip by cases, published quality";
 
 /// The name of the lights that show images.

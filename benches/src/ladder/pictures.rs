@@ -2,7 +2,7 @@
 
 use super::LONG;
 use super::frame::Frame;
-use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, Method};
+use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, Method, SPHERE_PUBLISHED};
 use super::reference::{PictureError, Reference};
 use crate::school::{School, YardstickTable};
 use crate::textures::is_software;
@@ -47,7 +47,7 @@ pub struct Pictures {
 const SIZE: [u32; 2] = [320, 180];
 
 /// How many long steps of progress it tells of.
-pub const STEPS: usize = 10;
+pub const STEPS: usize = 11;
 
 /// Runs a frame so often, for its time.
 const REPEATS: usize = 5;
@@ -62,6 +62,7 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let both = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..exact };
     let mut methods = vec![
         (CLIPLESS_PUBLISHED, yardstick(School::Clipless)),
+        (SPHERE_PUBLISHED, yardstick(School::SphereHorizon)),
         (CASES_PUBLISHED, yardstick(School::ClipByCases)),
         ("exact", rung(exact)),
         ("split", rung(Quality { fresnel: Fresnel::Split, ..exact })),
@@ -70,10 +71,13 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
         ("Monte Carlo, 16 samples", Method::Samples { count: 16 }),
     ];
-    let beyond = Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED;
-    if effects.intersects(beyond) {
-        methods.retain(|(_, method)| !matches!(method, Method::Yardstick { .. }));
-    }
+    methods.retain(|(_, method)| match method {
+        Method::Yardstick { school, .. } => {
+            let is_for_quads = *school == School::ClipByCases && effects.contains(Effects::POLYGON);
+            !is_for_quads && !effects.intersects(Effects::TEXTURED)
+        }
+        Method::Rung { .. } | Method::Samples { .. } => true,
+    });
     methods
 }
 

@@ -23,7 +23,7 @@ pub fn page(found: &Ladder, pictures: &Pictures) -> Result<String, Failure> {
     let mut section = |title: &str, says: &str, content: &str| {
         let _ = write!(body, "<h2>{}</h2>\n<p>{says}</p>\n{content}\n", escape(title));
     };
-    section("What is compared", &says_methods(), &methods(found));
+    section("What is compared", says_methods(), &methods(found));
     section("Error against time", &says_pareto(found), &charts::pareto(found));
     section("Where the error comes from", &says_parts(found), &charts::parts(found));
     section("What an effect adds", says_effects(), &charts::effects(found));
@@ -84,12 +84,10 @@ fn find<'a>(found: &'a Ladder, name: &str) -> Option<&'a Row> {
     found.rows_of(found.first()).find(|row| row.name == name)
 }
 
-fn says_methods() -> String {
-    format!(
-        "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same G-buffer, lights, lobes and table, \
+fn says_methods() -> &'static str {
+    "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same G-buffer, lights, lobes and table, \
          so that the form factor alone differs. Those of <em>published quality</em> look up a table with one matrix for every \
-         reflectance instead, whose errors are those of the table published with Heitz et al. 2016 within 10 %. {READS}"
-    )
+         reflectance instead, whose errors are those of the table published with Heitz et al. 2016 within 10 %."
 }
 
 /// Every method of the first lights in a line.
