@@ -115,7 +115,7 @@ void main() {
     polygon_first = polygon.first_offset;
     uint count = polygon.offset_count;
 
-    // Scale by a power of two taken from the largest component, as the library's callers do
+    // Scale by a power of two taken from the largest component, so that squares are within float32's range
     float largest = 0.0;
     for (uint i = 0u; i < count; i++) {
         largest = max(largest, arealight_max_component(offsets[polygon_first + i].xyz));

@@ -200,8 +200,8 @@ fn check(engine: &TestEngine, given: &Buffers, effects: Effects, quality: Qualit
         wrong.len(),
         wrong[..wrong.len().min(5)].join("\n")
     );
-    // The twin: it is not that every odd number makes a light dark
-    assert!(partial > COUNT / 20 && dark > COUNT / 10, "{partial} partial, {dark} dark");
+    // The twin: it is not that every odd number makes a light dark. Half of the exponents are beyond what squares reach
+    assert!(partial > COUNT / 25 && dark > COUNT / 10, "{partial} partial, {dark} dark");
     assert!(in_parts || infinite > COUNT / 10, "{infinite} outlines that are not finite");
 }
 

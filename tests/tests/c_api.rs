@@ -168,7 +168,7 @@ fn lights_that_cannot_be_shaded_are_named() {
 
     // Sizes first; then arrays, which may be too small
     good(pack(pass, &light(), &mut arrays));
-    assert_eq!((arrays.lights_size, arrays.vertices_size), (128, 48));
+    assert_eq!((arrays.lights_size, arrays.vertices_size), (64, 48));
     let unused = AREALIGHT_EFFECT_TWO_SIDED
         | AREALIGHT_EFFECT_POLYGON
         | AREALIGHT_EFFECT_TEXTURED

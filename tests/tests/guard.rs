@@ -133,10 +133,9 @@ fn optimised(kernel: &Kernel, specialization: &[(u32, u32)]) -> Option<Vec<u32>>
 
 #[test]
 fn the_guard_is_in_every_module() {
-    for kernel in [&EVAL, &SHADE] {
-        // One function has it: of the form factor's bits, and of the squared distances'
-        assert_eq!(guards(&module(&kernel.words())), 2, "{}", kernel.name);
-    }
+    // One function has it for polygons; round lights have another, of the form factor's bits and of the squared distances'
+    assert_eq!(guards(&module(&EVAL.words())), 1);
+    assert_eq!(guards(&module(&SHADE.words())), 3);
     assert_eq!(guards(&module(&UNGUARDED.words())), 0, "the twin: no guard is seen where there is none");
 }
 
@@ -155,10 +154,10 @@ fn the_guard_outlives_the_optimiser() {
                     (constant::HORIZON, horizon as u32),
                 ];
                 let Some(words) = optimised(kernel, &constants) else { return };
-                // Inlined once for each of two lobes
+                // Inlined for each of two lobes
                 let found = guards(&module(&words));
                 let what = format!("{}, {effects}, {form_factor:?}, {horizon:?}", kernel.name);
-                assert!(found >= 4, "{what}: {found} comparisons are left for two lobes");
+                assert!(found >= 2, "{what}: {found} comparisons are left for two lobes");
             }
         }
     }
