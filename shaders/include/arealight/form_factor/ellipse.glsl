@@ -27,6 +27,8 @@ struct ArealightEllipse {
     float height; // of the center over the horizon, as it came in
     float rise;   // of the highest point of the outline over the center
     bool front;   // the point is before the front
+    bool mirrored; // the frame is left-handed
+    float scale;  // what came in is multiplied with
     float square; // sum of the squares of what came in: not finite where that was not
 };
 
@@ -75,6 +77,8 @@ ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     float height = dot(center, normal);
     // The frame's normal is that of the front, or where axes were swapped of the back
     ellipse.front = (height < 0.0) != swapped;
+    ellipse.mirrored = height < 0.0;
+    ellipse.scale = scale;
     normal = height < 0.0 ? -normal : normal;
     ellipse.frame = mat3(major, minor, normal);
     ellipse.center = vec3(dot(center, major), dot(center, minor), max(abs(height), AREALIGHT_ELLIPSE_HEIGHT));

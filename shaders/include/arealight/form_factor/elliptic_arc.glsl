@@ -21,6 +21,7 @@ struct ArealightCone {
     float a;    // half axes of the cross section at the distance c: a >= b
     float b;
     float c;
+    bool mirrored; // the frame is left-handed
 };
 
 // An arc of a cone's outline, from middle - half to middle + half in the parameter t, 0 <= half <= pi.
@@ -61,6 +62,7 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     vec3 longer = difference > 0.0 ? second : first;
     vec3 shorter = difference > 0.0 ? first : second;
     cone.frame = mat3(cosine * longer + sine * shorter, cosine * shorter - sine * longer, axis);
+    cone.mirrored = difference > 0.0;
     cone.a = sqrt(max(0.5 * (m11 + m22 + hypotenuse), 1e-37));
     cone.c = sqrt(root);
     cone.b = min(ellipse.center.z * ellipse.major * ellipse.minor / (cone.a * cone.c), cone.a);

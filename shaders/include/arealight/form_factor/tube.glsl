@@ -40,20 +40,20 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
     }
     // From the start's rim along one edge to the end's, and back
     ArealightOutline outline = arealight_outline_begin();
-    float squares = 0.0;
+    bool finite = true;
     vec3 ends[4];
     for (int i = 0; i < 2; i++) {
         ArealightRimArc arc = arealight_rim_arc(tube.rims[i], transform);
         vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
         vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
-        arealight_outline_rim(outline, arc, begin, end, i == 0 ? 1.0 : -1.0);
-        squares += arc.square;
+        arealight_outline_rim(outline, arc, begin.z > 0.0, end.z > 0.0, i == 0 ? 1.0 : -1.0);
+        finite = finite && arc.finite;
         ends[2 * i] = arc.way > 0.0 ? begin : end;
         ends[2 * i + 1] = arc.way > 0.0 ? end : begin;
     }
     arealight_outline_edge(outline, ends[1], ends[3]);
     arealight_outline_edge(outline, ends[2], ends[0]);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), squares);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), finite);
 }
 
 #endif

@@ -9,7 +9,7 @@
 // An outline as it is drawn: pieces, and edges from each to the next.
 struct ArealightDrawnOutline {
     ArealightOutline outline;
-    float squares; // of the pieces' coordinates: not finite where one is not
+    bool finite;   // no coordinate of a piece is infinite or NaN
     vec3 first;    // ends of pieces, unit vectors in cosine space
     vec3 last;
     bool begun;
@@ -41,8 +41,8 @@ void arealight_draw_arc(inout ArealightDrawnOutline drawn, ArealightRim rim, mat
     vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
     bool swapped = (arc.way < 0.0) != backward;
     arealight_draw_to(drawn, swapped ? end : begin);
-    arealight_outline_rim(drawn.outline, arc, begin, end, backward ? -1.0 : 1.0);
-    drawn.squares += arc.square;
+    arealight_outline_rim(drawn.outline, arc, begin.z > 0.0, end.z > 0.0, backward ? -1.0 : 1.0);
+    drawn.finite = drawn.finite && arc.finite;
     drawn.last = swapped ? begin : end;
 }
 
@@ -112,7 +112,7 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
         return arealight_ellipse_both_horizons(transform * rim.center, transform * rim.middle, transform * rim.side,
                                                heights, true, horizon);
     }
-    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), 0.0, vec3(0.0), vec3(0.0), false);
+    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), true, vec3(0.0), vec3(0.0), false);
     arealight_draw_rim(drawn, tube.rims[0], normal, transform, horizon, false);
     arealight_draw_crossing(drawn, arealight_rim_end(tube.rims[0], 1.0), arealight_rim_end(tube.rims[1], 1.0), normal,
                             transform);
@@ -123,7 +123,7 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
         return 0.0;
     }
     arealight_outline_edge(drawn.outline, drawn.last, drawn.first);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(drawn.outline).z), drawn.squares);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(drawn.outline).z), drawn.finite);
 }
 
 #endif
