@@ -13,6 +13,7 @@ struct ArealightRim {
     vec3 middle;
     vec3 side;
     vec2 half_width; // cosine and sine
+    bool reflex;     // more than half of the outline: the cosine is negative
 };
 
 // A rim in cosine space, as its cone's outline.
@@ -22,7 +23,6 @@ struct ArealightRimArc {
     vec2 begin;           // cosine and sine of the ends in the cone's parameter, which grows from begin to end
     vec2 end;
     bool reflex;          // more than half of the cone's outline
-    bool finite;          // no coordinate is infinite or NaN
 };
 
 // The direction of a cone's outline, not unit.
@@ -30,9 +30,8 @@ vec3 arealight_cone_direction(ArealightCone cone, vec2 point) {
     return cone.frame * vec3(cone.a * point.x, cone.b * point.y, cone.c);
 }
 
-// Where a direction in the space of the cone's frame lies on its outline, which it is on but for rounding.
-vec2 arealight_cone_parameter(ArealightCone cone, vec3 direction) {
-    vec3 along = direction * cone.frame;
+// Where a direction, given by its parts along the columns of a cone's frame, lies on its outline, which it is on but for rounding.
+vec2 arealight_cone_parameter(ArealightCone cone, vec3 along) {
     vec2 point = vec2(along.x * cone.b, along.y * cone.a);
     point *= inversesqrt(max(dot(point, point), 1e-37));
     // Seen along its plane a rim is a line, on which its longer axis alone tells the place
@@ -41,29 +40,39 @@ vec2 arealight_cone_parameter(ArealightCone cone, vec3 direction) {
     return cone.b > 1e-3 * cone.a ? point : vec2(cosine, along.y < 0.0 ? -sine : sine);
 }
 
-ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform) {
+// a b, row by row: each row of the product takes the place of one of `a`, so that a GPU needs registers for two matrices, not for three.
+mat3 arealight_product_by_rows(mat3 a, mat3 b) {
+    vec3 x = vec3(a[0].x, a[1].x, a[2].x) * b;
+    vec3 y = vec3(a[0].y, a[1].y, a[2].y) * b;
+    vec3 z = vec3(a[0].z, a[1].z, a[2].z) * b;
+    return mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
+}
+
+// `finite` becomes false where a coordinate is infinite or NaN.
+ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform, inout bool finite) {
     ArealightRimArc arc;
     vec3 middle = transform * rim.middle;
     vec3 side = transform * rim.side;
     ArealightEllipse ellipse = arealight_ellipse(transform * rim.center, middle, side);
-    arc.finite = arealight_is_finite(ellipse.square);
-    // Both ends in the ellipse's frame: of its plane the center's distance is known
-    vec2 chord = rim.half_width.x * vec2(dot(middle, ellipse.frame[0]), dot(middle, ellipse.frame[1]));
-    vec2 half_chord = rim.half_width.y * vec2(dot(side, ellipse.frame[0]), dot(side, ellipse.frame[1]));
-    chord = ellipse.center.xy + chord * ellipse.scale;
-    half_chord *= ellipse.scale;
-    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
-    arc.cone.frame[1] = arc.cone.mirrored != ellipse.mirrored ? -arc.cone.frame[1] : arc.cone.frame[1];
+    finite = finite && arealight_is_finite(ellipse.square);
     // The point is behind the front: seen from it the rim's parameter runs as the cone's does
     arc.way = ellipse.front ? -1.0 : 1.0;
-    half_chord *= arc.way;
-    arc.begin = arealight_cone_parameter(arc.cone, vec3(chord - half_chord, ellipse.center.z));
-    arc.end = arealight_cone_parameter(arc.cone, vec3(chord + half_chord, ellipse.center.z));
-    arc.cone.frame = ellipse.frame * arc.cone.frame;
+    // The middle of the chord between the ends, and half of it, in the ellipse's frame: of its plane the center's distance is known
+    vec2 width = ellipse.scale * rim.half_width;
+    vec2 chord = ellipse.center.xy + width.x * vec2(dot(middle, ellipse.longer), dot(middle, ellipse.shorter));
+    vec2 half_chord = arc.way * width.y * vec2(dot(side, ellipse.longer), dot(side, ellipse.shorter));
+    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
+    arc.cone.frame[1] = ellipse.mirrored ? -arc.cone.frame[1] : arc.cone.frame[1];
+    // And in the cone's
+    vec3 along = vec3(chord, ellipse.center.z) * arc.cone.frame;
+    vec3 half_along = half_chord * mat3x2(arc.cone.frame);
+    arc.cone.frame = arealight_product_by_rows(arealight_ellipse_frame(ellipse), arc.cone.frame);
+    arc.begin = arealight_cone_parameter(arc.cone, along - half_along);
+    arc.end = arealight_cone_parameter(arc.cone, along + half_along);
     // Where the ends meet, the rim tells whether that is none of it or all
     vec2 between = arc.end - arc.begin;
     bool turned = arc.begin.x * arc.end.y - arc.begin.y * arc.end.x < 0.0;
-    arc.reflex = dot(between, between) < 1e-6 ? rim.half_width.x < 0.0 : turned;
+    arc.reflex = dot(between, between) < 1e-6 ? rim.reflex : turned;
     return arc;
 }
 
@@ -166,15 +175,16 @@ float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec
     float cosine = clamp(-heights.x / rise, -1.0, 1.0);
     float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     ArealightRim rim = ArealightRim(center, top.x * axis_u + top.y * axis_v, top.x * axis_v - top.y * axis_u,
-                                    vec2(cosine, sine));
-    ArealightRimArc arc = arealight_rim_arc(rim, mat3(1.0));
+                                    vec2(cosine, sine), cosine < 0.0);
+    bool finite = true;
+    ArealightRimArc arc = arealight_rim_arc(rim, mat3(1.0), finite);
     vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
     vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
     ArealightOutline outline = arealight_outline_begin();
     bool grows = arc.way > 0.0;
     arealight_outline_edge(outline, grows ? end : begin, grows ? begin : end);
     arealight_outline_rim(outline, arc, begin.z > 0.0, end.z > 0.0, 1.0);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), arc.finite);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), finite);
 }
 
 #endif
