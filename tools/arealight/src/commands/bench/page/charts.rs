@@ -165,10 +165,7 @@ pub fn effects(found: &Ladder) -> String {
             drawing.bar(class, [130.0, y], [end - 130.0, 14.0]);
             let [low, high] = spread.quartiles.map(at);
             drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
-            let mut text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
-            if let Some(count) = effect.instructions.filter(|_| part == 0) {
-                let _ = write!(text, ", {count:+} instructions");
-            }
+            let text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
     }
