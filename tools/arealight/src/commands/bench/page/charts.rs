@@ -4,7 +4,6 @@ use arealight_benches::ladder::{
     BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Growth, Ladder, Row, number, percent,
 };
 use arealight_benches::svg::{Axis, Drawing, Labels, grid, label, number_short};
-use std::fmt::Write as _;
 
 /// The colours of what is ours, of others', and of Monte Carlo, in words.
 const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>our quality levels</span>\
