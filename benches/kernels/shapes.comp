@@ -95,7 +95,7 @@ float sphere_horizon(ShapeArguments given) {
     vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
     float whole = area * sqrt(reciprocals.x) * sqrt(reciprocals.y) * inversesqrt(dot(axis, axis));
-    float cosine = normalize(ellipse.frame * axis).z;
+    float cosine = normalize(arealight_ellipse_frame(ellipse) * axis).z;
     return whole > 0.0 ? clipped_sphere(min(whole, 1.0), cosine) : 0.0;
 }
 

@@ -14,7 +14,7 @@ const int FUNCTION_TABLE = 2;
 const int FUNCTION_GGX = 3;
 const int FUNCTION_ARC = 4;
 
-#include "arealight/form_factor/difference.glsl"
+#include "arealight/form_factor/arc.glsl"
 #include "arealight/ggx.glsl"
 #include "table_image.glsl"
 
@@ -79,16 +79,6 @@ ProbeResults arc_of(vec3 from, vec3 to) {
                         vec4(crossing, 0.0, 0.0), vec4(0.0));
 }
 
-// The same in the difference form, which has no weight of its own for acute angles.
-ProbeResults difference_arc_of(vec3 from, vec3 to) {
-    ArealightAnchor nowhere = ArealightAnchor(vec3(0.0), 0.0, 0.0, false, AREALIGHT_HORIZON_WIDTH);
-    ArealightVertex a = arealight_vertex(nowhere, from);
-    ArealightVertex b = arealight_vertex(nowhere, to);
-    float arc = arealight_difference_arc(a, b).z;
-    return ProbeResults(vec4(a.unit, arc), vec4(b.unit, arc),
-                        vec4(arealight_difference_crossing(nowhere, a, b).unit, 0.0), vec4(0.0));
-}
-
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index >= constants.count) {
@@ -105,7 +95,7 @@ void main() {
     } else if (FUNCTION == FUNCTION_GGX) {
         result = ggx_of(given.a.xyz, given.b.xyz, given.a.w, given.c.xy);
     } else {
-        result = given.a.w == 0.0 ? arc_of(given.a.xyz, given.b.xyz) : difference_arc_of(given.a.xyz, given.b.xyz);
+        result = arc_of(given.a.xyz, given.b.xyz);
     }
     results[index] = result;
 }

@@ -85,13 +85,16 @@ bool arealight_is_finite(float x) {
     return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
 }
 
-// A form factor in [0, 1] for any bits: 0 where it is negative or NaN, or where `square`, what is squared of the light's
-// distances, is not finite. The bit patterns of [0, 1] are those up to 0x3f800000; everything negative or NaN lies beyond
-// infinity's 0x7f800000.
-float arealight_guarded_form_factor(float form_factor, float square) {
+// A form factor in [0, 1] for any bits: 0 where it is negative or NaN, or where something of the light is not `finite`. The bit
+// patterns of [0, 1] are those up to 0x3f800000; everything negative or NaN lies beyond infinity's 0x7f800000.
+float arealight_guarded_form_factor(float form_factor, bool finite) {
     uint bits = floatBitsToUint(form_factor);
-    bool finite = bits < 0x7f800000u && floatBitsToUint(square) < 0x7f800000u;
-    return finite ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+    return finite && bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+}
+
+// The same where `square`, what is squared of the light's distances, is not finite.
+float arealight_guarded_form_factor(float form_factor, float square) {
+    return arealight_guarded_form_factor(form_factor, floatBitsToUint(square) < 0x7f800000u);
 }
 
 #endif

@@ -41,24 +41,24 @@ float arealight_gained(float form_factor, float gain) {
 // The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the table's lobe, and
 // as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
 #define AREALIGHT_LIGHT_KIND(Light, Local)                                                          \
+    vec3 arealight_lobe_weight(ArealightPoint point, int i, Local local) {                          \
+        if (!arealight_has_lobe(i)) {                                                               \
+            return vec3(0.0);                                                                       \
+        }                                                                                           \
+        ArealightLobe lobe = point.lobes[i];                                                        \
+        vec3 vector = arealight_vector_form_factor(lobe.space, local);                              \
+        float form_factor = arealight_gained(arealight_form_factor(vector), lobe.gain);             \
+        return form_factor * arealight_image_seen(lobe.space, local, vector);                       \
+    }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \
         Local local;                                                                                \
         if (arealight_to_local(point, light, local)) {                                              \
-            for (int i = 0; i < AREALIGHT_LOBES; i++) {                                             \
-                if (!arealight_has_lobe(i)) {                                                       \
-                    continue;                                                                       \
-                }                                                                                   \
-                ArealightLobe lobe = point.lobes[i];                                                \
-                vec3 vector = arealight_vector_form_factor(lobe.space, local);                      \
-                float form_factor = arealight_gained(arealight_form_factor(vector), lobe.gain);     \
-                vec3 reflected = lobe.albedo * (form_factor * arealight_image_seen(lobe.space, local, vector)); \
-                if (i == AREALIGHT_LOBE_DIFFUSE) {                                                  \
-                    sum.diffuse = reflected;                                                        \
-                } else {                                                                            \
-                    sum.specular += reflected;                                                      \
-                }                                                                                   \
-            }                                                                                       \
+            vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);             \
+            vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);           \
+            vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);             \
+            sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;                     \
+            sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo + schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;\
             sum.specular = AREALIGHT_SPLITS_FRESNEL ? max(sum.specular, vec3(0.0)) : sum.specular;  \
         }                                                                                           \
         return sum;                                                                                 \

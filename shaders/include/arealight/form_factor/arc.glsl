@@ -41,7 +41,7 @@ float arealight_acute_weight(float s, float x) {
          / (1.0 + x * (1.3370004 + x * 0.38739931));
 }
 
-// The angle from a to b, unit vectors, times the unit normal of their plane, radians. Error 3.6e-7 of one radian or of the angle,
+// The angle from a to b, unit vectors, times the unit normal of their plane, radians. Error 5e-7 of one radian or of the angle,
 // whichever is larger.
 vec3 arealight_arc(vec3 a, vec3 b) {
     vec3 middle = a + b;

@@ -19,19 +19,34 @@
 
 // An ellipse as seen from the point, scaled by a power of two so that its size is of order one.
 struct ArealightEllipse {
-    mat3 frame;   // columns: unit directions of the longer axis, the shorter axis and the normal; the normal points away
-                  // from the point. It may be left-handed
+    vec3 longer;  // unit directions of its axes, which with the normal that points away from the point are its frame
+    vec3 shorter;
+    bool mirrored; // the frame is left-handed
     vec3 center;  // in the frame, the point being its origin; z > 0
     float major;  // half axes
     float minor;
     float height; // of the center over the horizon, as it came in
     float rise;   // of the highest point of the outline over the center
     bool front;   // the point is before the front
+    float scale;  // what came in is multiplied with
     float square; // sum of the squares of what came in: not finite where that was not
 };
 
 // Heights over the plane of the ellipse below this part of its size or distance count as this.
 const float AREALIGHT_ELLIPSE_HEIGHT = 1e-15;
+
+// An ellipse's frame: columns are unit directions of the longer axis, the shorter axis and the normal, which is taken where it is
+// needed.
+mat3 arealight_ellipse_frame(ArealightEllipse ellipse) {
+    vec3 normal = cross(ellipse.longer, ellipse.shorter);
+    return mat3(ellipse.longer, ellipse.shorter, ellipse.mirrored ? -normal : normal);
+}
+
+// Heights over the horizon z = 0 in an ellipse's frame are products with this.
+vec3 arealight_ellipse_up(ArealightEllipse ellipse) {
+    mat3 frame = arealight_ellipse_frame(ellipse);
+    return vec3(frame[0].z, frame[1].z, frame[2].z);
+}
 
 // The principal frame of an ellipse in any space, from the point.
 //
@@ -71,12 +86,13 @@ ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     reciprocal = inversesqrt(max(minor_square, 1e-37));
     ellipse.minor = minor_square * reciprocal;
     minor *= reciprocal;
-    vec3 normal = cross(major, minor);
-    float height = dot(center, normal);
+    float height = dot(cross(center, major), minor);
     // The frame's normal is that of the front, or where axes were swapped of the back
     ellipse.front = (height < 0.0) != swapped;
-    normal = height < 0.0 ? -normal : normal;
-    ellipse.frame = mat3(major, minor, normal);
+    ellipse.mirrored = height < 0.0;
+    ellipse.scale = scale;
+    ellipse.longer = major;
+    ellipse.shorter = minor;
     ellipse.center = vec3(dot(center, major), dot(center, minor), max(abs(height), AREALIGHT_ELLIPSE_HEIGHT));
     return ellipse;
 }
@@ -148,7 +164,7 @@ vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
 float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     float a2 = ellipse.major * ellipse.major;
     float b2 = ellipse.minor * ellipse.minor;
-    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
+    vec3 up = arealight_ellipse_up(ellipse);
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
     // The cone's axis is the center less what is small for a far ellipse: so its height keeps the center's precision
     vec2 less = ellipse.center.xy * vec2(a2, b2) * arealight_confocal_reciprocals(ellipse, root);
@@ -161,7 +177,7 @@ float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
 // length at most 1. Its direction is the cone's axis. Not clipped, and whatever side is seen; NaN where an input is.
 vec3 arealight_ellipse_vector_form_factor(vec3 center, vec3 axis_u, vec3 axis_v) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    return ellipse.frame * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse));
+    return arealight_ellipse_frame(ellipse) * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse));
 }
 
 #endif

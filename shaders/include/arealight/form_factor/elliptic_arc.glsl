@@ -17,7 +17,7 @@
 // An elliptic cone of directions.
 struct ArealightCone {
     mat3 frame; // columns: unit directions of the longer axis, the shorter axis and the cone's own, in the ellipse's
-                // frame. It may be left-handed
+                // frame; right-handed
     float a;    // half axes of the cross section at the distance c: a >= b
     float b;
     float c;
@@ -58,12 +58,11 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     float tangent = 2.0 * m12 / (abs(difference) + hypotenuse + 1e-37);
     float cosine = inversesqrt(1.0 + tangent * tangent);
     float sine = cosine * tangent;
-    vec3 longer = difference > 0.0 ? second : first;
-    vec3 shorter = difference > 0.0 ? first : second;
-    cone.frame = mat3(cosine * longer + sine * shorter, cosine * shorter - sine * longer, axis);
     cone.a = sqrt(max(0.5 * (m11 + m22 + hypotenuse), 1e-37));
     cone.c = sqrt(root);
     cone.b = min(ellipse.center.z * ellipse.major * ellipse.minor / (cone.a * cone.c), cone.a);
+    vec2 turn = difference > 0.0 ? vec2(sine, cosine) : vec2(cosine, sine);
+    cone.frame = mat3(turn.x * first + turn.y * second, turn.x * second - turn.y * first, axis);
     return cone;
 }
 
@@ -195,7 +194,7 @@ bool arealight_is_small_ellipse(ArealightEllipse ellipse) {
 float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
     float root = arealight_confocal_root(ellipse);
-    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
+    vec3 up = arealight_ellipse_up(ellipse);
     float form_factor;
     // An ellipse in the horizon's plane is below it
     if (ellipse.height <= -ellipse.rise) {
@@ -216,7 +215,7 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
 vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
     float root = arealight_confocal_root(ellipse);
-    vec3 up = vec3(ellipse.frame[0].z, ellipse.frame[1].z, ellipse.frame[2].z);
+    vec3 up = arealight_ellipse_up(ellipse);
     vec3 direction;
     if (ellipse.height >= ellipse.rise || ellipse.height <= -ellipse.rise) {
         direction = arealight_ellipse_cone_axis(ellipse, root);
@@ -229,7 +228,7 @@ vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v) {
         vec4 contour = arealight_cone_contour_above_horizon(cone, normal);
         direction = cone.frame * (contour.xyz + contour.w * normal);
     }
-    return ellipse.frame * direction;
+    return arealight_ellipse_frame(ellipse) * direction;
 }
 
 #endif

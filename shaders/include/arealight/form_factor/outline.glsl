@@ -36,11 +36,14 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
     bool to_above = to.z > 0.0;
     if (from_above || to_above) {
         if (from_above != to_above) {
-            vec2 crossing = from_above ? arealight_crossing(from, to) : arealight_crossing(to, from);
+            vec2 crossing = (from_above ? 1.0 : -1.0) * arealight_crossing(from, to);
             arealight_outline_close(outline, crossing, from_above);
-            from = from_above ? from : vec3(crossing, 0.0);
-            to = to_above ? to : vec3(crossing, 0.0);
+            from.xy = from_above ? from.xy : crossing;
+            to.xy = to_above ? to.xy : crossing;
         }
+        // Of an end below the horizon the crossing is left
+        from.z = max(from.z, 0.0);
+        to.z = max(to.z, 0.0);
         outline.arcs += arealight_arc(from, to);
     }
 }

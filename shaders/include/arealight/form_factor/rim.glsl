@@ -13,17 +13,16 @@ struct ArealightRim {
     vec3 middle;
     vec3 side;
     vec2 half_width; // cosine and sine
+    bool reflex;     // more than half of the outline: the cosine is negative
 };
 
 // A rim in cosine space, as its cone's outline.
 struct ArealightRimArc {
     ArealightCone cone;   // its frame from the ellipse's into cosine space, right-handed
-    vec3 up;              // the horizon's normal in the cone's frame
     float way;            // 1 where the cone's parameter grows with the rim's, else -1
     vec2 begin;           // cosine and sine of the ends in the cone's parameter, which grows from begin to end
     vec2 end;
     bool reflex;          // more than half of the cone's outline
-    float square;
 };
 
 // The direction of a cone's outline, not unit.
@@ -31,9 +30,8 @@ vec3 arealight_cone_direction(ArealightCone cone, vec2 point) {
     return cone.frame * vec3(cone.a * point.x, cone.b * point.y, cone.c);
 }
 
-// Where a direction lies on a cone's outline, which it is on but for rounding.
-vec2 arealight_cone_parameter(ArealightCone cone, vec3 direction) {
-    vec3 along = direction * cone.frame;
+// Where a direction, given by its parts along the columns of a cone's frame, lies on its outline, which it is on but for rounding.
+vec2 arealight_cone_parameter(ArealightCone cone, vec3 along) {
     vec2 point = vec2(along.x * cone.b, along.y * cone.a);
     point *= inversesqrt(max(dot(point, point), 1e-37));
     // Seen along its plane a rim is a line, on which its longer axis alone tells the place
@@ -42,29 +40,39 @@ vec2 arealight_cone_parameter(ArealightCone cone, vec3 direction) {
     return cone.b > 1e-3 * cone.a ? point : vec2(cosine, along.y < 0.0 ? -sine : sine);
 }
 
-ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform) {
+// a b, row by row: each row of the product takes the place of one of `a`, so that a GPU needs registers for two matrices, not for three.
+mat3 arealight_product_by_rows(mat3 a, mat3 b) {
+    vec3 x = vec3(a[0].x, a[1].x, a[2].x) * b;
+    vec3 y = vec3(a[0].y, a[1].y, a[2].y) * b;
+    vec3 z = vec3(a[0].z, a[1].z, a[2].z) * b;
+    return mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z);
+}
+
+// `finite` becomes false where a coordinate is infinite or NaN.
+ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform, inout bool finite) {
     ArealightRimArc arc;
-    vec3 center = transform * rim.center;
     vec3 middle = transform * rim.middle;
     vec3 side = transform * rim.side;
-    ArealightEllipse ellipse = arealight_ellipse(center, middle, side);
-    arc.square = ellipse.square;
-    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
-    mat3 frame = ellipse.frame * arc.cone.frame;
-    frame[1] = dot(cross(frame[0], frame[1]), frame[2]) < 0.0 ? -frame[1] : frame[1];
-    arc.cone.frame = frame;
-    arc.up = vec3(frame[0].z, frame[1].z, frame[2].z);
+    ArealightEllipse ellipse = arealight_ellipse(transform * rim.center, middle, side);
+    finite = finite && arealight_is_finite(ellipse.square);
     // The point is behind the front: seen from it the rim's parameter runs as the cone's does
     arc.way = ellipse.front ? -1.0 : 1.0;
-    vec3 ends = center + rim.half_width.x * middle;
-    vec2 first = arealight_cone_parameter(arc.cone, ends - rim.half_width.y * side);
-    vec2 last = arealight_cone_parameter(arc.cone, ends + rim.half_width.y * side);
-    arc.begin = ellipse.front ? last : first;
-    arc.end = ellipse.front ? first : last;
+    // The middle of the chord between the ends, and half of it, in the ellipse's frame: of its plane the center's distance is known
+    vec2 width = ellipse.scale * rim.half_width;
+    vec2 chord = ellipse.center.xy + width.x * vec2(dot(middle, ellipse.longer), dot(middle, ellipse.shorter));
+    vec2 half_chord = arc.way * width.y * vec2(dot(side, ellipse.longer), dot(side, ellipse.shorter));
+    arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
+    arc.cone.frame[1] = ellipse.mirrored ? -arc.cone.frame[1] : arc.cone.frame[1];
+    // And in the cone's
+    vec3 along = vec3(chord, ellipse.center.z) * arc.cone.frame;
+    vec3 half_along = half_chord * mat3x2(arc.cone.frame);
+    arc.cone.frame = arealight_product_by_rows(arealight_ellipse_frame(ellipse), arc.cone.frame);
+    arc.begin = arealight_cone_parameter(arc.cone, along - half_along);
+    arc.end = arealight_cone_parameter(arc.cone, along + half_along);
     // Where the ends meet, the rim tells whether that is none of it or all
-    vec2 chord = arc.end - arc.begin;
+    vec2 between = arc.end - arc.begin;
     bool turned = arc.begin.x * arc.end.y - arc.begin.y * arc.end.x < 0.0;
-    arc.reflex = dot(chord, chord) < 1e-6 ? rim.half_width.x < 0.0 : turned;
+    arc.reflex = dot(between, between) < 1e-6 ? rim.reflex : turned;
     return arc;
 }
 
@@ -94,49 +102,55 @@ vec2 arealight_cone_crossing(ArealightCone cone, vec2 point) {
     return direction * inversesqrt(max(dot(direction, direction), 1e-37));
 }
 
-// Adds an arc to an outline, clipped at the horizon; `way` is 1 in the direction of the rim's own parameter, else -1. `first` and
-// `last` are the directions of its ends in the order of the cone's parameter.
-void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, vec3 first, vec3 last, float way) {
+// Whether a point of a cone's outline is on the arc between two others, t growing; `reflex`: the arc is more than half of it.
+bool arealight_arc_has(vec2 point, vec2 begin, vec2 end, bool reflex) {
+    bool after_begin = begin.x * point.y - begin.y * point.x > 0.0;
+    bool before_end = point.x * end.y - point.y * end.x > 0.0;
+    return reflex ? after_begin || before_end : after_begin && before_end;
+}
+
+// Adds an arc to an outline, clipped at the horizon; `way` is 1 in the direction of the rim's own parameter, else -1.
+// `first_above` and `last_above`: the ends in the order of the cone's parameter are above the horizon.
+void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, bool first_above, bool last_above, float way) {
     ArealightCone cone = arc.cone;
-    bool forward = way * arc.way > 0.0;
+    way *= arc.way;
     // Where the cone's whole outline crosses the horizon
-    vec2 slope = vec2(cone.a * arc.up.x, cone.b * arc.up.y);
-    float steepness = sqrt(dot(slope, slope));
+    vec3 up = vec3(cone.a * cone.frame[0].z, cone.b * cone.frame[1].z, cone.c * cone.frame[2].z);
+    float steepness = sqrt(dot(up.xy, up.xy));
     float reciprocal = 1.0 / max(steepness, 1e-37);
-    vec2 top = slope * reciprocal;
-    float cosine = clamp(-cone.c * arc.up.z * reciprocal, -1.0, 1.0);
+    vec2 top = up.xy * reciprocal;
+    float cosine = clamp(-up.z * reciprocal, -1.0, 1.0);
     float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
-    bool crosses = cone.c * abs(arc.up.z) < steepness;
-    vec2 rise = vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine);
-    vec2 fall = vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine);
+    bool crosses = abs(up.z) < steepness;
     // Which part of the arc is above
-    ArealightArcSpan whole = arealight_arc_between(arc.begin, arc.end, arc.reflex);
-    bool first_above = first.z > 0.0;
-    bool last_above = last.z > 0.0;
-    float along_top = dot(top, whole.middle);
-    bool bump = !first_above && !last_above && crosses && along_top > whole.half_width.x;
-    bool dip = first_above && last_above && crosses && -along_top > whole.half_width.x;
-    if (!(first_above || last_above || bump)) {
+    bool neither = !first_above && !last_above;
+    bool both = first_above && last_above;
+    bool bump = neither && crosses && arealight_arc_has(top, arc.begin, arc.end, arc.reflex);
+    bool dip = both && crosses && arealight_arc_has(-top, arc.begin, arc.end, arc.reflex);
+    if (neither && !bump) {
         return;
     }
-    vec2 begin = first_above ? arc.begin : rise;
-    vec2 end = last_above ? arc.end : fall;
+    // The crossings close the outline
+    vec2 begin = arc.begin;
+    vec2 end = arc.end;
+    if (!first_above || dip) {
+        vec2 rise = vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine);
+        arealight_outline_close(outline, arealight_cone_crossing(cone, rise), !(way > 0.0));
+        begin = first_above ? begin : rise;
+    }
+    if (!last_above || dip) {
+        vec2 fall = vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine);
+        arealight_outline_close(outline, arealight_cone_crossing(cone, fall), way > 0.0);
+        end = last_above ? end : fall;
+    }
     vec2 chord = end - begin;
     bool turned = begin.x * end.y - begin.y * end.x < 0.0;
-    bool same = first_above && last_above;
-    bool reflex = same || (dot(chord, chord) < 1e-6 && !bump) ? arc.reflex : turned;
+    bool reflex = both || (dot(chord, chord) < 1e-6 && !bump) ? arc.reflex : turned;
     vec3 integral = arealight_elliptic_arc(cone, arealight_arc_between(begin, end, reflex));
     if (dip) {
         integral -= arealight_elliptic_arc(cone, ArealightArcSpan(-top, vec2(-cosine, sine)));
     }
-    outline.arcs += (forward ? 1.0 : -1.0) * (cone.frame * integral);
-    // The crossings close the outline
-    if (!first_above || dip) {
-        arealight_outline_close(outline, arealight_cone_crossing(cone, rise), !forward);
-    }
-    if (!last_above || dip) {
-        arealight_outline_close(outline, arealight_cone_crossing(cone, fall), forward);
-    }
+    outline.arcs += way * (cone.frame * integral);
 }
 
 // The form factor of an ellipse clipped at two horizons, in [0, 1]: that of cosine space, and the surface's, above which a
@@ -161,15 +175,16 @@ float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec
     float cosine = clamp(-heights.x / rise, -1.0, 1.0);
     float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
     ArealightRim rim = ArealightRim(center, top.x * axis_u + top.y * axis_v, top.x * axis_v - top.y * axis_u,
-                                    vec2(cosine, sine));
-    ArealightRimArc arc = arealight_rim_arc(rim, mat3(1.0));
+                                    vec2(cosine, sine), cosine < 0.0);
+    bool finite = true;
+    ArealightRimArc arc = arealight_rim_arc(rim, mat3(1.0), finite);
     vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
     vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
     ArealightOutline outline = arealight_outline_begin();
-    arealight_outline_rim(outline, arc, begin, end, 1.0);
     bool grows = arc.way > 0.0;
     arealight_outline_edge(outline, grows ? end : begin, grows ? begin : end);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), arc.square);
+    arealight_outline_rim(outline, arc, begin.z > 0.0, end.z > 0.0, 1.0);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), finite);
 }
 
 #endif

@@ -28,8 +28,8 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
         return 0.0;
     }
     if (!tube.outside) {
-        ArealightRim rim = tube.rims[0];
-        return arealight_ellipse_form_factor(transform * rim.center, transform * rim.middle, transform * rim.side, true);
+        ArealightSilhouette disk = arealight_tube_disk(tube);
+        return arealight_ellipse_form_factor(transform * disk.center, transform * disk.axis_u, transform * disk.axis_v, true);
     }
     if (AREALIGHT_USES_DIFFERENCE) {
         bool is_small;
@@ -38,22 +38,29 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
             return form_factor;
         }
     }
-    // From the start's rim along one edge to the end's, and back
+    // From the start's rim along one edge to the end's, and back. A loop: one rim after the other, each made where it is used
     ArealightOutline outline = arealight_outline_begin();
-    float squares = 0.0;
-    vec3 ends[4];
+    bool finite = true;
+    vec3 first = vec3(0.0);
+    vec3 last = vec3(0.0);
     for (int i = 0; i < 2; i++) {
-        ArealightRimArc arc = arealight_rim_arc(tube.rims[i], transform);
+        float way = i == 0 ? 1.0 : -1.0;
+        ArealightRimArc arc = arealight_rim_arc(arealight_tube_rim(tube, -way), transform, finite);
         vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
         vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
-        arealight_outline_rim(outline, arc, begin, end, i == 0 ? 1.0 : -1.0);
-        squares += arc.square;
-        ends[2 * i] = arc.way > 0.0 ? begin : end;
-        ends[2 * i + 1] = arc.way > 0.0 ? end : begin;
+        bool swapped = way * arc.way < 0.0;
+        vec3 from = swapped ? end : begin;
+        vec3 to = swapped ? begin : end;
+        if (i == 0) {
+            first = from;
+            last = to;
+        } else {
+            arealight_outline_edge(outline, last, from);
+            arealight_outline_edge(outline, to, first);
+        }
+        arealight_outline_rim(outline, arc, begin.z > 0.0, end.z > 0.0, way);
     }
-    arealight_outline_edge(outline, ends[1], ends[3]);
-    arealight_outline_edge(outline, ends[2], ends[0]);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), squares);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(outline).z), finite);
 }
 
 #endif

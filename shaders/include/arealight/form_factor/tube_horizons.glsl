@@ -9,7 +9,7 @@
 // An outline as it is drawn: pieces, and edges from each to the next.
 struct ArealightDrawnOutline {
     ArealightOutline outline;
-    float squares; // of the pieces' coordinates: not finite where one is not
+    bool finite;   // no coordinate of a piece is infinite or NaN
     vec3 first;    // ends of pieces, unit vectors in cosine space
     vec3 last;
     bool begun;
@@ -30,19 +30,19 @@ void arealight_draw_to(inout ArealightDrawnOutline drawn, vec3 unit) {
 ArealightRim arealight_rim_part(ArealightRim rim, vec2 begin, vec2 end, bool reflex) {
     ArealightArcSpan span = arealight_arc_between(begin, end, reflex);
     return ArealightRim(rim.center, span.middle.x * rim.middle + span.middle.y * rim.side,
-                        span.middle.x * rim.side - span.middle.y * rim.middle, span.half_width);
+                        span.middle.x * rim.side - span.middle.y * rim.middle, span.half_width,
+                        span.half_width.x < 0.0);
 }
 
 // Draws an edge to an arc, and the arc, clipped at the horizon of cosine space. `backward`: from the rim's end to its begin;
 // `horizon` is the sine of the elevation below which its ends count as on the horizon.
 void arealight_draw_arc(inout ArealightDrawnOutline drawn, ArealightRim rim, mat3 transform, float horizon, bool backward) {
-    ArealightRimArc arc = arealight_rim_arc(rim, transform);
+    ArealightRimArc arc = arealight_rim_arc(rim, transform, drawn.finite);
     vec3 begin = arealight_cone_unit(arc.cone, arc.begin, horizon);
     vec3 end = arealight_cone_unit(arc.cone, arc.end, horizon);
     bool swapped = (arc.way < 0.0) != backward;
     arealight_draw_to(drawn, swapped ? end : begin);
-    arealight_outline_rim(drawn.outline, arc, begin, end, backward ? -1.0 : 1.0);
-    drawn.squares += arc.square;
+    arealight_outline_rim(drawn.outline, arc, begin.z > 0.0, end.z > 0.0, backward ? -1.0 : 1.0);
     drawn.last = swapped ? begin : end;
 }
 
@@ -107,23 +107,25 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
         return 0.0;
     }
     if (!tube.outside) {
-        ArealightRim rim = tube.rims[0];
-        vec3 heights = vec3(dot(normal, rim.center), dot(normal, rim.middle), dot(normal, rim.side));
-        return arealight_ellipse_both_horizons(transform * rim.center, transform * rim.middle, transform * rim.side,
+        ArealightSilhouette disk = arealight_tube_disk(tube);
+        vec3 heights = vec3(dot(normal, disk.center), dot(normal, disk.axis_u), dot(normal, disk.axis_v));
+        return arealight_ellipse_both_horizons(transform * disk.center, transform * disk.axis_u, transform * disk.axis_v,
                                                heights, true, horizon);
     }
-    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), 0.0, vec3(0.0), vec3(0.0), false);
-    arealight_draw_rim(drawn, tube.rims[0], normal, transform, horizon, false);
-    arealight_draw_crossing(drawn, arealight_rim_end(tube.rims[0], 1.0), arealight_rim_end(tube.rims[1], 1.0), normal,
-                            transform);
-    arealight_draw_rim(drawn, tube.rims[1], normal, transform, horizon, true);
-    arealight_draw_crossing(drawn, arealight_rim_end(tube.rims[1], -1.0), arealight_rim_end(tube.rims[0], -1.0), normal,
-                            transform);
+    ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), true, vec3(0.0), vec3(0.0), false);
+    // From the start's rim along one edge to the end's, and back
+    for (int i = 0; i < 2; i++) {
+        float outwards = i == 0 ? -1.0 : 1.0;
+        ArealightRim rim = arealight_tube_rim(tube, outwards);
+        arealight_draw_rim(drawn, rim, normal, transform, horizon, i == 1);
+        arealight_draw_crossing(drawn, arealight_rim_end(rim, -outwards),
+                                arealight_rim_end(arealight_tube_rim(tube, -outwards), -outwards), normal, transform);
+    }
     if (!drawn.begun) {
         return 0.0;
     }
     arealight_outline_edge(drawn.outline, drawn.last, drawn.first);
-    return arealight_guarded_form_factor(abs(arealight_outline_vector(drawn.outline).z), drawn.squares);
+    return arealight_guarded_form_factor(abs(arealight_outline_vector(drawn.outline).z), drawn.finite);
 }
 
 #endif

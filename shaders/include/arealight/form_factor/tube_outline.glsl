@@ -12,95 +12,97 @@ const int AREALIGHT_TUBE_OPEN = 0;  // the lateral surface alone shines
 const int AREALIGHT_TUBE_FLAT = 1;  // flat caps shine too
 const int AREALIGHT_TUBE_ROUND = 2; // half spheres: a capsule
 
-// A tube as seen from the shading point, in the space of its arguments, scaled by a power of two.
+// A tube as seen from the shading point, in the space of its arguments, in any unit. All of its outline follows from
+// this little, rim by rim, so that no lobe's work holds more than one rim.
 struct ArealightTube {
-    vec3 center;
-    vec3 start;
-    vec3 end;
-    vec3 half_axis;
     vec3 axis;      // unit, from start to end
     vec3 towards;   // unit, from the axis to the point
     float distance; // from the axis
-    vec3 side;      // unit: normal of the plane of axis and point
+    float start;    // where the ends are along the axis, from the point's foot on it
+    float end;
+    float half_length;
     float radius;
     int ends;
-    bool outside;   // the point is outside the infinite cylinder. Else the first rim is all that is seen: a disk
+    bool outside;   // the point is outside the infinite cylinder. Else a disk is all that is seen
     bool seen;      // there is something to see
-    bool before;    // the point is before the start, along the axis
-    bool past;      // or past the end
-    ArealightRim rims[2];
 };
 
-// An end's rim. `outwards` is -1 at the start, 1 at the end; `cosine` and `sine` of half the angle under which the
-// circle of the tube sees its own contacts.
-ArealightRim arealight_tube_rim(ArealightTube tube, vec3 center, float outwards, float cosine, float sine) {
-    vec3 towards = tube.towards;
+// A point of the axis, from the shading point.
+vec3 arealight_on_axis(ArealightTube tube, float place) {
+    return place * tube.axis - tube.distance * tube.towards;
+}
+
+// An end's rim, of a tube seen from outside. `outwards` is -1 at the start, 1 at the end.
+ArealightRim arealight_tube_rim(ArealightTube tube, float outwards) {
+    float place = outwards < 0.0 ? tube.start : tube.end;
+    vec3 side = cross(tube.axis, tube.towards);
+    // Half the angle under which the circle of the tube sees its own contacts
+    float contact = tube.radius / tube.distance;
+    float sine = sqrt(max((tube.distance - tube.radius) * (tube.distance + tube.radius), 0.0)) / tube.distance;
     ArealightRim rim;
+    // The outer part of a half sphere's circle, the far half of a rim where the cap behind it is seen
+    rim.reflex = tube.ends != AREALIGHT_TUBE_OPEN && outwards * place < 0.0;
     if (tube.ends == AREALIGHT_TUBE_ROUND) {
         // The circle where the cone of tangents meets the sphere, and of that the outer part
-        float place = dot(center, tube.axis);
         float square = place * place + tube.distance * tube.distance;
         float reciprocal = inversesqrt(max(square, AREALIGHT_TINY));
         float share = tube.radius * tube.radius * (reciprocal * reciprocal);
         float ring = tube.radius * sqrt(max(1.0 - share, 0.0));
-        rim.center = center * (1.0 - share);
-        rim.middle = (outwards * ring * reciprocal) * (tube.distance * tube.axis + place * towards);
-        rim.side = tube.side * ring;
-        vec2 half_width = vec2(outwards * cosine * place * reciprocal, sine);
+        rim.center = arealight_on_axis(tube, place) * (1.0 - share);
+        rim.middle = (outwards * ring * reciprocal) * (tube.distance * tube.axis + place * tube.towards);
+        rim.side = side * ring;
+        vec2 half_width = vec2(outwards * contact * place * reciprocal, sine);
         rim.half_width = half_width * inversesqrt(dot(half_width, half_width) + AREALIGHT_TINY);
         return rim;
     }
-    // The far half of the rim where the cap behind it is seen
-    bool far = tube.ends == AREALIGHT_TUBE_FLAT && outwards * dot(center, tube.axis) < 0.0;
-    rim.center = center;
-    rim.middle = towards * (far ? -tube.radius : tube.radius);
-    rim.side = tube.side * tube.radius;
-    rim.half_width = vec2(far ? -cosine : cosine, sine);
+    rim.center = arealight_on_axis(tube, place);
+    rim.middle = tube.towards * (rim.reflex ? -tube.radius : tube.radius);
+    rim.side = side * tube.radius;
+    rim.half_width = vec2(rim.reflex ? -contact : contact, sine);
     return rim;
 }
 
+// All that is seen of a tube from within the infinite cylinder: an end's whole disk.
+ArealightSilhouette arealight_tube_disk(ArealightTube tube) {
+    vec3 center = arealight_on_axis(tube, tube.start > 0.0 ? tube.start : tube.end);
+    if (tube.ends == AREALIGHT_TUBE_ROUND) {
+        return arealight_sphere_silhouette(center, tube.radius);
+    }
+    vec3 axis_u, axis_v;
+    arealight_perpendiculars(tube.axis, axis_u, axis_v);
+    return ArealightSilhouette(center, axis_u * tube.radius, axis_v * tube.radius, false);
+}
+
 // What is seen of a tube. Its `center` is from the shading point, its axis from center - half_axis to center + half_axis, in
-// a space that keeps lengths. A tube keeps its shape however far it is.
+// a space that keeps lengths, in any unit; lengths from 1e-14 to 1e18.
 ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends) {
     ArealightTube tube;
+    // The difference form takes fourth powers of distances
     float largest = max(max(arealight_max_component(center), arealight_max_component(half_axis)), radius);
-    float scale = arealight_power_of_two_scale(largest);
-    tube.center = center * scale;
-    tube.half_axis = half_axis * scale;
-    tube.start = tube.center - tube.half_axis;
-    tube.end = tube.center + tube.half_axis;
+    float scale = AREALIGHT_USES_DIFFERENCE ? arealight_power_of_two_scale(largest) : 1.0;
+    center *= scale;
+    half_axis *= scale;
+    vec3 start = center - half_axis;
+    vec3 end = center + half_axis;
     tube.radius = radius * scale;
     tube.ends = ends;
-    tube.axis = arealight_normalize_or(tube.half_axis, vec3(1.0, 0.0, 0.0));
+    tube.axis = arealight_normalize_or(half_axis, vec3(1.0, 0.0, 0.0));
+    tube.start = dot(start, tube.axis);
+    tube.end = dot(end, tube.axis);
+    tube.half_length = dot(half_axis, tube.axis);
     // From the axis to the point, by the nearer end
-    vec3 near = dot(tube.start, tube.start) < dot(tube.end, tube.end) ? tube.start : tube.end;
+    vec3 near = dot(start, start) < dot(end, end) ? start : end;
     vec3 foot = near - tube.axis * dot(near, tube.axis);
     foot -= tube.axis * dot(foot, tube.axis);
     float square = dot(foot, foot);
     float reciprocal = inversesqrt(max(square, AREALIGHT_TINY));
     tube.distance = square * reciprocal;
     tube.towards = -foot * reciprocal;
-    tube.side = cross(tube.axis, tube.towards);
-    tube.before = dot(tube.start, tube.axis) > 0.0;
-    tube.past = dot(tube.end, tube.axis) < 0.0;
     tube.outside = tube.distance > tube.radius;
-    tube.seen = tube.outside || (ends != AREALIGHT_TUBE_OPEN && (tube.before || tube.past));
-    float cosine = tube.radius * reciprocal;
-    float sine = sqrt(max((tube.distance - tube.radius) * (tube.distance + tube.radius), 0.0)) * reciprocal;
-    tube.rims[0] = arealight_tube_rim(tube, tube.start, -1.0, cosine, sine);
-    tube.rims[1] = arealight_tube_rim(tube, tube.end, 1.0, cosine, sine);
+    tube.seen = true;
     if (!tube.outside) {
-        // One end is all that is seen: its whole disk
-        vec3 center = tube.before ? tube.start : tube.end;
-        if (ends == AREALIGHT_TUBE_ROUND) {
-            ArealightSilhouette disk = arealight_sphere_silhouette(center, tube.radius);
-            tube.seen = tube.seen && !disk.inside;
-            tube.rims[0] = ArealightRim(disk.center, disk.axis_u, disk.axis_v, vec2(-1.0, 0.0));
-        } else {
-            vec3 axis_u, axis_v;
-            arealight_perpendiculars(tube.axis, axis_u, axis_v);
-            tube.rims[0] = ArealightRim(center, axis_u * tube.radius, axis_v * tube.radius, vec2(-1.0, 0.0));
-        }
+        bool beyond = tube.start > 0.0 || tube.end < 0.0;
+        tube.seen = ends != AREALIGHT_TUBE_OPEN && beyond && !arealight_tube_disk(tube).inside;
     }
     return tube;
 }

@@ -152,15 +152,15 @@ float arealight_line_form_factor(vec3 start, vec3 along, float width) {
 // end is not small. Clipped at the horizon; arguments as arealight_tube_form_factor's.
 float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, out bool is_small) {
     // The anchor is the tube's center
-    vec3 half_axis = transform * tube.half_axis;
+    vec3 half_axis = transform * (tube.half_length * tube.axis);
     float extent = sqrt(dot(half_axis, half_axis));
-    ArealightAnchor anchor = arealight_anchor(transform * tube.center, extent, horizon);
+    ArealightAnchor anchor = arealight_anchor(transform * arealight_on_axis(tube, 0.5 * (tube.start + tube.end)), extent, horizon);
     // Both ends. A half sphere has its outline on a disk about its center
     ArealightSmallEnd ends[2];
     for (int i = 0; i < 2; i++) {
-        ArealightRim rim = tube.rims[i];
-        vec3 center = i == 0 ? tube.start : tube.end;
-        float square = dot(center, center);
+        ArealightRim rim = arealight_tube_rim(tube, i == 0 ? -1.0 : 1.0);
+        float place = i == 0 ? tube.start : tube.end;
+        float square = place * place + tube.distance * tube.distance;
         float grow = square / max(square - tube.radius * tube.radius, 1e-37);
         mat3 into = transform * (tube.ends == AREALIGHT_TUBE_ROUND ? grow : 1.0);
         ends[i] = arealight_small_end(anchor, i == 0 ? -half_axis : half_axis, into * rim.middle, into * rim.side,
@@ -181,9 +181,9 @@ float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, ou
     bool straight = slant * slant <= 2.0 * AREALIGHT_TUBE_CUT * distance * max(2.0 * abs(half_axis.z), slant);
     bool slim = width < 2.0 * AREALIGHT_TUBE_SLIM * extent;
     if (thin && slim && straight) {
-        float line = arealight_line_form_factor(transform * tube.start, 2.0 * half_axis, width);
+        float line = arealight_line_form_factor(transform * arealight_on_axis(tube, tube.start), 2.0 * half_axis, width);
         float sides = segments * AREALIGHT_INVERSE_TWO_PI;
-        float squares = dot(tube.start, tube.start) + dot(tube.end, tube.end);
+        float squares = tube.start * tube.start + tube.end * tube.end + tube.distance * tube.distance;
         return arealight_guarded_form_factor(volume < 0.0 ? line + sides : line - sides, squares);
     }
     // From the start's rim along one edge to the end's, and back
