@@ -1,12 +1,12 @@
 //! What absent effects cost on a device: the shade kernel and pass with one set of effects after another over one frame in which
-//! nothing calls for them, beside kernels that were stripped by hand.
+//! nothing calls for them.
 //!
 //! The machines that this runs on are shared: every method is run in turn, round after round, forwards and
 //! backwards, and read as a ratio to the yardstick in the same round; of software in processor time.
 
 use crate::cost::quantile;
 use crate::textures::clocked;
-use arealight::kernels::{Kernel, SHADE};
+use arealight::kernels::SHADE;
 use arealight::plan::{Output, ShadeOptions, shade_specialization};
 use arealight::{Effects, Quality};
 use arealight_engine::{EngineError, SceneRenderer};
@@ -14,31 +14,13 @@ use arealight_host::Host;
 use serde::Serialize;
 use std::fmt::Write as _;
 
-/// The shade kernel, stripped by hand to diffuse and glossy lobes of one-sided quads without images, or to the
-/// diffuse lobe; on the first rungs, positions from an image, adding.
-pub static SHADE_STRIPPED: Kernel = Kernel {
-    constants: &[DIFFUSE_ONLY],
-    ..SHADE.like("shade_stripped", include_bytes!("../spirv/shade_stripped.spv"))
-};
-
-const DIFFUSE_ONLY: u32 = 0;
-
 /// What is timed.
 #[derive(Debug, Clone)]
 enum Method {
-    Stripped {
-        diffuse_only: bool,
-    },
     /// The pass: of the effects it has what the frame's lights and surfaces call for.
-    Pass {
-        effects: Effects,
-        quality: Quality,
-    },
+    Pass { effects: Effects, quality: Quality },
     /// The kernel with the code of all of the effects.
-    Kernel {
-        effects: Effects,
-        quality: Quality,
-    },
+    Kernel { effects: Effects, quality: Quality },
 }
 
 /// A method's time.
@@ -69,9 +51,6 @@ impl Run {
         let options =
             |effects, quality| ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
         clocked(host, || match self.method {
-            Method::Stripped { diffuse_only } => {
-                renderer.shade_by(&SHADE_STRIPPED, &[(DIFFUSE_ONLY, u32::from(diffuse_only))])
-            }
             Method::Pass { effects, quality } => renderer.shade_as(options(effects, quality)),
             Method::Kernel { effects, quality } => {
                 renderer.shade_by(&SHADE, &shade_specialization(options(effects, quality)))
@@ -87,17 +66,15 @@ fn runs() -> Vec<Run> {
     let both = Effects::DIFFUSE | Effects::GLOSSY;
     let exact = Quality::default();
     let mut runs = vec![
-        run("both lobes, stripped by hand".into(), Method::Stripped { diffuse_only: false }, 0),
         run(both.to_string(), shade(both, exact), 0),
-        run("diffuse lobe, stripped by hand".into(), Method::Stripped { diffuse_only: true }, 2),
-        run(Effects::DIFFUSE.to_string(), shade(Effects::DIFFUSE, exact), 2),
+        run(Effects::DIFFUSE.to_string(), shade(Effects::DIFFUSE, exact), 0),
     ];
     for added in (Effects::all() - both).iter() {
         let (effects, name) = (both | added, (both | added).to_string());
-        runs.push(run(format!("{name}, compiled in"), Method::Kernel { effects, quality: exact }, 1));
-        runs.push(run(name, shade(effects, exact), 1));
+        runs.push(run(format!("{name}, compiled in"), Method::Kernel { effects, quality: exact }, 0));
+        runs.push(run(name, shade(effects, exact), 0));
     }
-    runs.push(run("every effect".into(), shade(Effects::all(), exact), 1));
+    runs.push(run("every effect".into(), shade(Effects::all(), exact), 0));
     runs
 }
 

@@ -23,7 +23,6 @@ pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
-use crate::instructions::Instructions;
 use crate::textures::is_software;
 use arealight::{Effects, LightTable, Profile, ProfileRung, Quality};
 use arealight_engine::{Engine, EngineError, GBuffer};
@@ -129,9 +128,6 @@ pub struct EffectCost {
     pub on: Spread,
     /// Time of a frame of lights that call for it, over one of quads.
     pub used: Option<Spread>,
-    /// Instructions of the shade kernel's SPIR-V that it adds, after `spirv-opt`; see [`crate::instructions`]. Fewer than none
-    /// where a loop takes the place of what was unrolled.
-    pub instructions: Option<i64>,
 }
 
 /// What was found.
@@ -245,7 +241,6 @@ pub fn run(
         .map(|((workload, named, errors), clock)| row(workload, named, errors, clock.time(yardstick)))
         .collect();
     let default = rows.iter().position(|row| row.name == DEFAULT).unwrap_or(0);
-    let counted = Instructions::checked_in();
     let effects = effects.iter().zip(&timed.effects).map(|(effect, clock)| {
         let default = &timed.methods[default];
         // Without a lobe it is the other way round
@@ -255,8 +250,7 @@ pub fn run(
         let all = workloads.iter().flat_map(|workload| &workload.methods).zip(&timed.methods);
         let mut others = all.skip(workloads[0].methods.len());
         let used = others.find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));
-        let added = counted.added_by(*effect).map(|added| i64::from(added.with) - i64::from(added.without));
-        EffectCost { effect: effect.names().join(", "), on, used, instructions: added }
+        EffectCost { effect: effect.names().join(", "), on, used }
     });
     let effects = effects.collect();
     let times: Vec<Time> = timed.samples.iter().map(|clock| clock.time(yardstick)).collect();

@@ -5,8 +5,7 @@
 //! | [`school`] | the yardsticks: how others compute a form factor |
 //! | [`published`] | a table of the quality that others ship |
 //! | [`method`] | the ways to compute a form factor: every quality level of the library, and the yardsticks |
-//! | [`effects`] | the time of the shade kernel by effect, and of what is stripped by hand |
-//! | [`instructions`] | what each effect and rung adds in instructions |
+//! | [`effects`] | the time of the shade kernel and pass by effect |
 //! | [`cost`] | the time of each rung of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
@@ -29,7 +28,6 @@ pub mod compiled;
 pub mod cost;
 pub mod effects;
 pub mod footprints;
-pub mod instructions;
 pub mod kernel;
 pub mod ladder;
 pub mod method;

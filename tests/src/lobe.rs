@@ -4,7 +4,7 @@
 //! # The bound
 //! A backward one: the kernel's result is what some inputs near the given ones have, but for what is promised of the
 //! form factor itself (6e-7, and a short series' share). The inputs move by
-//! - 4 units in the last place of each vertex' distance in cosine space, as `form_factor.glsl` says of it;
+//! - 4 units in the last place of each vertex' distance in cosine space, as `form_factor/quad.glsl` says of it;
 //! - `PRODUCT` units of each row's length times a vertex' distance, for the products that take it there;
 //! - `ROW` units of each row's length, for the row itself: the frame, the texel, the mirror frame;
 //! - `AXIS` units of the table's two axes.

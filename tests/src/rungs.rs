@@ -58,7 +58,7 @@ impl Rung {
         }
     }
 
-    /// What `form_factor.glsl` promises of it.
+    /// What `form_factor/quad.glsl` promises of it.
     pub fn promises(self) -> Promises {
         match self.quality.form_factor {
             FormFactor::Exact => Promises::EXACT,

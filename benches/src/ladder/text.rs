@@ -118,17 +118,10 @@ impl Ladder {
     fn effects(&self) -> Table {
         let row = |effect: &super::EffectCost| {
             let used = effect.used.as_ref().map_or_else(|| "-".to_owned(), spread);
-            let instructions =
-                effect.instructions.map_or_else(|| "-".to_owned(), |count| format!("{count:+}"));
-            vec![effect.effect.clone(), spread(&effect.on), used, instructions]
+            vec![effect.effect.clone(), spread(&effect.on), used]
         };
         table(
-            &[
-                "effect",
-                "turned on, time without it = 1",
-                "lights that call for it, quads = 1",
-                "SPIR-V instructions",
-            ],
+            &["effect", "turned on, time without it = 1", "lights that call for it, quads = 1"],
             self.effects.iter().map(row).collect(),
         )
     }

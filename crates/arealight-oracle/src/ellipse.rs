@@ -1,7 +1,7 @@
 //! The clamped cosine integrated over a flat ellipse, in closed form: the *form factor* of a disk light, and of
 //! what a linear transform makes of one.
 //!
-//! The twin of `shaders/include/arealight/ellipse.glsl` and `elliptic_arc.glsl`, step by step; where float64 allows,
+//! The twin of `shaders/include/arealight/form_factor/ellipse.glsl` and `elliptic_arc.glsl`, step by step; where float64 allows,
 //! the same in fewer words. [`contour_form_factor`] is the same integral by another way.
 //!
 //! # Accuracy

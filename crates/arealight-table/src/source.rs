@@ -66,7 +66,7 @@ pub fn glsl(file: &TableFile) -> String {
     let mut text = format!(
         "#ifndef AREALIGHT_TABLE_CONSTANT_GLSL\n#define AREALIGHT_TABLE_CONSTANT_GLSL\n\n\
          // The bridge to the table, for a shader without a table texture: include this after\n\
-         // arealight/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a side is for a texture.\n//\n\
+         // arealight/lobes/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a side is for a texture.\n//\n\
          {}\n\
          const uint AREALIGHT_TABLE_WORDS[{count}] = uint[{count}](\n",
         count * 4,
@@ -113,7 +113,7 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         match table.description().grazing_dip {
             GrazingDip::None => "    The dip is 0.".to_owned(),
             GrazingDip::Ggx => {
-                "    The dip is 1: take arealight_ggx_grazing_dip (arealight/table.glsl) away from what was \
+                "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what was \
                 interpolated."
                     .to_owned()
             }

@@ -4,7 +4,7 @@
 bitflags::bitflags! {
     /// A set of effects: the lobes, light properties and surface inputs that a shade pass must handle.
     ///
-    /// The bits are those of `shaders/include/arealight/effects.glsl`; a test compares the two. A set that is
+    /// The bits are those of `shaders/kernels/effects.glsl`; a test compares the two. A set that is
     /// too large only costs time; a set that is too small for the lights is refused when they are packed for
     /// a pass ([`Effects::missing_for`]).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

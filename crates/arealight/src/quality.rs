@@ -3,7 +3,7 @@
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
 /// Either returns a finite number in [0, 1], whatever comes in, and keeps the promises that
-/// `shaders/include/arealight/form_factor.glsl` states.
+/// `shaders/include/arealight/form_factor/quad.glsl` states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum FormFactor {

@@ -5,7 +5,6 @@
 //! cargo run -p xtask -- shaders                  # shaders/kernels/*.comp -> crates/arealight/spirv/*.spv,
 //!                                                # and the benchmarks' and the host's tests' own
 //! cargo run -p xtask -- shaders --check          # are they fresh?
-//! cargo run -p xtask -- instructions             # what each effect and rung adds to the shade kernel
 //! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
 //! cargo run -p xtask -- header                   # crates/arealight-capi -> its include/arealight.h
 //! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
@@ -16,7 +15,6 @@
 mod compile;
 mod header;
 mod includes;
-mod instructions;
 mod library;
 mod lint;
 mod manifest;
@@ -42,8 +40,6 @@ struct CommandLine {
 enum Task {
     /// Compile the kernels to the SPIR-V that the crate `arealight` embeds.
     Shaders(shaders::Arguments),
-    /// Count the instructions of the shade kernel, specialised, by effect and by rung.
-    Instructions(instructions::Arguments),
     /// Compile each file of the GLSL library on its own, and check the library's rules.
     Includes,
     Header(header::Arguments),
@@ -64,8 +60,6 @@ pub(crate) enum TaskError {
     Compiler(shaderc::Error),
     #[error("there is no kernel {name} (there are: {available})")]
     NoSuchKernel { name: String, available: String },
-    #[error("{}: {message}", path.display())]
-    Unreadable { path: PathBuf, message: String },
     #[error("cannot run {program}: {source}. On Debian: apt-get install {package}")]
     Program { program: &'static str, package: &'static str, source: std::io::Error },
     #[error("cargo {arguments} failed:\n{message}")]
@@ -87,7 +81,6 @@ fn main() -> ExitCode {
     let root = root.canonicalize().unwrap_or(root);
     let outcome = match CommandLine::parse().task {
         Task::Shaders(arguments) => shaders::run(&root, &arguments),
-        Task::Instructions(arguments) => instructions::run(&root, &arguments),
         Task::Includes => includes::run(&root),
         Task::Header(arguments) => header::run(&root, &arguments),
         Task::Matrix(arguments) => matrix::run(&root, &arguments),

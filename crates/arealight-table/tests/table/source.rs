@@ -75,7 +75,7 @@ fn a_c_compiler_finds_the_same_numbers() {
 fn compile_glsl(constants: &str) -> Option<Output> {
     let shader = format!(
         "#version 450\n#extension GL_GOOGLE_include_directive : require\n\
-         #include \"arealight/table.glsl\"\n{constants}\n\
+         #include \"arealight/lobes/table.glsl\"\n{constants}\n\
          layout(local_size_x = 1) in;\n\
          layout(std430, set = 0, binding = 0) buffer Out {{ vec4 result; }};\n\
          void main() {{\n    result = arealight_table_bilinear(2, vec2(0.5), arealight_bridge_table_size())\n        \

@@ -1,17 +1,16 @@
-//! `arealight effects`: what a scene calls for, why, and what each effect costs.
+//! `arealight effects`: what a scene calls for, and why.
 
 use crate::failure::Failure;
 use crate::output::print;
 use arealight::Effects;
-use arealight_benches::instructions::Instructions;
 use arealight_scene::{Call, Scene, required_effects};
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What a scene calls for, why, and what each effect adds to the shade kernel in instructions.
+/// What a scene calls for, and why.
 ///
-/// Shaders are made for these effects alone; docs/effects.md says what that saves.
+/// Shaders are made for these effects alone; docs/effects.md says what that saves, docs/gpu.md what each costs a GPU.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A .gltf or .glb file
@@ -28,12 +27,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         eprintln!("warning: {}: {warning}", path.display());
     }
     let calls = required_effects(&scene);
-    let instructions = Instructions::checked_in();
-    print(&if arguments.json {
-        to_json(arguments, &calls, &instructions)
-    } else {
-        to_text(&calls, &instructions)
-    })
+    print(&if arguments.json { to_json(arguments, &calls) } else { to_text(&calls) })
 }
 
 /// Who calls for an effect, if anybody does.
@@ -41,49 +35,28 @@ fn reason(calls: &[Call], effect: Effects) -> Option<&str> {
     calls.iter().find(|call| call.effect == effect).map(|call| call.reason.as_str())
 }
 
-fn to_text(calls: &[Call], instructions: &Instructions) -> String {
-    let reasons: Vec<_> = Effects::all().iter().map(|effect| (effect, reason(calls, effect))).collect();
-    let width = reasons.iter().map(|(_, reason)| reason.unwrap_or("-").len()).max().unwrap_or(0).max(9);
-    let mut lines = vec![format!("{:16} {:width$}  instructions", "effect", "called by")];
-    for (effect, reason) in reasons {
-        let added = instructions.added_by(effect).map_or_else(
-            || "not counted".to_owned(),
-            |added| format!("{:+}", i64::from(added.with) - i64::from(added.without)),
-        );
-        lines.push(format!("{:16} {:width$}  {added:>12}", effect.to_string(), reason.unwrap_or("-")));
-    }
-    if let Some(plain) = instructions.find("plain") {
-        let both = Effects::from_bits_truncate(plain.effects);
-        lines.push(format!(
-            "\nInstructions of the shade kernel's SPIR-V after {}, beside {} with {both} on the first quality \
-             levels.",
-            instructions.tool, plain.instructions
-        ));
+fn to_text(calls: &[Call]) -> String {
+    let mut lines = vec![format!("{:16} called by", "effect")];
+    for effect in Effects::all().iter() {
+        lines.push(format!("{:16} {}", effect.to_string(), reason(calls, effect).unwrap_or("-")));
     }
     let called: Effects = calls.iter().map(|call| call.effect).collect();
-    lines.push(format!("This scene's set: {called}\n"));
+    lines.push(format!("\nThis scene's set: {called}\n"));
     lines.join("\n")
 }
 
-fn to_json(arguments: &Arguments, calls: &[Call], instructions: &Instructions) -> String {
+fn to_json(arguments: &Arguments, calls: &[Call]) -> String {
     let effects: Vec<_> = Effects::all()
         .iter()
         .map(|effect| {
-            let added = instructions.added_by(effect);
-            json!({
-                "effect": effect.to_string(),
-                "required": reason(calls, effect).is_some(),
-                "reason": reason(calls, effect),
-                "instructions_without": added.map(|added| added.without),
-                "instructions_with": added.map(|added| added.with),
-            })
+            let reason = reason(calls, effect);
+            json!({ "effect": effect.to_string(), "required": reason.is_some(), "reason": reason })
         })
         .collect();
     let summary = json!({
         "scene": arguments.scene,
         "effects": effects,
         "required": calls.iter().map(|call| call.effect.to_string()).collect::<Vec<_>>(),
-        "counted_by": instructions.tool,
     });
     format!("{summary:#}\n")
 }

@@ -4,7 +4,6 @@ use arealight_benches::ladder::{
     BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Growth, Ladder, Row, number, percent,
 };
 use arealight_benches::svg::{Axis, Drawing, Labels, grid, label, number_short};
-use std::fmt::Write as _;
 
 /// The colours of what is ours, of others', and of Monte Carlo, in words.
 const KEY: &str = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>our quality levels</span>\
@@ -165,10 +164,7 @@ pub fn effects(found: &Ladder) -> String {
             drawing.bar(class, [130.0, y], [end - 130.0, 14.0]);
             let [low, high] = spread.quartiles.map(at);
             drawing.line("spread", [low, y + 7.0], [high, y + 7.0]);
-            let mut text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
-            if let Some(count) = effect.instructions.filter(|_| part == 0) {
-                let _ = write!(text, ", {count:+} instructions");
-            }
+            let text = format!("{:+.0} %", (spread.median - 1.0) * 100.0);
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
     }
