@@ -1,9 +1,8 @@
 //! `matrix`: the exported GLSL library through two compilers, as hosts of every kind would compile it.
 //!
-//! The kinds are stages (fragment, compute), images and samplers (apart, combined), and what the library can be asked
-//! for: each toggle, each effect and each rung alone, and all together. They are read from the library itself, so that a
-//! new one is in the matrix from its first day. Every module goes through spirv-val. Cases that must fail, and say why,
-//! show that the matrix can.
+//! The kinds are stages (fragment, compute), images and samplers (apart, combined), and each option of the library, alone and with
+//! every kind of light. They are read from the library itself, so that a new one is in the matrix from its first day. Every module
+//! goes through spirv-val. Cases that must fail, and say why, show that the matrix can.
 
 use crate::TaskError;
 use crate::library::Library;
@@ -108,44 +107,54 @@ fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
     cases
 }
 
-/// What the library can be asked for: in words, and as macros of the host.
+/// What a host may switch: in words, and as macros of the host.
 fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
-    let toggles = |on: &dyn Fn(&str) -> bool| -> Vec<(String, String)> {
-        library.toggles.iter().map(|name| (name.clone(), u32::from(on(name)).to_string())).collect()
+    // Every option at its default, but for those given
+    let set = |changes: &[(&str, u32)]| -> Vec<(String, String)> {
+        let value = |name: &str, default: u32| {
+            changes.iter().find(|(changed, _)| *changed == name).map_or(default, |(_, value)| *value)
+        };
+        library
+            .options
+            .iter()
+            .map(|(name, default)| (name.clone(), value(name, *default).to_string()))
+            .collect()
     };
-    // The host's literals: an expression of effects, and one rung that is not the first of its field
-    let literals = |effects: &str, rung: Option<&(String, String)>| -> Vec<(String, String)> {
-        let mut macros = vec![("EFFECTS".into(), effects.to_owned()), ("SHAPES".into(), "0".into())];
-        for field in &library.quality_fields {
-            let value = rung.filter(|(of, _)| of == field).map_or("0", |(_, value)| value);
-            macros.push((field.clone(), value.to_owned()));
+    let every_kind: Vec<(&str, u32)> = library
+        .options
+        .iter()
+        .filter(|(name, _)| has_bridges(name))
+        .map(|(name, _)| (name.as_str(), 1))
+        .collect();
+    let mut variants =
+        vec![("defaults".to_owned(), set(&[])), ("every kind of light".to_owned(), set(&every_kind))];
+    for (name, default) in &library.options {
+        let changed = (name.as_str(), 1 - default.min(&1));
+        variants.push((format!("{name} {} alone", changed.1), set(&[changed])));
+        if !has_bridges(name) {
+            variants.push((
+                format!("{name} {} with every kind of light", changed.1),
+                set(&[&every_kind[..], &[changed]].concat()),
+            ));
         }
-        macros
-    };
-    let all = "0xffffffffu";
-    let mut variants = vec![
-        ("nothing".to_owned(), [toggles(&|_| false), literals("0u", None)].concat()),
-        ("every effect, no toggle".to_owned(), [toggles(&|_| false), literals(all, None)].concat()),
-    ];
-    for name in &library.toggles {
-        variants
-            .push((format!("{name} alone"), [toggles(&|other| other == name), literals(all, None)].concat()));
     }
-    for name in &library.effects {
-        variants.push((format!("{name} alone"), [toggles(&|_| true), literals(name, None)].concat()));
-    }
-    for rung in &library.rungs {
-        variants
-            .push((format!("{} alone", rung.1), [toggles(&|_| true), literals(all, Some(rung))].concat()));
-    }
+    let split = [&every_kind[..], &[("AREALIGHT_FOOTPRINT", 2)]].concat();
+    variants.push(("AREALIGHT_FOOTPRINT 2 with every kind of light".to_owned(), set(&split)));
     variants.push(("everything".to_owned(), everything(library)));
     variants
 }
 
-/// Every toggle on, and all effects and rungs open until the pipeline is made.
+/// Whether an option decides which bridges a host has to define: those are 0 or 1, not constants of a pipeline.
+fn has_bridges(option: &str) -> bool {
+    let name = option.trim_start_matches("AREALIGHT_");
+    ["LIGHT_TEXTURES", "QUADS", "POLYGONS", "MESHES", "DISKS", "SPHERES", "TUBES"].contains(&name)
+}
+
+/// Every kind of light and all bridges, the other options open until the pipeline is made.
 fn everything(library: &Library) -> Vec<(String, String)> {
-    let mut macros: Vec<_> = library.toggles.iter().map(|name| (name.clone(), "1".to_owned())).collect();
-    macros.extend([("SPECIALIZED".to_owned(), "1".to_owned()), ("SHAPES".to_owned(), "1".to_owned())]);
+    let kinds = library.options.iter().filter(|(name, _)| has_bridges(name));
+    let mut macros: Vec<_> = kinds.map(|(name, _)| (name.clone(), "1".to_owned())).collect();
+    macros.push(("SPECIALIZED".to_owned(), "1".to_owned()));
     macros
 }
 
