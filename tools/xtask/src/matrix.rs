@@ -1,7 +1,7 @@
 //! `matrix`: the exported GLSL library through two compilers, as hosts of every kind would compile it.
 //!
 //! The kinds are stages (fragment, compute), images and samplers (apart, combined), and what the library can be asked
-//! for: each toggle, each effect and each rung alone, and all together. They are read from the library itself, so that a
+//! for: each option alone, all but each, and all as specialisation constants. They are read from the library itself, so that a
 //! new one is in the matrix from its first day. Every module goes through spirv-val. Cases that must fail, and say why,
 //! show that the matrix can.
 
@@ -110,42 +110,30 @@ fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
 
 /// What the library can be asked for: in words, and as macros of the host.
 fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
-    let toggles = |on: &dyn Fn(&str) -> bool| -> Vec<(String, String)> {
-        library.toggles.iter().map(|name| (name.clone(), u32::from(on(name)).to_string())).collect()
+    let options = |value: &dyn Fn(&str) -> u32| -> Vec<(String, String)> {
+        library.options.iter().map(|option| (option.name.clone(), value(&option.name).to_string())).collect()
     };
-    // The host's literals: an expression of effects, and one rung that is not the first of its field
-    let literals = |effects: &str, rung: Option<&(String, String)>| -> Vec<(String, String)> {
-        let mut macros = vec![("EFFECTS".into(), effects.to_owned()), ("SHAPES".into(), "0".into())];
-        for field in &library.quality_fields {
-            let value = rung.filter(|(of, _)| of == field).map_or("0", |(_, value)| value);
-            macros.push((field.clone(), value.to_owned()));
-        }
-        macros
-    };
-    let all = "0xffffffffu";
     let mut variants = vec![
-        ("nothing".to_owned(), [toggles(&|_| false), literals("0u", None)].concat()),
-        ("every effect, no toggle".to_owned(), [toggles(&|_| false), literals(all, None)].concat()),
+        ("the defaults".to_owned(), vec![]),
+        ("nothing".to_owned(), options(&|_| 0)),
+        ("all on".to_owned(), options(&|_| 1)),
+        // The one option of more than two values
+        ("AREALIGHT_FOOTPRINT 2".to_owned(), options(&|name| 1 + u32::from(name == "AREALIGHT_FOOTPRINT"))),
+        ("everything".to_owned(), everything(library)),
     ];
-    for name in &library.toggles {
-        variants
-            .push((format!("{name} alone"), [toggles(&|other| other == name), literals(all, None)].concat()));
+    for option in &library.options {
+        let name = &option.name;
+        variants.push((format!("{name} alone"), options(&|other| u32::from(other == name))));
+        variants.push((format!("all but {name}"), options(&|other| u32::from(other != name))));
     }
-    for name in &library.effects {
-        variants.push((format!("{name} alone"), [toggles(&|_| true), literals(name, None)].concat()));
-    }
-    for rung in &library.rungs {
-        variants
-            .push((format!("{} alone", rung.1), [toggles(&|_| true), literals(all, Some(rung))].concat()));
-    }
-    variants.push(("everything".to_owned(), everything(library)));
     variants
 }
 
-/// Every toggle on, and all effects and rungs open until the pipeline is made.
+/// What decides over bridges on, and all else open until the pipeline is made.
 fn everything(library: &Library) -> Vec<(String, String)> {
-    let mut macros: Vec<_> = library.toggles.iter().map(|name| (name.clone(), "1".to_owned())).collect();
-    macros.extend([("SPECIALIZED".to_owned(), "1".to_owned()), ("SHAPES".to_owned(), "1".to_owned())]);
+    let literals = library.options.iter().filter(|option| option.is_literal);
+    let mut macros: Vec<_> = literals.map(|option| (option.name.clone(), "1".to_owned())).collect();
+    macros.push(("SPECIALIZED".to_owned(), "1".to_owned()));
     macros
 }
 
