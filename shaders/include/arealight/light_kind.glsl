@@ -14,7 +14,9 @@
 //     // The colour that a lobe sees of its image, 1 without: what the radiance is multiplied with
 //     vec3 arealight_image_seen(mat3 space, Local local, vec3 vector);
 //
-// AREALIGHT_LIGHT_KIND(Light, Local), the last line of its file, makes of them arealight_reflected and arealight_radiance.
+// AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected and arealight_radiance.
+// EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop AREALIGHT_LOOPED_LOBES, where one after the other
+// costs compilers less than both at once.
 
 // What a surface reflects of a light of unit radiance towards the viewer, per channel.
 struct ArealightReflected {
@@ -40,25 +42,21 @@ float arealight_gained(float form_factor, float gain) {
 //
 // The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the table's lobe, and
 // as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
-#define AREALIGHT_LIGHT_KIND(Light, Local)                                                          \
-    vec3 arealight_lobe_weight(ArealightPoint point, int i, Local local) {                          \
-        if (!arealight_has_lobe(i)) {                                                               \
+#define AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE)                                               \
+    vec3 arealight_lobe_weight(ArealightPoint point, int lobe, Local local) {                       \
+        if (!arealight_has_lobe(lobe)) {                                                            \
             return vec3(0.0);                                                                       \
         }                                                                                           \
-        ArealightLobe lobe = point.lobes[i];                                                        \
-        vec3 vector = arealight_vector_form_factor(lobe.space, local);                              \
-        float form_factor = arealight_gained(arealight_form_factor(vector), lobe.gain);             \
-        return form_factor * arealight_image_seen(lobe.space, local, vector);                       \
+        mat3 space = point.lobes[lobe].space;                                                       \
+        vec3 vector = arealight_vector_form_factor(space, local);                                   \
+        float form_factor = arealight_gained(arealight_form_factor(vector), point.lobes[lobe].gain); \
+        return form_factor * arealight_image_seen(space, local, vector);                            \
     }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \
         Local local;                                                                                \
         if (arealight_to_local(point, light, local)) {                                              \
-            vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);             \
-            vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);           \
-            vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);             \
-            sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;                     \
-            sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo + schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;\
+            EACH_LOBE(sum, point, local)                                                            \
             sum.specular = AREALIGHT_SPLITS_FRESNEL ? max(sum.specular, vec3(0.0)) : sum.specular;  \
         }                                                                                           \
         return sum;                                                                                 \

@@ -43,4 +43,25 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     return point;
 }
 
+// Adds what each lobe reflects, its albedo times arealight_lobe_weight: one after the other, or in a loop. For light_kind.glsl.
+#define AREALIGHT_UNROLLED_LOBES(sum, point, local)                                  \
+    vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
+    vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
+    vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);       \
+    sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
+    sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo             \
+                 + schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;
+#define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
+    for (int i = 0; i < AREALIGHT_LOBES; i++) {                                       \
+        if (!arealight_has_lobe(i)) {                                                 \
+            continue;                                                                 \
+        }                                                                             \
+        vec3 reflected = point.lobes[i].albedo * arealight_lobe_weight(point, i, local); \
+        if (i == AREALIGHT_LOBE_DIFFUSE) {                                            \
+            sum.diffuse = reflected;                                                  \
+        } else {                                                                      \
+            sum.specular += reflected;                                                \
+        }                                                                             \
+    }
+
 #endif

@@ -34,7 +34,7 @@ fn pairs(rung: Rung, seed: u64, edge: f64) -> Property<'static> {
         let far = rows.iter().map(offset).max_by(|a, b| a.length().total_cmp(&b.length())).expect("a vertex");
         // Scale the light to the size that is wanted, and move the center away from its farthest vertex
         let scale = edge * (1.0 - 0.5 * STEP) * center.length() / far.length();
-        let step = if index % 2 == 0 { DVec3::ZERO } else { far.normalize() * (STEP * far.length() * scale) };
+        let step = if index % 2 == 0 { DVec3::ZERO } else { far * (STEP * scale) };
         for row in rows {
             let moved = (offset(row) * scale + step).as_vec3();
             *row = [moved.x, moved.y, moved.z, row[3]];

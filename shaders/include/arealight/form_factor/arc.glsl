@@ -42,7 +42,7 @@ float arealight_acute_weight(float s, float x) {
 }
 
 // The angle from a to b, unit vectors, times the unit normal of their plane, radians. Error 5e-7 of one radian or of the angle,
-// whichever is larger.
+// whichever is larger; for ends within 2e-3 of opposite as if one of them had moved by 2^-24.
 vec3 arealight_arc(vec3 a, vec3 b) {
     vec3 middle = a + b;
     return arealight_arc_weight(cross(a, middle), sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE));

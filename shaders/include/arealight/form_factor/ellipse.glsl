@@ -86,7 +86,7 @@ ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     reciprocal = inversesqrt(max(minor_square, 1e-37));
     ellipse.minor = minor_square * reciprocal;
     minor *= reciprocal;
-    float height = dot(cross(center, major), minor);
+    float height = dot(center, cross(major, minor));
     // The frame's normal is that of the front, or where axes were swapped of the back
     ellipse.front = (height < 0.0) != swapped;
     ellipse.mirrored = height < 0.0;

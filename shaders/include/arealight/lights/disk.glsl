@@ -74,6 +74,6 @@ vec3 arealight_image_seen(mat3 space, ArealightLocalDisk local, vec3 vector) {
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightDiskLight, ArealightLocalDisk)
+AREALIGHT_LIGHT_KIND(ArealightDiskLight, ArealightLocalDisk, AREALIGHT_UNROLLED_LOBES)
 
 #endif

@@ -57,6 +57,6 @@ vec3 arealight_image_seen(mat3 space, ArealightLocalMesh local, vec3 vector) {
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightMeshLight, ArealightLocalMesh)
+AREALIGHT_LIGHT_KIND(ArealightMeshLight, ArealightLocalMesh, AREALIGHT_LOOPED_LOBES)
 
 #endif

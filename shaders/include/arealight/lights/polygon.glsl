@@ -185,6 +185,6 @@ vec3 arealight_image_seen(mat3 space, ArealightLocalPolygon local, vec3 vector) 
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightPolygonLight, ArealightLocalPolygon)
+AREALIGHT_LIGHT_KIND(ArealightPolygonLight, ArealightLocalPolygon, AREALIGHT_LOOPED_LOBES)
 
 #endif

@@ -109,6 +109,6 @@ vec3 arealight_image_seen(mat3 space, ArealightLocalQuad local, vec3 vector) {
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightQuadLight, ArealightLocalQuad)
+AREALIGHT_LIGHT_KIND(ArealightQuadLight, ArealightLocalQuad, AREALIGHT_UNROLLED_LOBES)
 
 #endif

@@ -52,6 +52,6 @@ vec3 arealight_image_seen(mat3 space, ArealightLocalSphere local, vec3 vector) {
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightSphereLight, ArealightLocalSphere)
+AREALIGHT_LIGHT_KIND(ArealightSphereLight, ArealightLocalSphere, AREALIGHT_UNROLLED_LOBES)
 
 #endif

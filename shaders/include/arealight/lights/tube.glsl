@@ -32,6 +32,6 @@ vec3 arealight_image_seen(mat3 space, ArealightTube local, vec3 vector) {
     return vec3(1.0);
 }
 
-AREALIGHT_LIGHT_KIND(ArealightTubeLight, ArealightTube)
+AREALIGHT_LIGHT_KIND(ArealightTubeLight, ArealightTube, AREALIGHT_UNROLLED_LOBES)
 
 #endif

@@ -120,6 +120,9 @@ impl SceneRenderer<'_> {
     ///
     /// # Errors
     /// [`EngineError`] names a light that needs more than the options' effects, or the reason why the device fails.
+    ///
+    /// # Panics
+    /// Never: the pass was made with tiles.
     pub fn tiled(&self, options: ShadeOptions, tiles: TileOptions) -> Result<TiledView, EngineError> {
         let engine = self.engine;
         let host = engine.host();

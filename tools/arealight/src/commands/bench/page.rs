@@ -121,11 +121,11 @@ fn says_pareto(found: &Ladder) -> String {
     if let Some(samples) = default.samples {
         let _ =
             write!(says, "Monte Carlo needs about {} samples for the same error; ", number(samples.error));
-        says += &if samples.time >= 1.0 {
-            format!("in the same time it takes {}. ", number(samples.time))
+        if samples.time >= 1.0 {
+            let _ = write!(says, "in the same time it takes {}. ", number(samples.time));
         } else {
-            "one sample takes longer. ".to_owned()
-        };
+            says.push_str("one sample takes longer. ");
+        }
     }
     says
 }
