@@ -55,7 +55,7 @@ pub enum Function {
     Frame = 0,
     /// `arealight_normalize_or` of a and b, and in w `arealight_power_of_two_scale` of a.w.
     Common = 1,
-    /// `arealight_table_transform` at a normal a, a view b and a roughness a.w: its columns, with albedo, Schlick part and
+    /// `arealight_table_space` at a normal a, a view b and a roughness a.w: its columns, with albedo, Schlick part and
     /// alpha; and the texel of the second matrix.
     Table = 2,
     /// `arealight_ggx_*` of a view a, a light b, an alpha a.w and two random numbers c: f cos with density; half vector with

@@ -227,7 +227,7 @@ pub fn ltc(
 }
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
-/// `arealight_polygon_radiance`. Of `quality` it takes the horizon, how the Fresnel term enters, and where the lobes come from; it integrates
+/// `arealight_radiance`. Of `quality` it takes the horizon, how the Fresnel term enters, and where the lobes come from; it integrates
 /// exactly.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.

@@ -15,7 +15,7 @@ use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_shape_radiance`, as
+/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_radiance`, as
 /// [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With [`Horizon::Both`] outlines are polygons of
 /// many sides, which are off by 1e-6.
 ///
