@@ -4,8 +4,8 @@
 
 // Sorts tiles of 8 x 8 pixels into classes by the lights that contribute to them, and lists those lights: a workgroup per tile. Its
 // invocations read a pixel each, and reduce what they found to bounds over the tile; then they test every 64th light each against
-// the bounds. With CULL lights are left out too that together contribute less than the fraction `cull_threshold` of what the others
-// do, from each pixel, in the sum of the channels.
+// the bounds. With CULL lights are left out too whose contributions add up to less than the fraction `cull_threshold` of those of the
+// others, from each pixel, in the sum of the channels.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -55,7 +55,7 @@ float most_of(uint first) {
     return CULL != 0u && first < KEPT_LIGHTS ? kept_light(index) : contribution(index).y;
 }
 
-// The most that a light may contribute to be left out: so much that those below it together are negligible beside the rest.
+// The limit below which lights are culled: those below it add up to no more than the threshold allows.
 float cull_limit() {
     // Find what all lights contribute at least
     uint invocation = gl_LocalInvocationIndex;

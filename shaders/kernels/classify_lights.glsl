@@ -82,8 +82,8 @@ TileLight tile_light(uint index) {
     return light;
 }
 
-// The least and the most that a light contributes. Where nothing is known or asked of that, the most is TILE_FAR; where it contributes
-// nothing, negative.
+// The least and the most that a light contributes. Without bounds, or without CULL, the most is TILE_FAR; where the light contributes
+// nothing, it is negative.
 vec2 contribution(uint index) {
     if (index >= light_total()) {
         return vec2(0.0, -1.0);

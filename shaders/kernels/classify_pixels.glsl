@@ -95,7 +95,7 @@ void reduce_pixels(ivec2 pixel) {
         float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
         float scale = inversesqrt(1.0 + p * p * sine * sine);
         vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0)) * scale;
-        // The cells say nothing of views from below. NaN, of a cell without a horizon, gets through no comparison
+        // The cells do not hold for views from below. NaN, of a cell without a horizon, fails every comparison
         spread = cosine > 0.0 && range.y - range.x < TILE_FAR ? 0.5 * (range.y - range.x) * sine : TILE_FAR;
         reduce_planes(LOBE_PAIR, horizon, position, has_surface);
 
