@@ -16,7 +16,7 @@ layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 // The same values as in benches/src/model/costs.rs.
 const int METHOD_EXACT = 0;
 const int METHOD_CLIPLESS = 1;
-const int PATH_NONE = 0;    // the lobe's tests alone
+const int PATH_BELOW = 0; // the tests alone
 const int PATH_ABOVE = 1;
 const int PATH_CROSSING_1 = 2; // with one vertex above
 const int PATH_CROSSING_2 = 3;
@@ -112,8 +112,10 @@ vec3 exact(ArealightPoint point, uint index) {
                                        lamps[index].vertices[2].xyz, lamps[index].vertices[3].xyz);
     vec3 offset = lamps[index].center - point.position;
     float side = arealight_lit_side(offset, lamps[index].normal, false);
-    vec3 radiance = vec3(arealight_is_finite(quad) ? side : 0.0, 0.0, 0.0);
+    vec3 radiance = vec3(side, 0.0, 0.0);
     if (IN_FRONT) {
+        // Scalar units do this beside the rest; by itself it would be what the compiler's estimate tells
+        radiance.x = arealight_is_finite(quad) ? side : 0.0;
         ArealightLocalQuad local;
         arealight_quad_to_local(point.to_frame, point.to_frame * offset, quad, local);
         ArealightLobe diffuse = point.lobes[AREALIGHT_LOBE_DIFFUSE];

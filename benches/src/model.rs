@@ -23,8 +23,7 @@ pub const LOBES: usize = 2;
 pub const MOST_LIGHTS: u32 = 32;
 
 /// The kernel that finds the paths.
-static PATHS: Kernel =
-    Kernel { constants: &[], ..SHADE.like("paths", include_bytes!("../spirv/paths.spv")) };
+static PATHS: Kernel = Kernel { constants: &[], ..SHADE.like("paths", include_bytes!("../spirv/paths.spv")) };
 
 /// The pixels of a wave.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,7 +84,7 @@ impl Paths {
 
     /// What a lobe does.
     pub const fn lobe(self, lobe: usize) -> LobePaths {
-        LobePaths(self.0 >> Self::shift(lobe) & ((1 << Self::LOBE_BITS) - 1))
+        LobePaths((self.0 >> Self::shift(lobe)) & ((1 << Self::LOBE_BITS) - 1))
     }
 }
 
@@ -269,10 +268,11 @@ pub fn count(
 pub fn count_scene(engine: &Engine, scene: &Scene, size: [u32; 2]) -> Result<[Counts; 2], ModelError> {
     let camera = scene.camera(None, f64::from(size[0]) / f64::from(size[1]));
     let camera = camera.ok_or_else(|| ModelError::Scene("the scene has no camera".to_owned()))?;
-    let buffers = SceneBuffers::new(scene, camera.position)
-        .map_err(|error| ModelError::Scene(error.to_string()))?;
+    let buffers =
+        SceneBuffers::new(scene, camera.position).map_err(|error| ModelError::Scene(error.to_string()))?;
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    let quads = scene.lights.iter().filter(|light| !light.effects().intersects(Effects::BEYOND_QUADS)).count();
+    let quads =
+        scene.lights.iter().filter(|light| !light.effects().intersects(Effects::BEYOND_QUADS)).count();
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     count(&mut renderer, quads, size)
 }
@@ -282,7 +282,8 @@ mod tests {
     use super::*;
 
     const COSTS: Costs = {
-        let lobe = LobeCosts { above: 170.0, crossing: [180.0, 220.0, 260.0], by_edges: [140.0, 190.0, 230.0] };
+        let lobe =
+            LobeCosts { above: 170.0, crossing: [180.0, 220.0, 260.0], by_edges: [140.0, 190.0, 230.0] };
         Costs {
             exact: MethodCosts { pixel: 400.0, behind: 20.0, in_front: 100.0 },
             clipless: MethodCosts { pixel: 300.0, behind: 10.0, in_front: 600.0 },
@@ -345,14 +346,20 @@ mod tests {
         let by_edges = |diffuse: LobePaths| lobes(diffuse, below).by_edges - 500.0;
         let acute = LobePaths::ABOVE_ACUTE;
         let found = [by_edges(acute), by_edges(LobePaths::ABOVE), by_edges(acute.and(LobePaths::ABOVE))];
-        assert!(found.into_iter().zip([140.0, 190.0, 230.0]).all(|(one, other)| near(one, other)), "{found:?}");
+        assert!(
+            found.into_iter().zip([140.0, 190.0, 230.0]).all(|(one, other)| near(one, other)),
+            "{found:?}"
+        );
     }
 
     #[test]
     fn lights_behind_cost_what_their_test_does_unless_code_is_straight() {
         let found = cost(Paths::BEHIND);
         let all = found.all();
-        assert!(all.into_iter().zip([420.0, 420.0, 310.0, 900.0]).all(|(one, other)| near(one, other)), "{all:?}");
+        assert!(
+            all.into_iter().zip([420.0, 420.0, 310.0, 900.0]).all(|(one, other)| near(one, other)),
+            "{all:?}"
+        );
         // The twin: an invocation in front makes the wave pay
         let lobes = Paths::in_front([LobePaths::BELOW; LOBES]).0;
         assert!(near(cost(Paths(Paths::BEHIND.0 | lobes)).clipless, 900.0));

@@ -3,7 +3,9 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles};
+use arealight::{
+    Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles,
+};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants

@@ -237,8 +237,19 @@ fn copy(kernel: &Kernel) -> Kernel {
 }
 
 fn light_layout() -> Vec<(String, u32)> {
-    layout!(gpu::GpuLight, radiance, first_vertex, center, radius, normal, area, vertex_count, flags,
-                        texture_layer, reserved)
+    layout!(
+        gpu::GpuLight,
+        radiance,
+        first_vertex,
+        center,
+        radius,
+        normal,
+        area,
+        vertex_count,
+        flags,
+        texture_layer,
+        reserved
+    )
 }
 
 #[test]

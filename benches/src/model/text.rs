@@ -17,7 +17,10 @@ pub struct Modelled {
 
 /// The tables for a terminal.
 pub fn text(scenes: &[Modelled], found: &Compiled, size: [u32; 2]) -> String {
-    sections(scenes, found, size).iter().map(|(head, table)| format!("{head}\n{}\n", table.to_text())).collect()
+    sections(scenes, found, size)
+        .iter()
+        .map(|(head, table)| format!("{head}\n{}\n", table.to_text()))
+        .collect()
 }
 
 /// The tables as Markdown.

@@ -120,7 +120,8 @@ fn an_export_replaces_its_own_files_and_nobody_elses() {
     let mut earlier = manifest(folder);
     let hash: Vec<String> = Sha256::digest("earlier").iter().map(|byte| format!("{byte:02x}")).collect();
     earlier["files"]["include/arealight/lights/quad.glsl"]["sha256"] = hash.concat().into();
-    earlier["files"]["include/arealight/gone.glsl"] = earlier["files"]["include/arealight/lights/quad.glsl"].clone();
+    earlier["files"]["include/arealight/gone.glsl"] =
+        earlier["files"]["include/arealight/lights/quad.glsl"].clone();
     std::fs::write(folder.join("DIR/manifest.json"), earlier.to_string()).unwrap();
     let said = export(folder, &[]);
     assert_eq!(std::fs::read(&quad).unwrap(), original);

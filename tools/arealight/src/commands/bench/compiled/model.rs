@@ -26,13 +26,17 @@ const SCENES: [(&str, &[u8]); 3] = [
 pub fn run(found: &Compiled, document_path: Option<&Path>) -> Result<ExitCode, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Device(error.to_string());
     let host = Host::new(HostOptions::default()).map_err(|error| failed(&error))?;
-    let engine = Engine::new(host, &arealight_table::ggx(), TableFormat::default())
-        .map_err(|error| failed(&error))?;
+    let engine =
+        Engine::new(host, &arealight_table::ggx(), TableFormat::default()).map_err(|error| failed(&error))?;
     let mut scenes = vec![];
     for (name, bytes) in SCENES {
         let scene = Scene::from_bytes(bytes, name).map_err(|error| Failure::Scene(error.to_string()))?;
         let counts = count_scene(&engine, &scene, SIZE).map_err(|error| failed(&error))?;
-        scenes.push(Modelled { name: name.to_owned(), left_out: scene.lights.len() - counts[0].quads, counts });
+        scenes.push(Modelled {
+            name: name.to_owned(),
+            left_out: scene.lights.len() - counts[0].quads,
+            counts,
+        });
     }
     if let Some(path) = document_path {
         write(path, &document(path, Markers::MODEL, &markdown(&scenes, found, SIZE)))?;
