@@ -5,6 +5,8 @@ mod check;
 mod rows;
 mod text;
 
+pub(crate) use rows::path_cost;
+
 pub use check::{Check, Finding, THROUGHPUT_TOLERANCE};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
 pub use text::{Markers, replace_section};

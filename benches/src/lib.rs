@@ -8,6 +8,7 @@
 //! | [`effects`] | the time of the shade kernel and pass by effect |
 //! | [`cost`] | the time of each rung of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
+//! | [`model`] | which paths the waves of our scenes take, and what a frame of them costs by the compiler's numbers |
 //! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
@@ -31,6 +32,7 @@ pub mod footprints;
 pub mod kernel;
 pub mod ladder;
 pub mod method;
+pub mod model;
 pub mod pictures;
 pub mod published;
 pub mod report;

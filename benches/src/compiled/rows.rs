@@ -46,8 +46,8 @@ pub struct Row {
 enum Source {
     /// A kernel with values of its specialisation constants.
     Kernel(&'static Kernel, Vec<(u32, u32)>),
-    /// A module with the bindings of shaders/examples/deferred.comp.
-    Deferred(&'static [u8]),
+    /// A module with the bindings of shaders/examples/deferred.comp, and values of its specialisation constants.
+    Deferred(&'static [u8], Vec<(u32, u32)>),
 }
 
 impl Row {
@@ -65,9 +65,9 @@ impl Row {
                 bindings: kernel.bindings.iter().map(|binding| (descriptor(binding.kind), 1)).collect(),
                 push_constant_size: kernel.push_constant_size,
             },
-            Source::Deferred(module) => ComputeShader {
-                words: prune(&words(module), &[]),
-                specialization: vec![],
+            Source::Deferred(module, specialization) => ComputeShader {
+                words: prune(&words(module), specialization),
+                specialization: specialization.clone(),
                 bindings: vec![
                     (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 1), // table
                     (vk::DescriptorType::COMBINED_IMAGE_SAMPLER, 3), // g_buffer
@@ -165,7 +165,18 @@ fn yardstick(school: School) -> Row {
 /// A whole pixel as a host writes it.
 fn deferred(kernel: &'static str, level: &'static str, module: &'static [u8]) -> Row {
     let yardstick = Some(DEFERRED_YARDSTICK);
-    Row { kernel, lights: "quads", level, yardstick, source: Source::Deferred(module) }
+    Row { kernel, lights: "quads", level, yardstick, source: Source::Deferred(module, vec![]) }
+}
+
+/// A path through a light in the pixel of the deferred rows: benches/kernels/path_cost.comp.
+pub(crate) fn path_cost(
+    method: &'static str,
+    path: &'static str,
+    module: &'static [u8],
+    specialization: Vec<(u32, u32)>,
+) -> Row {
+    let source = Source::Deferred(module, specialization);
+    Row { kernel: "path_cost", lights: method, level: path, yardstick: None, source }
 }
 
 /// The shade pass where all lights are quads.

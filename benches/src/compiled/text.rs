@@ -86,6 +86,12 @@ impl Markers {
         begin: "<!-- begin: arealight bench compiled -->",
         end: "<!-- end: arealight bench compiled -->",
     };
+
+    /// Of the modelled frames.
+    pub const MODEL: Self = Self {
+        begin: "<!-- begin: arealight bench compiled --model -->",
+        end: "<!-- end: arealight bench compiled --model -->",
+    };
 }
 
 /// The document with `section` between its markers; `None` where it has no such place.

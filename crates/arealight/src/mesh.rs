@@ -187,6 +187,7 @@ fn count_of(outline: &[DVec3]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gpu::GpuLight;
     use crate::{Effects, PackedLights};
 
     /// Two squares of the plane z = 0, counter-clockwise from above.
@@ -227,16 +228,23 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_is_one_record_whose_faces_are_marked() {
+    fn a_mesh_is_one_record_whose_faces_have_rows() {
         let packed = PackedLights::new(&[squares(), cube()], DVec3::ZERO).unwrap();
         assert_eq!((packed.lights.len(), packed.quad_count), (2, 0));
-        let marks: Vec<f32> = packed.vertices[..8].iter().map(|vertex| vertex[3]).collect();
-        assert_eq!(marks, [4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0]);
+        // Before the vertices of each face: its normal, and how many they are
+        for row in [0, 5] {
+            assert_eq!(packed.vertices[row], [0.0, 0.0, 1.0, 4.0]);
+            assert!(packed.vertices[row + 1..row + 5].iter().all(|vertex| vertex[3] == 0.0));
+        }
+        let [squares, cube] = [packed.lights[0], packed.lights[1]];
+        assert_eq!((squares.vertex_count, cube.first_vertex, cube.vertex_count), (10, 10, 30));
+        assert!(packed.lights.iter().all(|light| light.flags & GpuLight::MESH != 0));
         assert_eq!(packed.unused, Effects::TWO_SIDED | Effects::TEXTURED);
         assert_eq!((packed.lights[0].center, packed.lights[1].center), ([1.5, 0.5, 0.0], [0.0; 3]));
-        // The twin: a polygon has no marks
-        let polygon = PolygonLight { faces: Vec::new(), ..squares() };
+        // The twin: a polygon has vertices alone
+        let polygon = PolygonLight { faces: Vec::new(), ..self::squares() };
         let packed = PackedLights::new(&[polygon], DVec3::ZERO).unwrap();
+        assert_eq!((packed.lights[0].vertex_count, packed.lights[0].flags & GpuLight::MESH), (8, 0));
         assert!(packed.vertices.iter().all(|vertex| vertex[3] == 0.0));
     }
 

@@ -57,7 +57,7 @@ fn what_is_checked_in_is_what_is_printed() {
         lines(file).contains(lines(text).trim())
     };
     let rust = read("crates/arealight/src/table/formula.rs");
-    let glsl = read("shaders/include/arealight/formula.glsl");
+    let glsl = read("shaders/include/arealight/lobes/formula.glsl");
     assert!(holds(&rust, &formula::rust(&Formula::GGX)), "{}", formula::rust(&Formula::GGX));
     assert!(holds(&glsl, &formula::glsl(&Formula::GGX)), "{}", formula::glsl(&Formula::GGX));
     let mut other = Formula::GGX;

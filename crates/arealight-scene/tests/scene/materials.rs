@@ -201,14 +201,6 @@ fn effects_are_what_the_scene_calls_for() {
     let sign = writer.emitter("sign", [1.0; 3], true);
     writer.object("sign", &panel(1.0, 1.0), sign, json!({}));
     assert_eq!(calls(&load(writer)), ["glossy: material 'black'", "two_sided: light 'sign'"]);
-    // A small light, some three of its radii and some 3,000 from the farthest corner
-    for (name, scale, far) in [("lamp", 1.0, false), ("spark", 1e-3, true)] {
-        let mut writer = panel_with(json!({ "name": "metal" }));
-        let light = writer.emitter(name, [1.0; 3], false);
-        writer.object(name, &panel(scale, scale), light, json!({}));
-        let found = calls(&load(writer));
-        assert_eq!(found.contains(&format!("far: light '{name}'")), far, "{found:?}");
-    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! `arealight bench compiled`
 
 mod driver;
+mod model;
 
 use super::write;
 use crate::failure::Failure;
@@ -47,6 +48,10 @@ pub struct Arguments {
     /// Write the rows to such a file; its other families stay.
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "only")]
     update: Option<PathBuf>,
+    /// Model frames of our scenes: which paths through the code of quads waves take, counted on a device (lavapipe will do), times
+    /// what each path costs by these statistics. Beside the clipless method.
+    #[arg(long, conflicts_with_all = ["only", "check", "update", "json", "save"])]
+    model: bool,
     /// Compile here, where the environment names the driver and the family, and print each row as it is done.
     #[arg(long, hide = true, conflicts_with_all = ["json", "save", "markdown", "check", "update"])]
     on_null_hardware: bool,
@@ -60,7 +65,11 @@ fn family(name: &str) -> Result<String, String> {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Choose the rows
-    let wanted = arguments.only.as_deref().map_or_else(rows, matching);
+    let wanted = if arguments.model {
+        arealight_benches::model::rows()
+    } else {
+        arguments.only.as_deref().map_or_else(rows, matching)
+    };
     if let Some(pattern) = &arguments.only
         && wanted.is_empty()
     {
@@ -86,11 +95,18 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install mesa-vulkan-drivers";
         Failure::NoCompiler(message.to_owned())
     })?;
-    let found = driver::compile(&arguments.family, arguments.only.as_deref(), &wanted, &driver)?;
+    if arguments.model {
+        let found = driver::compile(&arguments.family, &["--model"], &wanted, &driver)?;
+        return model::run(&found, arguments.markdown.as_deref());
+    }
+    let which: Vec<&str> =
+        arguments.only.as_deref().into_iter().flat_map(|pattern| ["--only", pattern]).collect();
+    let found = driver::compile(&arguments.family, &which, &wanted, &driver)?;
 
     // Write and print
     if let Some(path) = &arguments.markdown {
-        write(path, &document(path, &found))?;
+        let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
+        write(path, &document(path, Markers::TABLES, &tables))?;
     }
     // Strings and numbers, with strings for keys, always serialise
     let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
@@ -121,12 +137,11 @@ fn read(path: &Path) -> Result<Compiled, Failure> {
     serde_json::from_str(&text).map_err(|error| Failure::input(path, error))
 }
 
-/// The document with the tables: in their place where it has one, else alone.
-fn document(path: &Path, found: &Compiled) -> String {
-    let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
+/// The document with a section: in its place where it has one, else alone.
+fn document(path: &Path, markers: Markers, section: &str) -> String {
     let there = std::fs::read_to_string(path).unwrap_or_default();
-    replace_section(&there, Markers::TABLES, &tables).unwrap_or_else(|| {
-        let Markers { begin, end } = Markers::TABLES;
-        format!("{begin}\n\n{}\n\n{end}\n", tables.trim())
+    replace_section(&there, markers, section).unwrap_or_else(|| {
+        let Markers { begin, end } = markers;
+        format!("{begin}\n\n{}\n\n{end}\n", section.trim())
     })
 }

@@ -48,10 +48,10 @@ fn print_line(line: &Line) -> Result<(), Failure> {
     print(&(serde_json::to_string(line).unwrap_or_default() + "\n")).map(drop)
 }
 
-/// Compiles the rows for each family, in processes of their own.
+/// Compiles the rows for each family, in processes of their own, which find them by the arguments `which`.
 pub fn compile(
     families: &[String],
-    only: Option<&str>,
+    which: &[&str],
     rows: &[Row],
     driver: &Path,
 ) -> Result<Compiled, Failure> {
@@ -62,7 +62,7 @@ pub fn compile(
         loop {
             let next = left.lock().unwrap_or_else(std::sync::PoisonError::into_inner).next();
             let Some((family, place)) = next else { return };
-            *place = Some(compile_family(family, only, rows.len(), driver, &progress));
+            *place = Some(compile_family(family, which, rows.len(), driver, &progress));
         }
     };
     std::thread::scope(|scope| {
@@ -76,7 +76,7 @@ pub fn compile(
 
 fn compile_family(
     family: &str,
-    only: Option<&str>,
+    which: &[&str],
     count: usize,
     driver: &Path,
     progress: &Progress,
@@ -84,10 +84,7 @@ fn compile_family(
     let failed = |message: String| Failure::Device(format!("{family}: {message}"));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
     let mut command = Command::new(program);
-    command.args(["bench", "compiled", "--on-null-hardware"]);
-    if let Some(pattern) = only {
-        command.args(["--only", pattern]);
-    }
+    command.args(["bench", "compiled", "--on-null-hardware"]).args(which);
     set_environment(&mut command, driver, family);
     let started = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = started.map_err(|error| failed(error.to_string()))?;
