@@ -75,7 +75,7 @@ ProbeResults arc_of(vec3 from, vec3 to) {
     vec3 a = arealight_unit(from);
     vec3 b = arealight_unit(to);
     vec2 crossing = a.z > 0.0 ? arealight_crossing(a, b) : arealight_crossing(b, a);
-    return ProbeResults(vec4(a, arealight_arc(a, b).z), vec4(b, arealight_acute_weight(cross(a, b), dot(a, b)).z),
+    return ProbeResults(vec4(a, arealight_arc(a, b).z), vec4(b, arealight_acute_weight(cross(a, b).z, dot(a, b))),
                         vec4(crossing, 0.0, 0.0), vec4(0.0));
 }
 

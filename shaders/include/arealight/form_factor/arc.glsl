@@ -36,7 +36,7 @@ vec3 arealight_arc_weight(vec3 s, float y) {
 }
 
 // s theta / sin(theta) of an angle of at most a right one with the cosine x: relative error 7e-8 before rounding.
-vec3 arealight_acute_weight(vec3 s, float x) {
+float arealight_acute_weight(float s, float x) {
     return s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
          / (1.0 + x * (1.3370004 + x * 0.38739931));
 }
@@ -53,7 +53,7 @@ vec3 arealight_arc(vec3 a, vec3 b) {
 vec3 arealight_horizon_arc(vec2 a, vec2 b) {
     float sine = a.x * b.y - a.y * b.x;
     float cosine = dot(a, b);
-    float acute = arealight_acute_weight(vec3(sine), abs(cosine)).x;
+    float acute = arealight_acute_weight(sine, abs(cosine));
     return vec3(0.0, 0.0, cosine < 0.0 ? (sine < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }
 

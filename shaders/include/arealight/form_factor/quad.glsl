@@ -50,15 +50,9 @@ ArealightQuad arealight_turned(ArealightQuad quad) {
     return quad;
 }
 
-// The arcs around a quad that is wholly above the horizon: where no edge subtends more than a right angle, which is most of the time,
-// without square roots.
+// The arcs around a quad that is wholly above the horizon.
 vec3 arealight_quad_above(ArealightQuad quad) {
     vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
-    vec4 cosines = vec4(dot(a, b), dot(b, c), dot(c, d), dot(d, a));
-    if (min(min(cosines.x, cosines.y), min(cosines.z, cosines.w)) > 0.0) {
-        return arealight_acute_weight(cross(a, b), cosines.x) + arealight_acute_weight(cross(b, c), cosines.y)
-             + arealight_acute_weight(cross(c, d), cosines.z) + arealight_acute_weight(cross(d, a), cosines.w);
-    }
     return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
 }
 
