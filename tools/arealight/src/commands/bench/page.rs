@@ -121,11 +121,11 @@ fn says_pareto(found: &Ladder) -> String {
     if let Some(samples) = default.samples {
         let _ =
             write!(says, "Monte Carlo needs about {} samples for the same error; ", number(samples.error));
-        says += &if samples.time >= 1.0 {
-            format!("in the same time it takes {}. ", number(samples.time))
+        if samples.time >= 1.0 {
+            let _ = write!(says, "in the same time it takes {}. ", number(samples.time));
         } else {
-            "one sample takes longer. ".to_owned()
-        };
+            says.push_str("one sample takes longer. ");
+        }
     }
     says
 }
@@ -193,7 +193,11 @@ fn says_numbers(found: &Ladder) -> String {
 /// An error with what is uncertain of it.
 fn caption(error: &PictureError) -> String {
     let [low, high] = error.range.map(percent);
-    format!("{} ({low} to {high})", percent(error.rmse))
+    let holes = match error.not_finite {
+        0 => String::new(),
+        count => format!(", {count} pixels not finite"),
+    };
+    format!("{} ({low} to {high}){holes}", percent(error.rmse))
 }
 
 /// The pictures with their maps.
