@@ -22,6 +22,8 @@ pub struct PictureError {
     pub range: [f64; 2],
     /// As it is without the correction.
     pub with_noise: f64,
+    /// How many of the picture's pixels are NaN or infinite, judged or not; they are left out of the others.
+    pub not_finite: usize,
 }
 
 impl Reference {
@@ -40,7 +42,9 @@ impl Reference {
     pub fn error_of(&self, found: &[DVec3], is_judged: &[bool]) -> PictureError {
         let [a, b] = &self.halves;
         let (mut count, mut total, mut squares, mut products, mut variance) = (0.0_f64, 0.0, 0.0, 0.0, 0.0);
-        for (((found, a), b), _) in found.iter().zip(a).zip(b).zip(is_judged).filter(|(_, judged)| **judged) {
+        let is_counted = |((found, _), is_judged): &((&DVec3, _), &bool)| **is_judged && found.is_finite();
+        let pixels = found.iter().zip(a.iter().zip(b)).zip(is_judged);
+        for ((found, (a, b)), _) in pixels.filter(is_counted) {
             let mean = (*a + *b) * 0.5;
             let off = *found - mean;
             count += 3.0;
@@ -59,6 +63,7 @@ impl Reference {
             rmse: error(products),
             range: [error(products - spread), error(products + spread)],
             with_noise: error(squares),
+            not_finite: found.iter().filter(|pixel| !pixel.is_finite()).count(),
         }
     }
 }
@@ -126,5 +131,11 @@ mod tests {
         wrong[PIXELS / 2..].fill(DVec3::splat(1e9));
         assert_eq!(reference.error_of(&wrong, &judged), reference.error_of(&picture(), &judged));
         assert!(reference.error_of(&wrong, &[true; PIXELS]).rmse > 1e8);
+        // What is no number is counted, and hides nothing
+        let mut holes = picture();
+        holes[PIXELS / 2..].fill(DVec3::NAN);
+        let found = reference.error_of(&holes, &[true; PIXELS]);
+        assert_eq!(found.not_finite, PIXELS / 2);
+        assert_eq!(PictureError { not_finite: 0, ..found }, reference.error_of(&picture(), &judged));
     }
 }

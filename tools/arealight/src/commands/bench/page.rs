@@ -193,7 +193,11 @@ fn says_numbers(found: &Ladder) -> String {
 /// An error with what is uncertain of it.
 fn caption(error: &PictureError) -> String {
     let [low, high] = error.range.map(percent);
-    format!("{} ({low} to {high})", percent(error.rmse))
+    let holes = match error.not_finite {
+        0 => String::new(),
+        count => format!(", {count} pixels not finite"),
+    };
+    format!("{} ({low} to {high}){holes}", percent(error.rmse))
 }
 
 /// The pictures with their maps.
