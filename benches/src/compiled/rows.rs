@@ -168,7 +168,7 @@ fn deferred(kernel: &'static str, level: &'static str, module: &'static [u8]) ->
     Row { kernel, lights: "quads", level, yardstick, source: Source::Deferred(module, vec![]) }
 }
 
-/// A path through a light in the pixel of the deferred rows: benches/kernels/path_cost.comp.
+/// A path through a light in the pixel of the deferred rows: `benches/kernels/path_cost.comp`.
 pub(crate) fn path_cost(
     method: &'static str,
     path: &'static str,

@@ -11,7 +11,7 @@ const LOOP: f64 = 8.0;
 const EXACT: &str = "exact";
 const CLIPLESS: &str = "clipless";
 
-/// The paths of a lobe: the values of DIFFUSE and SPECULAR in benches/kernels/path_cost.comp.
+/// The paths of a lobe: the values of DIFFUSE and SPECULAR in `benches/kernels/path_cost.comp`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Path {
     Below = 0,

@@ -20,13 +20,18 @@ pub fn text(scenes: &[Modelled], found: &Compiled, size: [u32; 2]) -> String {
     sections(scenes, found, size)
         .iter()
         .map(|(head, table)| format!("{head}\n{}\n", table.to_text()))
-        .collect()
+        .collect::<Vec<_>>()
+        .concat()
 }
 
 /// The tables as Markdown.
 pub fn markdown(scenes: &[Modelled], found: &Compiled, size: [u32; 2]) -> String {
     let sections = sections(scenes, found, size);
-    sections.iter().map(|(head, table)| format!("{head}\n\n{}\n", table.to_markdown())).collect()
+    sections
+        .iter()
+        .map(|(head, table)| format!("{head}\n\n{}\n", table.to_markdown()))
+        .collect::<Vec<_>>()
+        .concat()
 }
 
 /// Each table with the sentence before it.
