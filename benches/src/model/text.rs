@@ -56,7 +56,7 @@ const LOBE_NAMES: [&str; LOBES] = ["diffuse", "specular"];
 
 /// A column a scene.
 fn shares(scenes: &[Modelled]) -> Table {
-    let heads = ["".to_owned()].into_iter().chain(scenes.iter().map(|scene| {
+    let heads = [String::new()].into_iter().chain(scenes.iter().map(|scene| {
         let counts = &scene.counts[0];
         format!("{}: {} quads ({} others left out)", scene.name, counts.quads, scene.left_out)
     }));
