@@ -21,7 +21,6 @@
 struct ArealightEllipse {
     vec3 longer;  // unit directions of its axes, which with the normal that points away from the point are its frame
     vec3 shorter;
-    bool mirrored; // the frame is left-handed
     vec3 center;  // in the frame, the point being its origin; z > 0
     float major;  // half axes
     float minor;
@@ -38,8 +37,7 @@ const float AREALIGHT_ELLIPSE_HEIGHT = 1e-15;
 // An ellipse's frame: columns are unit directions of the longer axis, the shorter axis and the normal, which is taken where it is
 // needed.
 mat3 arealight_ellipse_frame(ArealightEllipse ellipse) {
-    vec3 normal = cross(ellipse.longer, ellipse.shorter);
-    return mat3(ellipse.longer, ellipse.shorter, ellipse.mirrored ? -normal : normal);
+    return mat3(ellipse.longer, ellipse.shorter, cross(ellipse.longer, ellipse.shorter));
 }
 
 // Heights over the horizon z = 0 in an ellipse's frame are products with this.
@@ -89,7 +87,8 @@ ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     float height = dot(center, cross(major, minor));
     // The frame's normal is that of the front, or where axes were swapped of the back
     ellipse.front = (height < 0.0) != swapped;
-    ellipse.mirrored = height < 0.0;
+    // And points away from the point
+    minor = height < 0.0 ? -minor : minor;
     ellipse.scale = scale;
     ellipse.longer = major;
     ellipse.shorter = minor;

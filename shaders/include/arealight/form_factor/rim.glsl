@@ -62,7 +62,6 @@ ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform, inout bool f
     vec2 chord = ellipse.center.xy + width.x * vec2(dot(middle, ellipse.longer), dot(middle, ellipse.shorter));
     vec2 half_chord = arc.way * width.y * vec2(dot(side, ellipse.longer), dot(side, ellipse.shorter));
     arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
-    arc.cone.frame[1] = ellipse.mirrored ? -arc.cone.frame[1] : arc.cone.frame[1];
     // And in the cone's
     vec3 along = vec3(chord, ellipse.center.z) * arc.cone.frame;
     vec3 half_along = half_chord * mat3x2(arc.cone.frame);

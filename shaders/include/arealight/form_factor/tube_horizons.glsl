@@ -26,12 +26,10 @@ void arealight_draw_to(inout ArealightDrawnOutline drawn, vec3 unit) {
     drawn.begun = true;
 }
 
-// The part of a rim between two points of its circle, of which `begin` and `end` are cosines and sines.
-ArealightRim arealight_rim_part(ArealightRim rim, vec2 begin, vec2 end, bool reflex) {
-    ArealightArcSpan span = arealight_arc_between(begin, end, reflex);
+// The part of a rim that an arc of its circle covers.
+ArealightRim arealight_rim_part(ArealightRim rim, ArealightArcSpan span) {
     return ArealightRim(rim.center, span.middle.x * rim.middle + span.middle.y * rim.side,
-                        span.middle.x * rim.side - span.middle.y * rim.middle, span.half_width,
-                        span.half_width.x < 0.0);
+                        span.middle.x * rim.side - span.middle.y * rim.middle, span.half_width, span.half_width.x < 0.0);
 }
 
 // Draws an edge to an arc, and the arc, clipped at the horizon of cosine space. `backward`: from the rim's end to its begin;
@@ -46,9 +44,10 @@ void arealight_draw_arc(inout ArealightDrawnOutline drawn, ArealightRim rim, mat
     drawn.last = swapped ? begin : end;
 }
 
-// Draws what of a rim is above the surface, whose unit normal is in the space of the rim.
+// Draws one of at most two pieces of a rim that are above the surface, whose unit normal is in the space of the rim: the `second`
+// in the direction of drawing, or the first.
 void arealight_draw_rim(inout ArealightDrawnOutline drawn, ArealightRim rim, vec3 normal, mat3 transform, float horizon,
-                        bool backward) {
+                        bool backward, bool second) {
     vec3 heights = vec3(dot(normal, rim.center), dot(normal, rim.middle), dot(normal, rim.side));
     vec2 ends = heights.x + heights.y * rim.half_width.x + vec2(-1.0, 1.0) * (heights.z * rim.half_width.y);
     // Where the circle crosses the surface's plane
@@ -56,33 +55,25 @@ void arealight_draw_rim(inout ArealightDrawnOutline drawn, ArealightRim rim, vec
     vec2 top = heights.yz / max(steepness, 1e-37);
     float cosine = clamp(-heights.x / max(steepness, 1e-37), -1.0, 1.0);
     float sine = sqrt((1.0 - cosine) * (1.0 + cosine));
-    vec2 rise = vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine);
-    vec2 fall = vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine);
     bool crosses = abs(heights.x) < steepness;
     bool bump = max(ends.x, ends.y) <= 0.0 && crosses && top.x > rim.half_width.x;
     bool dip = min(ends.x, ends.y) > 0.0 && crosses && -top.x > rim.half_width.x;
-    if (max(ends.x, ends.y) <= 0.0 && !bump) {
+    if (second ? !dip : max(ends.x, ends.y) <= 0.0 && !bump) {
         return;
     }
-    vec2 begin = vec2(rim.half_width.x, -rim.half_width.y);
-    vec2 end = rim.half_width;
-    vec2 from = ends.x > 0.0 ? begin : rise;
-    vec2 to = ends.y > 0.0 ? end : fall;
-    bool whole = min(ends.x, ends.y) > 0.0;
-    for (int piece = 0; piece < 2; piece++) {
-        ArealightRim part = rim;
-        bool last = (piece == 1) != backward;
-        if (dip) {
-            vec2 a = last ? rise : begin;
-            vec2 b = last ? end : fall;
-            part = arealight_rim_part(rim, a, b, a.x * b.y - a.y * b.x < 0.0);
-        } else if (piece == 1) {
-            break;
-        } else if (!whole) {
-            part = arealight_rim_part(rim, from, to, from.x * to.y - from.y * to.x < 0.0);
-        }
-        arealight_draw_arc(drawn, part, transform, horizon, backward);
+    // The pieces beside a dip: from the rim's begin to where the circle falls, and from where it rises to the rim's end
+    bool last = second != backward;
+    bool rises = dip ? last : ends.x <= 0.0;
+    bool falls = dip ? !last : ends.y <= 0.0;
+    ArealightArcSpan span = ArealightArcSpan(vec2(1.0, 0.0), rim.half_width);
+    if (rises || falls) {
+        vec2 begin = vec2(rim.half_width.x, -rim.half_width.y);
+        vec2 end = rim.half_width;
+        begin = rises ? vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine) : begin;
+        end = falls ? vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine) : end;
+        span = arealight_arc_between(begin, end, begin.x * end.y - begin.y * end.x < 0.0);
     }
+    arealight_draw_arc(drawn, arealight_rim_part(rim, span), transform, horizon, backward);
 }
 
 // Draws to where the edge between two points crosses the surface's plane, if it does.
@@ -113,13 +104,17 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
                                                heights, true, horizon);
     }
     ArealightDrawnOutline drawn = ArealightDrawnOutline(arealight_outline_begin(), true, vec3(0.0), vec3(0.0), false);
-    // From the start's rim along one edge to the end's, and back
-    for (int i = 0; i < 2; i++) {
-        float outwards = i == 0 ? -1.0 : 1.0;
+    // Along an edge to the start's rim and that rim, piece by piece; along the other edge to the end's, and back
+    for (int i = 0; i < 4; i++) {
+        bool backward = i >= 2;
+        bool second = (i & 1) == 1;
+        float outwards = backward ? 1.0 : -1.0;
         ArealightRim rim = arealight_tube_rim(tube, outwards);
-        arealight_draw_rim(drawn, rim, normal, transform, horizon, i == 1);
-        arealight_draw_crossing(drawn, arealight_rim_end(rim, -outwards),
-                                arealight_rim_end(arealight_tube_rim(tube, -outwards), -outwards), normal, transform);
+        if (!second) {
+            ArealightRim other = arealight_tube_rim(tube, -outwards);
+            arealight_draw_crossing(drawn, arealight_rim_end(other, outwards), arealight_rim_end(rim, outwards), normal, transform);
+        }
+        arealight_draw_rim(drawn, rim, normal, transform, horizon, backward, second);
     }
     if (!drawn.begun) {
         return 0.0;
