@@ -142,9 +142,12 @@ void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, 
         arealight_outline_close(outline, arealight_cone_crossing(cone, fall), way > 0.0);
         end = last_above ? end : fall;
     }
+    // What is left is more than half of the outline by its ends' turn. Where they meet it is none of it, or all where nearly all of
+    // the outline is above and the arc is more than half of it
     vec2 chord = end - begin;
     bool turned = begin.x * end.y - begin.y * end.x < 0.0;
-    bool reflex = both || (dot(chord, chord) < 1e-6 && !bump) ? arc.reflex : turned;
+    bool all = arc.reflex && cosine < -0.999;
+    bool reflex = both ? arc.reflex : bump ? cosine < 0.0 : dot(chord, chord) < 1e-6 ? all : turned;
     vec3 integral = arealight_elliptic_arc(cone, arealight_arc_between(begin, end, reflex));
     if (dip) {
         integral -= arealight_elliptic_arc(cone, ArealightArcSpan(-top, vec2(-cosine, sine)));

@@ -71,7 +71,8 @@ void arealight_draw_rim(inout ArealightDrawnOutline drawn, ArealightRim rim, vec
         vec2 end = rim.half_width;
         begin = rises ? vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine) : begin;
         end = falls ? vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine) : end;
-        span = arealight_arc_between(begin, end, begin.x * end.y - begin.y * end.x < 0.0);
+        bool turned = begin.x * end.y - begin.y * end.x < 0.0;
+        span = arealight_arc_between(begin, end, turned && rim.reflex && cosine < 0.0);
     }
     arealight_draw_arc(drawn, arealight_rim_part(rim, span), transform, horizon, backward);
 }
