@@ -5,7 +5,7 @@ use arealight_oracle::sphere::{self, Sphere};
 use arealight_oracle::tube::{Ends, Tube, form_factor, transformed_form_factor};
 use arealight_tests::shapes::tube_arguments;
 use arealight_tests::{Comparison, Random, TestEngine};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 
 const EXACT: u32 = 0;
 const DIFFERENCE: u32 = 1;
@@ -334,6 +334,54 @@ fn tubes_are_cut_by_the_surface_too() {
     }
     // The twin: what the surface takes away
     assert!(cut > COUNT && hidden > COUNT / 4, "{cut} cut, {hidden} hidden");
+}
+
+/// Two tubes of whose arcs a lobe's horizon, or the surface's, leaves next to nothing: what is left is not all of the outline.
+#[test]
+fn little_that_is_left_of_an_arc_is_not_all_of_it() {
+    let Some(engine) = TestEngine::new() else { return };
+    let tube = |center: [f32; 3], half: [f32; 3], radius: f32, ends| {
+        let [center, half] = [center, half].map(|v| Vec3::from_array(v).as_dvec3());
+        Tube { start: center - half, end: center + half, radius: radius.into(), ends }
+    };
+    // A capsule with an end level with the point
+    let capsule = tube(
+        [-0.309_477_985, -0.166_330_516, 0.139_532_104],
+        [-0.144_608_155, 0.061_458_077_3, -0.051_516_156_6],
+        0.305_959_165,
+        Ends::Round,
+    );
+    let its_lobe = [
+        [0.135_420_65, 0.519_707_859, -0.055_790_733_5],
+        [0.837_793_469, 0.262_395_769, 0.032_552_279_5],
+        [0.528_926_611, -0.548_682_272, -0.037_277_136],
+    ];
+    // A flat end, seen from within the infinite cylinder
+    let cylinder = tube(
+        [-0.563_797_057, -0.117_902_063, 0.004_105_330_91],
+        [0.233_427_942, 0.035_748_425_9, -0.079_030_528_7],
+        0.568_985_701,
+        Ends::Flat,
+    );
+    let other_lobe = [
+        [0.853_026_628, -0.002_211_806_13, 0.017_348_932_1],
+        [-0.263_870_269, -0.692_020_059, 0.014_186_609_5],
+        [0.450_242_192, -0.401_376_843, -0.024_554_954_8],
+    ];
+    let tubes = [capsule, cylinder];
+    let lobes = [its_lobe, other_lobe].map(|columns| Mat3::from_cols_array_2d(&columns).as_dmat3());
+    let arguments: Vec<_> = tubes.iter().zip(&lobes).map(|(t, m)| tube_arguments(t, m)).collect();
+    let one = found(&engine, EXACT, &tubes, &lobes);
+    let both = engine.tubes(true, EXACT, &arguments, &ends_of(&tubes));
+    for (i, (tube, lobe)) in tubes.iter().zip(&lobes).enumerate() {
+        let truth = transformed_form_factor(lobe, tube);
+        assert!((one[i] - truth).abs() < 2e-6, "{tube:?}: {} is not {truth}", one[i]);
+        let above = polygon::above_horizon(&tube.outline(1000));
+        let truth = polygon::transformed_form_factor(lobe, &above).abs();
+        assert!((f64::from(both[i]) - truth).abs() < 3e-6, "{tube:?}: {} is not {truth}", both[i]);
+    }
+    // The twin: all of the outline instead would be 5e-3 less, and 1
+    assert!(one[0] > 1e-2 && both[1] < 1e-2);
 }
 
 #[test]

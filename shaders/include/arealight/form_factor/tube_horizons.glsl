@@ -113,7 +113,8 @@ float arealight_tube_both_horizons(ArealightTube tube, vec3 normal, mat3 transfo
         ArealightRim rim = arealight_tube_rim(tube, outwards);
         if (!second) {
             ArealightRim other = arealight_tube_rim(tube, -outwards);
-            arealight_draw_crossing(drawn, arealight_rim_end(other, outwards), arealight_rim_end(rim, outwards), normal, transform);
+            arealight_draw_crossing(drawn, arealight_rim_end(other, outwards), arealight_rim_end(rim, outwards), normal,
+                                    transform);
         }
         arealight_draw_rim(drawn, rim, normal, transform, horizon, backward, second);
     }

@@ -15,16 +15,16 @@ const int AREALIGHT_TUBE_ROUND = 2; // half spheres: a capsule
 // A tube as seen from the shading point, in the space of its arguments, in any unit. All of its outline follows from
 // this little, rim by rim, so that no lobe's work holds more than one rim.
 struct ArealightTube {
-    vec3 axis;      // unit, from start to end
-    vec3 towards;   // unit, from the axis to the point
-    float distance; // from the axis
-    float start;    // where the ends are along the axis, from the point's foot on it
+    vec3 axis;         // unit, from start to end
+    vec3 towards;      // unit, from the axis to the point
+    float distance;    // from the axis
+    float start;       // where the ends are along the axis, from the point's foot on it
     float end;
-    float half_length;
+    float half_length; // kept for the difference form: a far tube's ends would lose it
     float radius;
     int ends;
-    bool outside;   // the point is outside the infinite cylinder. Else a disk is all that is seen
-    bool seen;      // there is something to see
+    bool outside;      // the point is outside the infinite cylinder. Else a disk is all that is seen
+    bool seen;         // there is something to see
 };
 
 // A point of the axis, from the shading point.
