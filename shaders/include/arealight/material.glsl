@@ -49,8 +49,12 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
     vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);       \
     sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
-    sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo             \
-                 + schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;
+    if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
+        sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo;        \
+    }                                                                                 \
+    if (arealight_has_lobe(AREALIGHT_LOBE_SCHLICK)) {                                 \
+        sum.specular += schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;         \
+    }
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
     for (int i = 0; i < AREALIGHT_LOBES; i++) {                                       \
         if (!arealight_has_lobe(i)) {                                                 \
