@@ -7,7 +7,7 @@ mod text;
 
 pub(crate) use rows::path_cost;
 
-pub use check::{Check, Finding, THROUGHPUT_TOLERANCE};
+pub use check::{Check, Finding, OtherDriver, THROUGHPUT_TOLERANCE};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
 pub use text::{Markers, replace_section};
 

@@ -21,8 +21,7 @@ pub struct Rung {
     /// One integral or two.
     pub fresnel: Fresnel,
     /// Where quads are clipped. With [`Horizon::Both`] what is left of the lobe is scaled to keep its energy
-    /// ([`share_above_surface`]). [`Horizon::Bare`] is measured as [`Horizon::Cosine`], for they agree on every light
-    /// that it may be used for.
+    /// ([`share_above_surface`]).
     pub horizon: Horizon,
 }
 

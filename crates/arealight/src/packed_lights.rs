@@ -26,7 +26,7 @@ pub struct PackedLights {
     /// Of each light its vertices' positions relative to its center, in xyz. A mesh has before each face's vertices a row with the
     /// face's unit normal in xyz and their count in w. After the vertices of a light with a texture come four rows, its place:
     /// (corner, lowest u), (axis of u, lowest v), (axis of v, extent in u), (extent in v, 0, 0, 0), see
-    /// [`TextureMap`](crate::light_texture::TextureMap).
+    /// [`TextureMap`].
     pub vertices: Vec<[f32; 4]>,
     /// Which of the given lights each record is of.
     pub order: Vec<u32>,
