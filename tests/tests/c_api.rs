@@ -310,14 +310,9 @@ fn holes_and_faces_that_cannot_be_are_named() {
     good(unsafe { arealight_pass_destroy(pass) });
 }
 
-#[test]
-fn calls_out_of_order_are_refused() {
-    use ArealightResult::{ErrorArgument, ErrorTooSmall};
-    let Some(engine) = TestEngine::new() else { return };
-    let library = CLibrary::new(&engine);
-    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
-    let (arealight, resources) = (library.arealight, ArealightResources::default());
-    let frame = |width| ArealightFrame {
+/// A frame of this width, of eight rows and no light.
+fn dark_frame(width: u32) -> ArealightFrame {
+    ArealightFrame {
         width,
         height: 8,
         camera: [0.0; 3],
@@ -328,7 +323,16 @@ fn calls_out_of_order_are_refused() {
         reserved: 0,
         position_from_clip: null(),
         tile_lists: ArealightBuffer::default(),
-    };
+    }
+}
+
+#[test]
+fn calls_out_of_order_are_refused() {
+    use ArealightResult::{ErrorArgument, ErrorTooSmall};
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let (arealight, resources) = (library.arealight, ArealightResources::default());
     // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
     unsafe {
         // A pass is no library, and the other way round
@@ -348,16 +352,16 @@ fn calls_out_of_order_are_refused() {
         let commands = null_mut::<c_void>().wrapping_add(8);
         let record =
             |commands, set, frame: &ArealightFrame| arealight_pass_record(pass, commands, set, frame);
-        refused(record(null_mut(), 8, &frame(8)), ErrorArgument, "command_buffer: is null");
-        refused(record(commands, 0, &frame(8)), ErrorArgument, "set: is null");
-        refused(record(commands, 8, &frame(0)), ErrorArgument, "size");
-        let blind = ArealightFrame { camera: [f32::NAN; 3], ..frame(8) };
+        refused(record(null_mut(), 8, &dark_frame(8)), ErrorArgument, "command_buffer: is null");
+        refused(record(commands, 0, &dark_frame(8)), ErrorArgument, "set: is null");
+        refused(record(commands, 8, &dark_frame(0)), ErrorArgument, "size");
+        let blind = ArealightFrame { camera: [f32::NAN; 3], ..dark_frame(8) };
         refused(record(commands, 8, &blind), ErrorArgument, "camera");
-        let too_many = ArealightFrame { quad_count: 1, ..frame(8) };
+        let too_many = ArealightFrame { quad_count: 1, ..dark_frame(8) };
         refused(record(commands, 8, &too_many), ErrorArgument, "quad_count");
         // A pipeline ahead
         refused(arealight_pass_prepare(pass, &raw const blind), ErrorArgument, "camera");
-        let right = frame(8);
+        let right = dark_frame(8);
         good(arealight_pass_prepare(pass, &raw const right));
     }
 
@@ -461,18 +465,7 @@ fn passes_with_tiles_ask_for_their_buffers() {
         assert!(cells.iter().all(|cell| cell.schlick_albedo > 0.0 && cell.schlick_albedo <= 1.02));
 
         // A frame without its lists
-        let frame = ArealightFrame {
-            width: 8,
-            height: 8,
-            camera: [0.0; 3],
-            light_count: 0,
-            shape_count: 0,
-            quad_count: 0,
-            unused: 0,
-            reserved: 0,
-            position_from_clip: null(),
-            tile_lists: ArealightBuffer::default(),
-        };
+        let frame = dark_frame(8);
         refused(arealight_pass_prepare(pass, &raw const frame), ErrorArgument, "tile_lists: is missing");
         good(arealight_pass_prepare(plain, &raw const frame));
         good(arealight_pass_destroy(pass));
