@@ -1,4 +1,4 @@
-//! What a quad's form factor costs, by rung, as ratios to the clipless yardstick in the same run:
+//! What a quad's form factor costs, by level, as ratios to the clipless yardstick in the same run:
 //! `cargo bench -p arealight-benches --bench form_factor`. Prints a Markdown table.
 
 use arealight_benches::cost::{markdown, measure};

@@ -1,4 +1,4 @@
-//! Cost of the shade pass's rungs and of the reference, in GPU time of one frame of the room.
+//! Cost of the shade pass's levels and of the reference, in GPU time of one frame of the room.
 //!
 //! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
 //! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.

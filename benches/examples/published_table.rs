@@ -2,7 +2,7 @@
 //! `cargo run --release -p arealight-benches --example published_table -- FILE.exr`. About a minute of processor time.
 
 use arealight_benches::published;
-use arealight_fit::report::{COUNT, PUBLISHED, Rung, SEED, cases, measure};
+use arealight_fit::report::{COUNT, Level, PUBLISHED, SEED, cases, measure};
 use arealight_table::{Precision, ggx, rounded, save};
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         "F0", "mean", "published", "", "95 %", "published", ""
     );
     for (ours, published) in
-        measure(&table, Rung::default(), &cases(COUNT, SEED, &|| {})).iter().zip(&PUBLISHED)
+        measure(&table, Level::default(), &cases(COUNT, SEED, &|| {})).iter().zip(&PUBLISHED)
     {
         let pair =
             |ours: f64, published: f64| format!("{ours:>9.5} {published:>9.5} {:>6.3}", ours / published);

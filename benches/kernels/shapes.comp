@@ -7,7 +7,7 @@
 layout(local_size_x = 64) in;
 
 layout(constant_id = 0) const int FUNCTION = 0;
-layout(constant_id = 1) const int RUNG = 0; // 1: the difference form
+layout(constant_id = 1) const int LEVEL = 0; // 1: the difference form
 // 1 where tubes are cut by the surface whose normal is z too; or a lobe's horizon
 layout(constant_id = 2) const int CHOICE = 0;
 // How often each is evaluated, ever farther to the side: for its cost, in which memory traffic is lost
@@ -26,7 +26,7 @@ const int FUNCTION_POLYGON = 9;
 const int FUNCTION_NOTHING = 10;
 
 #define AREALIGHT_TWO_SIDED 1
-#define AREALIGHT_DIFFERENCE RUNG
+#define AREALIGHT_DIFFERENCE LEVEL
 #define AREALIGHT_SURFACE_HORIZON CHOICE
 #include "arealight/lights/disk.glsl"
 #include "arealight/lights/sphere.glsl"
@@ -139,9 +139,9 @@ vec4 evaluate(ShapeArguments given, int tube_ends) {
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else if (FUNCTION == FUNCTION_PUBLISHED) {
-        result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG);
+        result.xy = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, LEVEL);
     } else if (FUNCTION == FUNCTION_PUBLISHED_CHEAP) {
-        result.x = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, RUNG).y;
+        result.x = published_disk(given.a.xyz, given.b.xyz, given.c.xyz, LEVEL).y;
     } else if (FUNCTION == FUNCTION_SPHERE_HORIZON) {
         result.x = sphere_horizon(given);
     } else if (FUNCTION == FUNCTION_POLYGON) {

@@ -1,4 +1,4 @@
-//! What the form factor of a quad costs on a device, by the library's rungs and by the yardsticks.
+//! What the form factor of a quad costs on a device, by the library's levels and by the yardsticks.
 //!
 //! The machines that this runs on are shared: every method is run in turn, round after round, and read as a ratio to
 //! a yardstick in the same round. All read the same quads, once each.
@@ -39,14 +39,14 @@ pub struct CostMethod {
 
 const QUAD: u32 = 0;
 const BOTH: u32 = 8;
-const WALK: u32 = 12;
+const POLYGON: u32 = 12;
 
-const fn rung(name: &'static str, shape: u32, rung: FormFactor) -> CostMethod {
-    let promise = match rung {
+const fn level(name: &'static str, shape: u32, level: FormFactor) -> CostMethod {
+    let promise = match level {
         FormFactor::Exact => "1e-6",
         FormFactor::Difference => "1e-6, of small lights relative",
     };
-    CostMethod { name, promise, id: shape | rung as u32 }
+    CostMethod { name, promise, id: shape | level as u32 }
 }
 
 const fn yardstick(school: School) -> CostMethod {
@@ -62,12 +62,12 @@ pub static METHODS: &[CostMethod] = &[
     yardstick(School::SphereHorizon),
     yardstick(School::ClipByCases),
     CostMethod { name: "an empty loop", promise: "none", id: 16 },
-    rung("quad, exact", QUAD, FormFactor::Exact),
-    rung("quad, difference", QUAD, FormFactor::Difference),
-    rung("any outline, exact", WALK, FormFactor::Exact),
-    rung("any outline, difference", WALK, FormFactor::Difference),
-    rung("both horizons, quad, exact", BOTH, FormFactor::Exact),
-    rung("both horizons, quad, difference", BOTH, FormFactor::Difference),
+    level("quad, exact", QUAD, FormFactor::Exact),
+    level("quad, difference", QUAD, FormFactor::Difference),
+    level("any outline, exact", POLYGON, FormFactor::Exact),
+    level("any outline, difference", POLYGON, FormFactor::Difference),
+    level("both horizons, quad, exact", BOTH, FormFactor::Exact),
+    level("both horizons, quad, difference", BOTH, FormFactor::Difference),
 ];
 
 /// A method's cost.

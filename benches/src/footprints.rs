@@ -42,13 +42,13 @@ pub static METHODS: [Method; 4] = [
         description: "the filter of Heitz et al. 2016: one fetch at the foot of the perpendicular",
         filter: Filter::Article,
     },
-    rung("round", "one fetch where the light comes from", Footprint::Round),
-    rung("ellipse", "four fetches along the footprint's longer axis", Footprint::Ellipse),
-    rung("split", "4 x 4 parts of the light, two fetches each", Footprint::Split),
+    level("round", "one fetch where the light comes from", Footprint::Round),
+    level("ellipse", "four fetches along the footprint's longer axis", Footprint::Ellipse),
+    level("split", "4 x 4 parts of the light, two fetches each", Footprint::Split),
 ];
 
-const fn rung(name: &'static str, description: &'static str, footprint: Footprint) -> Method {
-    Method { name, description, filter: Filter::Rung(footprint) }
+const fn level(name: &'static str, description: &'static str, footprint: Footprint) -> Method {
+    Method { name, description, filter: Filter::Level(footprint) }
 }
 
 impl Method {
@@ -56,7 +56,7 @@ impl Method {
     fn kernel(&self, effects: Effects, quality: Quality) -> (&'static Kernel, Vec<(u32, u32)>) {
         let footprint = match self.filter {
             Filter::Article => Footprint::default(),
-            Filter::Rung(footprint) => footprint,
+            Filter::Level(footprint) => footprint,
         };
         let dispatch = plan::eval(effects, Quality { footprint, ..quality }, 0);
         let kernel = if self.filter == Filter::Article { &TEXTURED_ARTICLE } else { dispatch.kernel };
@@ -189,7 +189,7 @@ pub const JUDGED_PICTURES: &str = "checker, gradient and noise";
 const SPOT_PICTURE: &str = "spot";
 
 impl Footprints {
-    /// Where a rung misses its bar.
+    /// Where a level misses its bar.
     pub fn shortfalls(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| !row.is_kept())
     }

@@ -1,4 +1,4 @@
-//! What accuracy costs in time: every rung of the quality ladder on a device, its error against the integral of the true BRDF and
+//! What accuracy costs in time: every quality level on a device, its error against the integral of the true BRDF and
 //! its time, beside Monte Carlo and what others ship.
 
 mod compare;
@@ -16,7 +16,7 @@ mod timing;
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
 pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
-pub use names::{RungNames, UnknownRung};
+pub use names::{LevelNames, UnknownLevel};
 pub use pictures::{Picture, Pictures};
 pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
@@ -24,7 +24,7 @@ pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
 use crate::textures::is_software;
-use arealight::{Effects, LightTable, Profile, ProfileRung, Quality};
+use arealight::{Effects, LightTable, Profile, ProfileLevel, Quality};
 use arealight_engine::{Engine, EngineError, GBuffer};
 use arealight_host::Host;
 use arealight_oracle::texture::Texture;
@@ -87,8 +87,8 @@ pub struct Row {
     pub name: String,
     /// What it does, in a few words.
     pub description: String,
-    /// The rungs; none of a yardstick.
-    pub rungs: Option<RungNames>,
+    /// The levels; none of a yardstick.
+    pub levels: Option<LevelNames>,
     /// Its errors.
     pub errors: SplitErrors,
     /// Its time.
@@ -162,26 +162,26 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// What [`Quality::within`] picks from: the rungs that are right everywhere, over quads and over lights that show images. One
+    /// What [`Quality::within`] picks from: the levels that are right everywhere, over quads and over lights that show images. One
     /// that gave no number, or was judged nowhere, is none of them.
     ///
     /// # Errors
-    /// [`UnknownRung`] where the rungs are in words that this version does not know.
-    pub fn profile(&self) -> Result<Profile, UnknownRung> {
-        let mut rungs = vec![];
+    /// [`UnknownLevel`] where the levels are in words that this version does not know.
+    pub fn profile(&self) -> Result<Profile, UnknownLevel> {
+        let mut levels = vec![];
         for row in &self.rows {
             let textured = row.lights == methods::TEXTURED;
-            let Some(names) = row.rungs.as_ref().filter(|_| textured || row.lights == self.first()) else {
+            let Some(names) = row.levels.as_ref().filter(|_| textured || row.lights == self.first()) else {
                 continue;
             };
             let quality = names.quality()?;
             let is_judged = row.errors.all.points > 0 && row.errors.all.not_finite == 0;
             if is_judged {
                 let (error, Time { fixed, per_light, .. }) = (row.errors.all.rmse, row.time);
-                rungs.push(ProfileRung { quality, textured, error, fixed, per_light });
+                levels.push(ProfileLevel { quality, textured, error, fixed, per_light });
             }
         }
-        Ok(Profile { device: self.device.clone(), rungs })
+        Ok(Profile { device: self.device.clone(), levels })
     }
 }
 
@@ -245,7 +245,7 @@ pub fn run(
         let default = &timed.methods[default];
         // Without a lobe it is the other way round
         let on = if LOBES.contains(*effect) { default.ratio(clock) } else { clock.ratio(default) };
-        let calls = |named: &Named| matches!(named.method, Method::Rung { effects, .. } if effects - LOBES == *effect);
+        let calls = |named: &Named| matches!(named.method, Method::Level { effects, .. } if effects - LOBES == *effect);
         // Nothing calls for it in the first
         let all = workloads.iter().flat_map(|workload| &workload.methods).zip(&timed.methods);
         let mut others = all.skip(workloads[0].methods.len());
@@ -330,7 +330,7 @@ fn time(
     });
     let frames = frames.collect::<Result<Vec<Frame<'_>>, _>>()?;
     let first = &frames[0];
-    let changed = |effect: &Effects| Method::Rung { effects: LOBES ^ *effect, quality: Quality::default() };
+    let changed = |effect: &Effects| Method::Level { effects: LOBES ^ *effect, quality: Quality::default() };
 
     let mut timed: Vec<(&Frame<'_>, Method)> = vec![];
     for (workload, frame) in workloads.iter().zip(&frames) {
@@ -411,15 +411,15 @@ fn with_samples(mut row: Row, monte_carlo: &[Samples]) -> Row {
 }
 
 fn row(workload: &Workload, named: &Named, errors: SplitErrors, time: Time) -> Row {
-    let rungs = match named.method {
-        Method::Rung { quality, .. } => Some(RungNames::from(quality)),
+    let levels = match named.method {
+        Method::Level { quality, .. } => Some(LevelNames::from(quality)),
         Method::Yardstick { .. } | Method::Samples { .. } => None,
     };
     Row {
         lights: workload.name.to_owned(),
         name: named.name.to_owned(),
         description: named.description.to_owned(),
-        rungs,
+        levels,
         errors,
         time,
         samples: None,

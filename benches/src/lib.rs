@@ -6,10 +6,10 @@
 //! | [`published`] | a table of the quality that others ship |
 //! | [`method`] | the ways to compute a form factor: every quality level of the library, and the yardsticks |
 //! | [`effects`] | the time of the shade kernel and pass by effect |
-//! | [`cost`] | the time of each rung of the form factor, as a ratio to a yardstick's |
+//! | [`cost`] | the time of each level of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`model`] | which paths the waves of our scenes take, and what a frame of them costs by the compiler's numbers |
-//! | [`ladder`] | the error and the time of every rung of the quality ladder, beside Monte Carlo |
+//! | [`ladder`] | the error and the time of every quality level, beside Monte Carlo |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
 //! | [`tiles`] | the time of frames by tiles, beside a yardstick and the same shading without |

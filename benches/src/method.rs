@@ -1,4 +1,4 @@
-//! The ways to compute a form factor that are compared: the library's rungs by each of its ways in, and the
+//! The ways to compute a form factor that are compared: the library's levels by each of its ways in, and the
 //! yardsticks, which are what others do.
 
 use crate::school::School;
@@ -13,7 +13,7 @@ pub struct Method {
     pub name: &'static str,
     /// What it is.
     pub description: &'static str,
-    /// What it is held to: its own promises, or for a yardstick those of the best rung.
+    /// What it is held to: its own promises, or for a yardstick those of the best level.
     pub promises: Promises,
     /// It is no way of ours: that it breaks promises is expected.
     pub is_yardstick: bool,
@@ -27,30 +27,30 @@ pub struct Method {
 #[derive(Clone, Copy)]
 #[repr(u32)]
 enum Shape {
-    Walk = 0,
+    Polygon = 0,
     Quad = 8,
 }
 
 /// The first of the kernel's yardsticks, `METHOD_YARDSTICK`.
 const YARDSTICK: u32 = 32;
 
-/// What each rung promises.
-pub const fn promises(rung: FormFactor) -> Promises {
-    match rung {
+/// What each level promises.
+pub const fn promises(level: FormFactor) -> Promises {
+    match level {
         FormFactor::Exact => Promises::EXACT,
         FormFactor::Difference => Promises::DIFFERENCE,
     }
 }
 
 impl Method {
-    const fn rung(name: &'static str, description: &'static str, shape: Shape, rung: FormFactor) -> Self {
+    const fn level(name: &'static str, description: &'static str, shape: Shape, level: FormFactor) -> Self {
         Self {
             name,
             description,
-            promises: promises(rung),
+            promises: promises(level),
             is_yardstick: false,
             quads_only: matches!(shape, Shape::Quad),
-            id: shape as u32 | rung as u32,
+            id: shape as u32 | level as u32,
         }
     }
 
@@ -80,10 +80,15 @@ impl Method {
 
 /// Every method, the yardsticks last.
 pub static METHODS: &[Method] = &[
-    Method::rung("walk-exact", "any outline, exact", Shape::Walk, FormFactor::Exact),
-    Method::rung("walk-difference", "any outline, difference form", Shape::Walk, FormFactor::Difference),
-    Method::rung("quad-exact", "convex, exact", Shape::Quad, FormFactor::Exact),
-    Method::rung("quad-difference", "convex, difference form", Shape::Quad, FormFactor::Difference),
+    Method::level("polygon-exact", "any outline, exact", Shape::Polygon, FormFactor::Exact),
+    Method::level(
+        "polygon-difference",
+        "any outline, difference form",
+        Shape::Polygon,
+        FormFactor::Difference,
+    ),
+    Method::level("quad-exact", "convex, exact", Shape::Quad, FormFactor::Exact),
+    Method::level("quad-difference", "convex, difference form", Shape::Quad, FormFactor::Difference),
     Method::school("sphere-horizon", School::SphereHorizon),
     Method::school("clipless", School::Clipless),
     Method::school("clip-by-cases", School::ClipByCases),

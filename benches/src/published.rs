@@ -221,7 +221,7 @@ fn simplex(start: Parameters, value: impl Fn(Parameters) -> f64) -> Parameters {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight_fit::report::{COUNT, Errors, PUBLISHED, Rung, SEED, cases, measure};
+    use arealight_fit::report::{COUNT, Errors, Level, PUBLISHED, SEED, cases, measure};
 
     /// The largest ratio of a table's errors to those of the published table, or the other way round.
     fn largest_ratio(errors: &[Errors]) -> f64 {
@@ -236,11 +236,11 @@ mod tests {
     #[test]
     fn its_errors_are_those_of_the_published_table() {
         let cases = cases(COUNT, SEED, &|| {});
-        let ratio = largest_ratio(&measure(&table(), Rung::default(), &cases));
+        let ratio = largest_ratio(&measure(&table(), Level::default(), &cases));
         // What a yardstick may be off without misleading anybody; it is 1.022
         assert!(ratio < 1.1, "{ratio}");
         // The twin: our own table, four times better for metals
-        let ratio = largest_ratio(&measure(&arealight_table::ggx(), Rung::default(), &cases));
+        let ratio = largest_ratio(&measure(&arealight_table::ggx(), Level::default(), &cases));
         assert!(ratio > 3.0, "{ratio}");
     }
 

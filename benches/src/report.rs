@@ -10,7 +10,7 @@ const HEADS: [&str; 6] = ["family", "error", "backward", "small light", "not fin
 
 /// The methods that stand side by side in the document's first table.
 const OVERVIEW: [&str; 7] = [
-    "walk-exact",
+    "polygon-exact",
     "quad-exact",
     "quad-difference",
     "sphere-horizon",

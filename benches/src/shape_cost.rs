@@ -1,5 +1,5 @@
 //! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the ways to a disk how
-//! far off they are: by the library's rungs and by yardsticks.
+//! far off they are: by the library's levels and by yardsticks.
 //!
 //! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them in the same round:
 //! here to a disk, exactly.
@@ -23,7 +23,7 @@ use std::time::Instant;
 struct ShapeMethod {
     name: &'static str,
     function: ShapeFunction,
-    rung: u32,
+    level: u32,
     choice: u32,
     kind: Kind,
 }
@@ -45,11 +45,11 @@ const CLAMPED: u32 = 1;
 const fn method(
     name: &'static str,
     function: ShapeFunction,
-    rung: u32,
+    level: u32,
     choice: u32,
     kind: Kind,
 ) -> ShapeMethod {
-    ShapeMethod { name, function, rung, choice, kind }
+    ShapeMethod { name, function, level, choice, kind }
 }
 
 /// The method that the others are ratios to comes first.
@@ -140,7 +140,7 @@ impl Run {
             host.storage_buffer("ends", &[ends; WORK_ITEMS])?,
         ];
         let results = host.storage_buffer("results", &vec![[f32::NAN; 4]; WORK_ITEMS])?;
-        let constants = [(0, method.function as u32), (1, method.rung), (2, method.choice), (3, repeats)];
+        let constants = [(0, method.function as u32), (1, method.level), (2, method.choice), (3, repeats)];
         let pass = passes.pass(&SHAPES, &constants)?;
         let resources = [&inputs[0], &inputs[1], &results].map(|buffer| Resource::buffer(buffer.handle()));
         // SAFETY: This keeps the buffers until its submissions are waited for.

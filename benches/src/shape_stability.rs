@@ -21,7 +21,7 @@ use std::fmt::Write as _;
 const BACKWARD: f64 = 1e-6;
 /// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
 const RELATIVE: f64 = 1e-5;
-/// The difference form's rung.
+/// The difference form's level.
 const DIFFERENCE: u32 = 1;
 
 /// A shape of a family.
@@ -138,7 +138,7 @@ enum Judgement {
 struct Family {
     name: String,
     function: ShapeFunction,
-    rung: u32,
+    level: u32,
     judgement: Judgement,
     make: Box<dyn Fn(u64) -> Case + Sync>,
 }
@@ -149,7 +149,7 @@ fn families() -> Vec<Family> {
         .map(|family| Family {
             name: format!("disk, {}", family.name),
             function: ShapeFunction::Ellipse,
-            rung: if family.name == "far-crossing" { DIFFERENCE } else { 0 },
+            level: if family.name == "far-crossing" { DIFFERENCE } else { 0 },
             judgement: if family.name.starts_with("far") {
                 Judgement::Relative(RELATIVE)
             } else {
@@ -166,7 +166,7 @@ fn families() -> Vec<Family> {
         families.push(Family {
             name: name.into(),
             function: ShapeFunction::Sphere,
-            rung: 0,
+            level: 0,
             judgement,
             make: Box::new(move |index| Case::Sphere(hard_sphere(name, index, [low, high]))),
         });
@@ -190,7 +190,7 @@ fn families() -> Vec<Family> {
             families.push(Family {
                 name: format!("{name}, {}", place.name()),
                 function: ShapeFunction::Tube,
-                rung: if is_far { DIFFERENCE } else { 0 },
+                level: if is_far { DIFFERENCE } else { 0 },
                 judgement,
                 make: Box::new(move |index| Case::Tube(hard_tube(place, ends, index))),
             });
@@ -320,7 +320,7 @@ pub fn run(host: &Host, samples: u64, progress: &dyn Fn(u64)) -> Result<Vec<Shap
     for family in families() {
         let cases: Vec<Case> = (0..samples).into_par_iter().map(|index| (family.make)(index)).collect();
         let (arguments, ends): (Vec<_>, Vec<_>) = cases.iter().map(Case::arguments).unzip();
-        let found = evaluate(&passes, family.function, family.rung, &arguments, &ends)?;
+        let found = evaluate(&passes, family.function, family.level, &arguments, &ends)?;
         let published = match family.function {
             ShapeFunction::Ellipse => {
                 let found = evaluate(&passes, ShapeFunction::Published, 1, &arguments, &ends)?;
@@ -390,7 +390,7 @@ pub fn family_count() -> u64 {
 fn evaluate(
     passes: &Passes,
     function: ShapeFunction,
-    rung: u32,
+    level: u32,
     arguments: &[ShapeArguments],
     ends: &[u32],
 ) -> Result<Vec<f32>, EngineError> {
@@ -399,7 +399,7 @@ fn evaluate(
     let ends = host.storage_buffer("ends", ends)?;
     // What is not written stays NaN
     let results = host.storage_buffer("results", &vec![[f32::NAN; 4]; arguments.len()])?;
-    let pass = passes.pass(&SHAPES, &[(0, function as u32), (1, rung), (2, 0)])?;
+    let pass = passes.pass(&SHAPES, &[(0, function as u32), (1, level), (2, 0)])?;
     let resources = [&arguments_buffer, &ends, &results].map(|buffer| Resource::buffer(buffer.handle()));
     // SAFETY: The buffers live until the submission below was waited for.
     let set = unsafe { passes.bind(&pass, &resources) }?;

@@ -31,7 +31,7 @@ pub enum ShapeFunction {
     Silhouette = 2,
     /// `arealight_arctangent` of a.y and a.x.
     Arctangent = 3,
-    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The rung is
+    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The level is
     /// whether its discriminant is clamped.
     Published = 4,
     /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth

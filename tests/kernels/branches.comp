@@ -6,7 +6,7 @@
 layout(local_size_x = 8) in;
 
 layout(constant_id = 0) const uint FLAGS = 0u;
-layout(constant_id = 1) const int RUNG = 0;
+layout(constant_id = 1) const int LEVEL = 0;
 layout(constant_id = 2) const bool SWITCH = true;
 
 layout(set = 0, binding = 0, std430) readonly buffer Arguments {
@@ -24,7 +24,7 @@ const uint TWO = 2u;
 
 struct Choice {
     uint flags;
-    int rung;
+    int level;
 };
 
 // A parameter that is only read.
@@ -60,10 +60,10 @@ uint by_return(uint x) {
 uint by_loop(uint x) {
     uint sum = 0u;
     for (uint i = 0u; i < x; i++) {
-        if (RUNG == 1 && i == 2u) {
+        if (LEVEL == 1 && i == 2u) {
             break;
         }
-        if (RUNG == 2) {
+        if (LEVEL == 2) {
             continue;
         }
         sum += i + 1u;
@@ -73,22 +73,22 @@ uint by_loop(uint x) {
         if ((FLAGS & TWO) != 0u) {
             return sum;
         }
-    } while (RUNG == 3 && sum < 100u);
+    } while (LEVEL == 3 && sum < 100u);
     return sum;
 }
 
 // A struct, of which a member is changed on the way.
 Choice changed(Choice choice) {
-    if (choice.rung == 2) {
-        choice.rung = 1;
+    if (choice.level == 2) {
+        choice.level = 1;
     }
     return choice;
 }
 Choice replaced(Choice choice) {
-    return Choice(choice.flags | ONE, choice.rung == 2 ? 1 : choice.rung);
+    return Choice(choice.flags | ONE, choice.level == 2 ? 1 : choice.level);
 }
 uint by_choice(uint x, Choice choice) {
-    return choice.rung == 1 ? by_flags(x, choice.flags) : x + 20000u;
+    return choice.level == 1 ? by_flags(x, choice.flags) : x + 20000u;
 }
 
 // Written through a pointer by whom it is given to.
@@ -116,7 +116,7 @@ uint by_variable(uint x) {
 
 uint by_switch(uint x) {
     uint sum = x;
-    switch (RUNG) {
+    switch (LEVEL) {
     case 0:
         sum += 1u;
         break;
@@ -134,12 +134,12 @@ uint by_switch(uint x) {
 
 // Both outcomes, one in the other, decided by different constants.
 uint by_nesting(uint x) {
-    bool is_set = SWITCH ? (FLAGS & ONE) != 0u : RUNG > 1;
+    bool is_set = SWITCH ? (FLAGS & ONE) != 0u : LEVEL > 1;
     uint sum = is_set ? x : x + 7u;
     if (is_set) {
         if (SWITCH) {
             sum += 50u;
-        } else if (RUNG == 3) {
+        } else if (LEVEL == 3) {
             sum += 60u;
         } else {
             sum += 70u;
@@ -154,7 +154,7 @@ void main() {
         return;
     }
     uint x = arguments[item];
-    Choice choice = Choice(FLAGS, RUNG);
+    Choice choice = Choice(FLAGS, LEVEL);
     uint[10] sums;
     sums[0] = by_flags(x, FLAGS);
     sums[1] = by_flags(x, FLAGS ^ ONE) + by_changed_flags(x, FLAGS);

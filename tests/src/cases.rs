@@ -1,6 +1,6 @@
 //! The eval kernel with any set of effects, on buffers that a test may change before they go to the device.
 
-use crate::{Rung, TestEngine};
+use crate::{Level, TestEngine};
 use arealight::PackedLights;
 use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
 use arealight::kernels::EVAL;
@@ -96,17 +96,17 @@ impl TestEngine {
         results.download().expect("the results come back")
     }
 
-    /// Each case's first channel by a rung, for a pass that has these lobes: a form factor where radiance and
+    /// Each case's first channel by a level, for a pass that has these lobes: a form factor where radiance and
     /// albedo are one.
     ///
     /// # Panics
     /// Where the device fails, or an answer's bits are not those of a number from 0 to 1 and a rounding.
-    pub fn factors(&self, given: &Cases, lobes: Effects, rung: Rung) -> Vec<f64> {
+    pub fn factors(&self, given: &Cases, lobes: Effects, level: Level) -> Vec<f64> {
         // Bits of NaN, infinity and negative numbers are all larger
         let largest = (1.0_f32 + 1e-6).to_bits();
-        let answers = self.run(given, rung.effects(lobes), rung.quality);
+        let answers = self.run(given, level.effects(lobes), level.quality);
         let factor = |(index, answer): (usize, &[u32; 4])| {
-            assert!(answer[0] <= largest, "{rung}, case {index}: {}", f32::from_bits(answer[0]));
+            assert!(answer[0] <= largest, "{level}, case {index}: {}", f32::from_bits(answer[0]));
             f32::from_bits(answer[0]).into()
         };
         answers.iter().enumerate().map(factor).collect()

@@ -6,19 +6,19 @@ mod cases;
 mod compare;
 pub mod frame;
 pub mod kernel;
+mod levels;
 pub mod lobe;
 pub mod one_pixel;
 mod points;
 mod property;
-mod rungs;
 pub mod shapes;
 pub mod spirv;
 
 pub use cases::Cases;
 pub use compare::{Comparison, rounding};
+pub use levels::{FORM_FACTORS, Level, Path};
 pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
 pub use property::Property;
-pub use rungs::{FORM_FACTORS, Path, Rung};
 
 use arealight_engine::Engine;
 use arealight_host::testing::TestHost;

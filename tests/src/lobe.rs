@@ -13,12 +13,12 @@
 //! larger change counts. So the bound is as sharp for a mirror as for a Lambert lobe, and wide only where the light's
 //! edge really hangs on the last bits.
 
-use crate::{Cases, Rung};
+use crate::{Cases, Level};
 use arealight::gpu::{GpuCase, GpuLight};
 use arealight::table::{mirror_frame, share_above_surface};
 use arealight::{Horizon, LightTable};
 use arealight_oracle::frame::SurfaceFrame;
-use arealight_oracle::hard::walk::walk;
+use arealight_oracle::hard::edges::sum_edges;
 use glam::{DMat3, DVec3, DVec4};
 
 /// float32's unit in the last place.
@@ -154,7 +154,7 @@ impl Seen {
 
     fn factor_of(&self, vertices: &[DVec4]) -> f64 {
         let outline: Vec<[f64; 3]> = clipped(vertices, self.horizon).iter().map(DVec3::to_array).collect();
-        let signed = walk::<f64>([0.0; 3], &outline).signed_form_factor();
+        let signed = sum_edges::<f64>([0.0; 3], &outline).signed_form_factor();
         (if self.two_sided { signed.abs() } else { signed }).clamp(0.0, 1.0)
     }
 
@@ -214,7 +214,7 @@ impl Seen {
         reach
     }
 
-    /// What is known of the light before any rung.
+    /// What is known of the light before any level.
     pub fn judge(&self) -> Judge {
         let form_factor = self.form_factor();
         let Lobe { albedo, albedo_reach, above_surface, .. } = self.lobe;
@@ -251,12 +251,12 @@ impl Judge {
         self.albedo * self.gain * self.share
     }
 
-    /// How far a rung's answer may be from it.
-    pub fn bound(&self, rung: Rung) -> f64 {
-        let walk = rung.promises().backward;
+    /// How far a level's answer may be from it.
+    pub fn bound(&self, level: Level) -> f64 {
+        let edges = level.promises().backward;
         // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are multiplied
         let factors = self.albedo_reach + 4e-7 + 8.0 * UNIT;
-        self.albedo * self.gain * (walk + self.reach) + factors * self.gain * self.form_factor
+        self.albedo * self.gain * (edges + self.reach) + factors * self.gain * self.form_factor
     }
 }
 

@@ -1,7 +1,7 @@
 //! Properties of the integral: what relates the form factors of a few lights, whatever they are.
 
 use crate::lobe::{Judge, Lobe, Seen};
-use crate::{Cases, Comparison, Rung, TestEngine};
+use crate::{Cases, Comparison, Level, TestEngine};
 use arealight::{Effects, Horizon, LightTable};
 use arealight_engine::EvalPoint;
 use std::cell::OnceCell;
@@ -36,17 +36,19 @@ impl<'a> Property<'a> {
         &mut self.given
     }
 
-    /// Each group's form factors by a rung, with the sum of their bounds.
-    pub fn groups(&self, engine: &TestEngine, rung: Rung) -> Vec<(Vec<f64>, f64)> {
-        let factors = engine.factors(&self.given, self.lobes, rung);
-        let bounds =
-            self.judges(rung).chunks_exact(self.size).map(|group| group.iter().map(|j| j.bound(rung)).sum());
+    /// Each group's form factors by a level, with the sum of their bounds.
+    pub fn groups(&self, engine: &TestEngine, level: Level) -> Vec<(Vec<f64>, f64)> {
+        let factors = engine.factors(&self.given, self.lobes, level);
+        let bounds = self
+            .judges(level)
+            .chunks_exact(self.size)
+            .map(|group| group.iter().map(|j| j.bound(level)).sum());
         factors.chunks_exact(self.size).map(<[f64]>::to_vec).zip(bounds).collect()
     }
 
-    fn judges(&self, rung: Rung) -> &[Judge] {
+    fn judges(&self, level: Level) -> &[Judge] {
         // Lambert's lobe has one horizon
-        let horizon = if self.table.is_some() { rung.quality.horizon } else { Horizon::Cosine };
+        let horizon = if self.table.is_some() { level.quality.horizon } else { Horizon::Cosine };
         let judge = |case| {
             let surface = &self.given.cases[case];
             let lobe =
@@ -58,24 +60,24 @@ impl<'a> Property<'a> {
     }
 
     /// What the lobe of each group's first point reflects of a light that is everywhere.
-    pub fn wholes(&self, rung: Rung) -> Vec<f64> {
-        self.judges(rung).chunks_exact(self.size).map(|group| group[0].whole()).collect()
+    pub fn wholes(&self, level: Level) -> Vec<f64> {
+        self.judges(level).chunks_exact(self.size).map(|group| group[0].whole()).collect()
     }
 
     /// The gain of the lobe of each group's first point.
-    pub fn gains(&self, rung: Rung) -> Vec<f64> {
-        self.judges(rung).chunks_exact(self.size).map(|group| group[0].gain).collect()
+    pub fn gains(&self, level: Level) -> Vec<f64> {
+        self.judges(level).chunks_exact(self.size).map(|group| group[0].gain).collect()
     }
 
-    /// Asserts for every rung and group that both sides of `relation` are the same, but for the bounds of the group's
+    /// Asserts for every level and group that both sides of `relation` are the same, but for the bounds of the group's
     /// form factors.
     ///
     /// # Panics
     /// Where they are not.
-    pub fn assert(&self, engine: &TestEngine, rungs: &[Rung], relation: impl Fn(&[f64]) -> [f64; 2]) {
-        for &rung in rungs {
-            let mut comparison = Comparison::new(format!("{}, {rung}", self.what));
-            for (index, (factors, bound)) in self.groups(engine, rung).iter().enumerate() {
+    pub fn assert(&self, engine: &TestEngine, levels: &[Level], relation: impl Fn(&[f64]) -> [f64; 2]) {
+        for &level in levels {
+            let mut comparison = Comparison::new(format!("{}, {level}", self.what));
+            for (index, (factors, bound)) in self.groups(engine, level).iter().enumerate() {
                 let [actual, expected] = relation(factors);
                 comparison.add(actual, expected, *bound, || format!("group {index}: {factors:?}"));
             }
@@ -90,11 +92,11 @@ impl<'a> Property<'a> {
     pub fn assert_fails(
         &self,
         engine: &TestEngine,
-        rung: Rung,
+        level: Level,
         part: f64,
         relation: impl Fn(&[f64]) -> [f64; 2],
     ) {
-        let groups = self.groups(engine, rung);
+        let groups = self.groups(engine, level);
         let failing = groups.iter().filter(|(factors, bound)| {
             let [actual, expected] = relation(factors);
             (actual - expected).abs() > *bound

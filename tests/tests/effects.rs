@@ -91,7 +91,7 @@ fn code_that_no_light_calls_for_changes_no_bit() {
         footprint: Footprint::Ellipse,
         ..Quality::default()
     };
-    // Pipelines take their time: each effect once, and all but one of them at once on rungs that bring code of their own
+    // Pipelines take their time: each effect once, and all but one of them at once on levels that bring code of their own
     let mut sets: Vec<_> = unused.iter().map(|effect| (effect, plain)).collect();
     sets.push((unused - Effects::POLYGON, dear));
     let wrong = sets.into_iter().filter_map(|(added, quality)| {

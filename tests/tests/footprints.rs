@@ -1,4 +1,4 @@
-//! The errors of light textures' lookups in short form: every rung is within its bars, and the filter of Heitz et al. 2016 is
+//! The errors of light textures' lookups in short form: every level is within its bars, and the filter of Heitz et al. 2016 is
 //! not. `arealight bench textures` is the long form.
 
 use arealight::Footprint;
@@ -8,7 +8,7 @@ use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Family};
 
 #[test]
-fn every_rung_is_within_its_bars_and_the_article_is_not() {
+fn every_level_is_within_its_bars_and_the_article_is_not() {
     let Some(host) = device_or_skip() else { return };
     let options = Options { poses: 20, rounds: 0, ..Options::default() };
     let found = run(&host, &arealight_table::ggx(), &options, &|_| {}).unwrap();
@@ -16,8 +16,8 @@ fn every_rung_is_within_its_bars_and_the_article_is_not() {
     assert_eq!(judged, 9, "three quality levels on three families");
     assert_eq!(found.shortfalls().count(), 0, "{}", found.to_text());
 
-    // The twin: against the bar of the first rung
-    let bar = Bar::of(Filter::Rung(Footprint::Round), Family::Diffuse).unwrap();
+    // The twin: against the bar of the first level
+    let bar = Bar::of(Filter::Level(Footprint::Round), Family::Diffuse).unwrap();
     let errors = found.errors(METHODS[0].name, Family::Diffuse).unwrap();
     assert!(!bar.holds(errors), "the bars let the article's filter pass: {errors:?}");
 

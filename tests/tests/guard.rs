@@ -5,7 +5,7 @@ use arealight::kernels::{EVAL, Kernel, SHADE, constant};
 use arealight::{Effects, FormFactor, Fresnel, Horizon};
 use arealight_tests::kernel::UNGUARDED;
 use arealight_tests::spirv::{tool, words};
-use arealight_tests::{Cases, Path, Rung, TestEngine, glossy_surface, point};
+use arealight_tests::{Cases, Level, Path, TestEngine, glossy_surface, point};
 use arealight_vk::Resource;
 use glam::DVec3;
 use rspirv::dr::{Instruction, Module, Operand};
@@ -191,12 +191,12 @@ fn what_is_not_finite_gives_zero_to_the_bit() {
     let surface = arealight::Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
     let mut given = Cases::new(&vec![point(surface, DVec3::Z, square.into(), true); lights.len()]);
     given.vertices = lights.iter().flatten().map(|v| [v[0], v[1], v[2] - 2.0, 0.0]).collect();
-    for mut rung in Rung::of(&[Path::Quad, Path::Walk], &[Horizon::Cosine, Horizon::Both]) {
-        rung.quality.fresnel = Fresnel::Split;
-        let answers = engine.run(&given, rung.effects(Effects::DIFFUSE | Effects::GLOSSY), rung.quality);
-        assert!(f32::from_bits(answers[0][0]) > 0.1, "{rung}: the whole light shines");
+    for mut level in Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]) {
+        level.quality.fresnel = Fresnel::Split;
+        let answers = engine.run(&given, level.effects(Effects::DIFFUSE | Effects::GLOSSY), level.quality);
+        assert!(f32::from_bits(answers[0][0]) > 0.1, "{level}: the whole light shines");
         for (light, answer) in lights.iter().zip(&answers).skip(1) {
-            assert_eq!(*answer, [0; 4], "{rung}: {light:?}");
+            assert_eq!(*answer, [0; 4], "{level}: {light:?}");
         }
     }
 }

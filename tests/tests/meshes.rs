@@ -7,7 +7,7 @@ use arealight_engine::{EvalPoint, SceneRenderer, ShapePoint};
 use arealight_scene::{Camera, SceneBuffers};
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{
-    Cases, Comparison, Path, Random, Rung, TestEngine, glossy_surface, lambert_surface, point, rounding,
+    Cases, Comparison, Level, Path, Random, TestEngine, glossy_surface, lambert_surface, point, rounding,
 };
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
@@ -45,23 +45,23 @@ fn group(random: &mut Random, glossy: bool, two_sided: bool) -> Vec<EvalPoint> {
     [vec![light.clone()], light.split()].concat().into_iter().map(seen).collect()
 }
 
-/// That meshes send what their faces do together, by some rungs.
-fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, rungs: &[Rung]) {
+/// That meshes send what their faces do together, by some levels.
+fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, levels: &[Level]) {
     let mut random = Random::new(401);
     let groups: Vec<Vec<EvalPoint>> =
         (0..200).map(|index| group(&mut random, table.is_some(), index % 2 == 0)).collect();
     let given = Cases::new(&groups.concat());
     let lobes = if table.is_some() { Effects::GLOSSY } else { Effects::DIFFUSE };
-    for &rung in rungs {
-        let factors = engine.factors(&given, lobes, rung);
-        let mut comparison = Comparison::new(format!("meshes and their faces, {rung}"));
+    for &level in levels {
+        let factors = engine.factors(&given, lobes, level);
+        let mut comparison = Comparison::new(format!("meshes and their faces, {level}"));
         let mut without = Comparison::new("without the last face");
         for (number, found) in factors.chunks_exact(4).enumerate() {
             let bounds = (1..4).map(|face| {
                 let case = 4 * number + face;
                 let surface = &given.cases[case];
                 let lobe = table.map_or_else(|| Lobe::lambert(surface), |table| Lobe::glossy(table, surface));
-                Seen::new(&given, case, lobe, rung.quality.horizon).judge().bound(rung)
+                Seen::new(&given, case, lobe, level.quality.horizon).judge().bound(level)
             });
             // A face may err by its bound, and as part of the mesh by as much for being given from a center that is twice as far from it
             let bound = 3.0 * bounds.sum::<f64>();
@@ -78,33 +78,33 @@ fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, rungs: &[Rung]) 
 #[test]
 fn a_mesh_sends_what_its_faces_do() {
     let Some(engine) = TestEngine::new() else { return };
-    let all = Rung::of(&[Path::Mesh], &[Horizon::Cosine]);
+    let all = Level::of(&[Path::Mesh], &[Horizon::Cosine]);
     assert_sums(&engine, None, &all);
-    let twice = Rung::of(&[Path::Mesh], &[Horizon::Both]);
+    let twice = Level::of(&[Path::Mesh], &[Horizon::Both]);
     assert_sums(&engine, Some(&TABLE), &[all[1], twice[1]]);
     faces_in_front_alone_count(&engine, all[0]);
     any_bits_give_a_form_factor(&engine, all[0]);
     far_meshes_keep_relative_precision(&engine, all[0]);
 }
 
-/// A one-sided cube around the point is dark, a two-sided one is all there is; the walk alone takes the cube for one outline.
-fn faces_in_front_alone_count(engine: &TestEngine, rung: Rung) {
+/// A one-sided cube around the point is dark, a two-sided one is all there is; the polygon kernel alone takes the cube for one outline.
+fn faces_in_front_alone_count(engine: &TestEngine, level: Level) {
     let cube = |two_sided| EvalPoint {
         light: PolygonLight { two_sided, ..cube(DVec3::new(0.1, 0.2, 0.3), 1.0) },
         ..point(lambert_surface(), DVec3::Z, Vec::new(), two_sided)
     };
     let given = Cases::new(&[cube(false), cube(true)]);
-    let found = engine.factors(&given, Effects::DIFFUSE, rung);
+    let found = engine.factors(&given, Effects::DIFFUSE, level);
     // Five faces reach above the horizon; each errs by 6e-7
     assert!(found[0] == 0.0 && (found[1] - 1.0).abs() <= 3e-6, "{found:?}");
     let mut unmarked = given;
     unmarked.vertices.iter_mut().for_each(|vertex| vertex[3] = 0.0);
-    let found = engine.factors(&unmarked, Effects::DIFFUSE, rung);
+    let found = engine.factors(&unmarked, Effects::DIFFUSE, level);
     assert!((found[1] - 1.0).abs() > 0.1, "{found:?}");
 }
 
 /// Whatever is said of the faces: [`TestEngine::factors`] asserts that it is in [0, 1].
-fn any_bits_give_a_form_factor(engine: &TestEngine, rung: Rung) {
+fn any_bits_give_a_form_factor(engine: &TestEngine, level: Level) {
     let mut random = Random::new(402);
     let points: Vec<EvalPoint> = (0..512).map(|_| group(&mut random, false, true).swap_remove(0)).collect();
     let mut given = Cases::new(&points);
@@ -114,16 +114,18 @@ fn any_bits_give_a_form_factor(engine: &TestEngine, rung: Rung) {
             vertex[index % 3] = f32::from_bits(random.bits());
         }
     }
-    assert_eq!(engine.factors(&given, Effects::DIFFUSE, rung).len(), 512);
+    assert_eq!(engine.factors(&given, Effects::DIFFUSE, level).len(), 512);
 }
 
 /// A closed mesh far away, whose area vector is zero, sends what its projected area does.
-fn far_meshes_keep_relative_precision(engine: &TestEngine, rung: Rung) {
+fn far_meshes_keep_relative_precision(engine: &TestEngine, level: Level) {
     let center = DVec3::new(3e2, 1e2, 9e2);
     let light = PolygonLight { radiance: Vec3::ONE, ..cube(center, 1.0) };
     let given = Cases::new(&[EvalPoint { light, ..point(lambert_surface(), DVec3::Z, Vec::new(), false) }]);
-    let difference =
-        Rung { quality: Quality { form_factor: arealight::FormFactor::Difference, ..rung.quality }, ..rung };
+    let difference = Level {
+        quality: Quality { form_factor: arealight::FormFactor::Difference, ..level.quality },
+        ..level
+    };
     let found = engine.factors(&given, Effects::DIFFUSE, difference)[0];
     let direction = center.normalize_or_zero();
     // Its projected area, at the distance of the center: (2 / 950)^2 off

@@ -1,4 +1,4 @@
-//! Properties of the polygon integral on the GPU, for every rung and both ways around an outline: no oracle, only the
+//! Properties of the polygon integral on the GPU, for every level and both ways around an outline: no oracle, only the
 //! maths. Each relation holds but for the sum of what its form factors may err (see `arealight_tests::lobe`), and
 //! each has a twin that the same comparison notices.
 //!
@@ -16,7 +16,7 @@ mod switches;
 use arealight::{Effects, Horizon, LightTable};
 use arealight_engine::EvalPoint;
 use arealight_tests::{
-    Cases, Comparison, Path, Property, Random, Rung, TestEngine, glossy_surface, lambert_surface, point,
+    Cases, Comparison, Level, Path, Property, Random, TestEngine, glossy_surface, lambert_surface, point,
 };
 use glam::DVec3;
 use relations::{HOLE, RELATIONS};
@@ -27,7 +27,7 @@ static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 /// Groups of each property.
 const COUNT: usize = 300;
 
-const PATHS: [Path; 2] = [Path::Quad, Path::Walk];
+const PATHS: [Path; 2] = [Path::Quad, Path::Polygon];
 
 /// A polygon for a path: convex with three or four vertices, or a star of three to eight. Its front faces the point, from
 /// anywhere around it; some come near to it.
@@ -35,7 +35,7 @@ fn outline(random: &mut Random, path: Path, index: usize) -> Vec<DVec3> {
     let center = random.direction() * random.between(0.5, 3.0);
     match path {
         Path::Quad => on_a_circle(&random.polygon(center, 3 + index % 2, 0.3, 1.5), center),
-        Path::Walk | Path::Mesh => random.polygon(center, 3 + index % 6, 0.2, 1.5),
+        Path::Polygon | Path::Mesh => random.polygon(center, 3 + index % 6, 0.2, 1.5),
     }
 }
 
@@ -61,14 +61,14 @@ fn lambert(vertices: Vec<DVec3>) -> EvalPoint {
     point(lambert_surface(), DVec3::Z, vertices, false)
 }
 
-/// Every relation, for every rung of a path that clips at `horizon`.
+/// Every relation, for every level of a path that clips at `horizon`.
 fn assert_relations(engine: &TestEngine, path: Path, table: Option<&LightTable>, horizon: Horizon) {
-    let rungs = Rung::of(&[path], &[horizon]);
-    for relation in RELATIONS.iter().chain((path == Path::Walk).then_some(&HOLE)) {
+    let levels = Level::of(&[path], &[horizon]);
+    for relation in RELATIONS.iter().chain((path == Path::Polygon).then_some(&HOLE)) {
         let groups = relation.groups(path, table.is_some(), COUNT);
         let property = Property::new(relation.what, table, &groups);
-        property.assert(engine, &rungs, relation.sides);
-        property.assert_fails(engine, rungs[0], 0.25, relation.twin);
+        property.assert(engine, &levels, relation.sides);
+        property.assert_fails(engine, levels[0], 0.25, relation.twin);
     }
 }
 
@@ -78,12 +78,12 @@ fn lambert_lobes_keep_every_property() {
     for path in PATHS {
         assert_relations(&engine, path, None, Horizon::Cosine);
     }
-    let rungs = Rung::of(&PATHS, &[Horizon::Cosine]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, None, &rungs);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, None, &rungs);
-    degenerate_lights_are_dark(&engine, &rungs);
+    let levels = Level::of(&PATHS, &[Horizon::Cosine]);
+    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, None, &levels);
+    scaling_by_a_power_of_two_changes_no_bit(&engine, None, &levels);
+    degenerate_lights_are_dark(&engine, &levels);
     quads_are_as_polygons(&engine, None, Horizon::Cosine);
-    horizons::a_light_rises_without_a_jump(&engine, &rungs);
+    horizons::a_light_rises_without_a_jump(&engine, &levels);
     switches::the_difference_form_begins_without_a_jump(&engine);
 }
 
@@ -93,9 +93,9 @@ fn glossy_lobes_clipped_once_keep_every_property() {
     for path in PATHS {
         assert_relations(&engine, path, Some(&TABLE), Horizon::Cosine);
     }
-    let rungs = Rung::of(&PATHS, &[Horizon::Cosine]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &rungs);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &rungs);
+    let levels = Level::of(&PATHS, &[Horizon::Cosine]);
+    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &levels);
+    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &levels);
     quads_are_as_polygons(&engine, Some(&TABLE), Horizon::Cosine);
     the_frame_holds_for_every_view_and_normal(&engine);
 }
@@ -106,11 +106,11 @@ fn glossy_lobes_clipped_twice_keep_every_property() {
     for path in PATHS {
         assert_relations(&engine, path, Some(&TABLE), Horizon::Both);
     }
-    let rungs = Rung::of(&PATHS, &[Horizon::Both]);
-    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &rungs);
-    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &rungs);
+    let levels = Level::of(&PATHS, &[Horizon::Both]);
+    boxes::a_box_of_lights_around_the_point_sums_to_one(&engine, Some(&TABLE), &levels);
+    scaling_by_a_power_of_two_changes_no_bit(&engine, Some(&TABLE), &levels);
     quads_are_as_polygons(&engine, Some(&TABLE), Horizon::Both);
-    horizons::nothing_leaks_from_below_the_surface(&engine, &rungs);
+    horizons::nothing_leaks_from_below_the_surface(&engine, &levels);
     horizons::clipping_twice_is_no_brighter(&engine);
 }
 
@@ -123,13 +123,17 @@ fn random_point(random: &mut Random, table: Option<&LightTable>, vertices: Vec<D
     point(surface, view(random), vertices, false)
 }
 
-fn scaling_by_a_power_of_two_changes_no_bit(engine: &TestEngine, table: Option<&LightTable>, rungs: &[Rung]) {
+fn scaling_by_a_power_of_two_changes_no_bit(
+    engine: &TestEngine,
+    table: Option<&LightTable>,
+    levels: &[Level],
+) {
     let lobes = if table.is_some() { Effects::GLOSSY } else { Effects::DIFFUSE };
-    for &rung in rungs {
+    for &level in levels {
         let mut random = Random::new(15);
         let points: Vec<EvalPoint> = (0..COUNT)
             .map(|index| {
-                let mut vertices = outline(&mut random, rung.path, index);
+                let mut vertices = outline(&mut random, level.path, index);
                 // Some are small and far, for the difference form
                 let far = DVec3::Z * 10.0_f64.powf(random.between(-2.0, 4.0));
                 for vertex in &mut vertices {
@@ -143,11 +147,11 @@ fn scaling_by_a_power_of_two_changes_no_bit(engine: &TestEngine, table: Option<&
             for vertex in points.iter_mut().flat_map(|point| &mut point.light.vertices) {
                 *vertex *= scale;
             }
-            engine.run(&Cases::new(&points), rung.effects(lobes), rung.quality)
+            engine.run(&Cases::new(&points), level.effects(lobes), level.quality)
         };
         let before = scaled(1.0);
         for exponent in [-40, -7, 1, 40] {
-            assert_eq!(before, scaled(2.0_f64.powi(exponent)), "{rung}, 2^{exponent}");
+            assert_eq!(before, scaled(2.0_f64.powi(exponent)), "{level}, 2^{exponent}");
         }
         assert_ne!(before, scaled(1.0 / 3.0), "the twin: by no power of two, bits change");
     }
@@ -161,32 +165,32 @@ fn quads_are_as_polygons(engine: &TestEngine, table: Option<&LightTable>, horizo
             vec![random_point(&mut random, table, vertices)]
         })
         .collect();
-    let property = Property::new("quad and walk", table, &groups);
-    for rung in Rung::of(&[Path::Quad], &[horizon]) {
-        let walk = Rung { path: Path::Walk, ..rung };
-        let (quads, walks) = (property.groups(engine, rung), property.groups(engine, walk));
-        let mut comparison = Comparison::new(format!("quad as walk, {rung}"));
-        let mut shifted = Comparison::new("a quad as the next one's walk");
-        for (index, ((quad, bound), (walk, other))) in quads.iter().zip(&walks).enumerate() {
-            comparison.add(quad[0], walk[0], bound + other, || format!("{:?}", groups[index]));
-            shifted.add(quad[0], walks[(index + 1) % walks.len()].0[0], bound + other, String::new);
+    let property = Property::new("quad and polygon", table, &groups);
+    for level in Level::of(&[Path::Quad], &[horizon]) {
+        let polygon = Level { path: Path::Polygon, ..level };
+        let (quads, polygons) = (property.groups(engine, level), property.groups(engine, polygon));
+        let mut comparison = Comparison::new(format!("quad as polygon, {level}"));
+        let mut shifted = Comparison::new("a quad as the next one's polygon");
+        for (index, ((quad, bound), (polygon, other))) in quads.iter().zip(&polygons).enumerate() {
+            comparison.add(quad[0], polygon[0], bound + other, || format!("{:?}", groups[index]));
+            shifted.add(quad[0], polygons[(index + 1) % polygons.len()].0[0], bound + other, String::new);
         }
         comparison.assert_all();
         assert!(shifted.failures() > COUNT, "the twin: {} noticed", shifted.failures());
     }
 }
 
-fn degenerate_lights_are_dark(engine: &TestEngine, rungs: &[Rung]) {
+fn degenerate_lights_are_dark(engine: &TestEngine, levels: &[Level]) {
     let points = [
         lambert(vec![DVec3::new(0.3, 0.2, 1.0); 4]),
         lambert(vec![DVec3::ZERO; 3]),
         lambert(vec![DVec3::Z, DVec3::new(0.5, 0.0, 1.0), DVec3::new(1.0, 0.0, 1.0)]),
         lambert(vec![DVec3::X, DVec3::Y, -DVec3::X]),
     ];
-    for &rung in rungs {
-        let factors = engine.factors(&Cases::new(&points), Effects::DIFFUSE, rung);
+    for &level in levels {
+        let factors = engine.factors(&Cases::new(&points), Effects::DIFFUSE, level);
         // What an outline without area has is rounding: the form factor's own 6e-7
-        assert!(factors.iter().all(|factor| *factor <= 6e-7), "{rung}: {factors:?}");
+        assert!(factors.iter().all(|factor| *factor <= 6e-7), "{level}: {factors:?}");
     }
 }
 
@@ -200,8 +204,8 @@ fn the_frame_holds_for_every_view_and_normal(engine: &TestEngine) {
         given.cases[0].view = view;
         given
     };
-    let rung = Rung::of(&[Path::Quad], &[Horizon::Cosine])[0];
-    let factor = |normal, view| engine.factors(&case(normal, view), Effects::GLOSSY, rung)[0];
+    let level = Level::of(&[Path::Quad], &[Horizon::Cosine])[0];
+    let factor = |normal, view| engine.factors(&case(normal, view), Effects::GLOSSY, level)[0];
     let straight = factor([0.0, 0.0, 1.0], [0.0, 0.0, 1.0]);
     assert!(straight > 0.8, "nearly the whole lobe sees the light: {straight}");
     let mut comparison = Comparison::new("view along the normal");

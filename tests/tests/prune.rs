@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// What branches.comp is to write for a number.
-fn branches(x: u32, flags: u32, rung: i32, switch: bool) -> [u32; 10] {
+fn branches(x: u32, flags: u32, level: i32, switch: bool) -> [u32; 10] {
     let by_flags = |x: u32, flags: u32| {
         x + if flags & 1 != 0 { 10 } else { 0 } + if flags & 2 != 0 && x > 2 { 100 } else { 0 }
     };
@@ -21,30 +21,30 @@ fn branches(x: u32, flags: u32, rung: i32, switch: bool) -> [u32; 10] {
     let by_changed = if changed & 1 != 0 { x + 1 } else { x + 1000 };
     let mut by_loop = 0;
     for i in 0..x {
-        if rung == 1 && i == 2 {
+        if level == 1 && i == 2 {
             break;
         }
-        if rung != 2 {
+        if level != 2 {
             by_loop += i + 1;
         }
     }
     loop {
         by_loop += 7;
-        if flags & 2 != 0 || !(rung == 3 && by_loop < 100) {
+        if flags & 2 != 0 || !(level == 3 && by_loop < 100) {
             break;
         }
     }
-    let replaced = if rung == 2 { 1 } else { rung };
+    let replaced = if level == 2 { 1 } else { level };
     let by_choice = |flags: u32| if replaced == 1 { by_flags(x, flags) } else { x + 20_000 };
     let element = if x & 1 == 0 { x } else { flags };
-    let by_switch = match (rung, x) {
+    let by_switch = match (level, x) {
         (0, _) => x + 1,
         (1, 4..) => x + 2,
         (1, _) => x + 14,
         _ => x + 8,
     };
-    let is_set = if switch { flags & 1 != 0 } else { rung > 1 };
-    let nested = match (switch, rung) {
+    let is_set = if switch { flags & 1 != 0 } else { level > 1 };
+    let nested = match (switch, level) {
         (true, _) => x + 50,
         (false, 3) => x + 60,
         (false, _) => x + 70,
@@ -73,12 +73,12 @@ fn branches_that_stay_are_those_that_are_taken() {
         engine.dispatch(&BRANCHES, specialization, &inputs, arguments.len())
     };
     let mut different = BTreeSet::new();
-    for (flags, rung, switch) in
-        (0..4).flat_map(|flags| (0..4).flat_map(move |rung| [(flags, rung, false), (flags, rung, true)]))
+    for (flags, level, switch) in
+        (0..4).flat_map(|flags| (0..4).flat_map(move |level| [(flags, level, false), (flags, level, true)]))
     {
-        let specialization = [(0, flags), (1, rung), (2, u32::from(switch))];
+        let specialization = [(0, flags), (1, level), (2, u32::from(switch))];
         let expected: Vec<_> =
-            arguments.iter().map(|x| branches(*x, flags, rung.cast_signed(), switch)).collect();
+            arguments.iter().map(|x| branches(*x, flags, level.cast_signed(), switch)).collect();
         assert_eq!(run(&pruning, &specialization), expected, "{specialization:?}");
         assert_eq!(run(&whole, &specialization), expected, "whole, {specialization:?}");
         assert!(prune(&BRANCHES.words(), &specialization).len() < BRANCHES.words().len());
@@ -88,7 +88,7 @@ fn branches_that_stay_are_those_that_are_taken() {
     assert!(different.len() >= 28, "{}", different.len());
 }
 
-/// The specialisations that are looked at: each effect by itself and all, each rung, and each class of tiles.
+/// The specialisations that are looked at: each effect by itself and all, each level, and each class of tiles.
 fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     let shade = |effects: Effects, quality: Quality| {
         let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };

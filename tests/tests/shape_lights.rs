@@ -66,11 +66,11 @@ fn disks_and_spheres_are_clipped_where_they_should() {
     let cases = cases(101, 1000);
     let arguments: Vec<_> =
         cases.iter().map(|case| lobe_arguments(&case.disk, case.rows, case.alpha)).collect();
-    for rung in [0, 1, 2] {
-        let bound = if rung == 1 { 4e-5 } else { 4e-6 };
-        let both = engine.lobes(BOTH, rung, &arguments);
-        let one = engine.lobes(COSINE, rung, &arguments);
-        let mut comparison = Comparison::new(format!("disks and spheres, rung {rung}"));
+    for level in [0, 1, 2] {
+        let bound = if level == 1 { 4e-5 } else { 4e-6 };
+        let both = engine.lobes(BOTH, level, &arguments);
+        let one = engine.lobes(COSINE, level, &arguments);
+        let mut comparison = Comparison::new(format!("disks and spheres, level {level}"));
         let (mut cut, mut hidden) = (0, 0);
         for (index, case) in cases.iter().enumerate() {
             let place = || format!("{:?}, {:?}", case.disk, case.matrix());
@@ -143,15 +143,15 @@ fn any_bits_give_a_form_factor() {
         arguments.push(given);
     }
     for horizon in [COSINE, BOTH] {
-        for rung in FORM_FACTORS {
-            let found = engine.lobes(horizon, rung, &arguments);
+        for level in FORM_FACTORS {
+            let found = engine.lobes(horizon, level, &arguments);
             let wrong: Vec<_> = found
                 .iter()
                 .zip(&arguments)
                 .filter(|(found, _)| found.iter().any(|f| f.to_bits() > 1.0_f32.to_bits()))
                 .collect();
             let partial = found.iter().flatten().filter(|f| **f > 0.0 && **f < 1.0).count();
-            assert!(wrong.is_empty(), "{horizon}, {rung}: {} of them: {:?}", wrong.len(), wrong[0]);
+            assert!(wrong.is_empty(), "{horizon}, {level}: {} of them: {:?}", wrong.len(), wrong[0]);
             // The twin: it is not that all are dark
             assert!(partial > 1000, "{partial}");
         }

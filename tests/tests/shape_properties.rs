@@ -158,13 +158,13 @@ fn nothing_jumps_past_the_horizon() {
         }
     }
     let truth: Vec<f64> = sweeps.iter().map(|case| form_factor(case).abs()).collect();
-    for (rung, bound) in [(EXACT, 6e-7), (DIFFERENCE, 6e-7)] {
-        let found = engine.ellipses(ShapeFunction::Ellipse, rung, &sweeps);
+    for (level, bound) in [(EXACT, 6e-7), (DIFFERENCE, 6e-7)] {
+        let found = engine.ellipses(ShapeFunction::Ellipse, level, &sweeps);
         let errors: Vec<f64> = found.iter().zip(&truth).map(|(f, t)| f - t).collect();
         for (sweep, errors) in sweeps.chunks_exact(STEPS + 1).zip(errors.chunks_exact(STEPS + 1)) {
             // Beyond what float64 changes by
             let jump = errors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
-            assert!(jump < bound, "rung {rung}: {jump:e} of {:?}", sweep[0]);
+            assert!(jump < bound, "level {level}: {jump:e} of {:?}", sweep[0]);
         }
     }
     // The twin: the published disk errs by much more on the way
@@ -305,8 +305,8 @@ fn any_bits_give_a_form_factor() {
     }
     let bad_input = |given: &ShapeArguments| given[..3].iter().any(|v| v[..3].iter().any(|c| !c.is_finite()));
     for function in [Ellipse, Sphere, Silhouette] {
-        for rung in FORM_FACTORS {
-            let found = engine.shapes(function, rung, &arguments);
+        for level in FORM_FACTORS {
+            let found = engine.shapes(function, level, &arguments);
             let (mut wrong, mut partial) = (Vec::new(), 0);
             for (given, found) in arguments.iter().zip(&found) {
                 let must_be_dark = function == Ellipse && bad_input(given);
@@ -316,10 +316,10 @@ fn any_bits_give_a_form_factor() {
                 }
                 partial += usize::from(found[0] > 0.0 && found[0] < 1.0);
             }
-            println!("{function:?}, rung {rung}: {partial} between 0 and 1");
+            println!("{function:?}, level {level}: {partial} between 0 and 1");
             assert!(
                 wrong.is_empty(),
-                "{function:?}, {rung}: {} of them: {:?}",
+                "{function:?}, {level}: {} of them: {:?}",
                 wrong.len(),
                 &wrong[..wrong.len().min(3)]
             );

@@ -24,12 +24,12 @@ fn hard_ellipses_are_as_good_as_their_rounding() {
     let Some(engine) = TestEngine::new() else { return };
     // All families in one dispatch: a software driver compiles each pipeline for a second
     let all: Vec<_> = FAMILIES.iter().flat_map(cases).collect();
-    for rung in [EXACT, DIFFERENCE] {
-        let found = engine.ellipses(ShapeFunction::Ellipse, rung, &all);
+    for level in [EXACT, DIFFERENCE] {
+        let found = engine.ellipses(ShapeFunction::Ellipse, level, &all);
         for (family, (cases, found)) in
             FAMILIES.iter().zip(all.chunks_exact(SAMPLES as usize).zip(found.chunks_exact(SAMPLES as usize)))
         {
-            let mut comparison = Comparison::new(format!("{}, rung {rung}", family.name));
+            let mut comparison = Comparison::new(format!("{}, level {level}", family.name));
             let mut twin = Comparison::new("a result off by twice the bound");
             let bound = BACKWARD;
             for (case, &found) in cases.iter().zip(found) {
@@ -95,15 +95,15 @@ fn most(ellipse: &Ellipse) -> f64 {
 #[test]
 fn far_ellipses_keep_relative_precision() {
     let Some(engine) = TestEngine::new() else { return };
-    for (name, rung, bound) in [
+    for (name, level, bound) in [
         // The height above the ellipse's plane is rounded in the distance, and so is the elevation
         ("far", EXACT, 1e-6),
         ("far-crossing", DIFFERENCE, 5e-6),
     ] {
         let cases = cases(Family::find(name).unwrap());
-        let mut comparison = Comparison::new(format!("{name}, rung {rung}"));
+        let mut comparison = Comparison::new(format!("{name}, level {level}"));
         let mut plain = 0;
-        let found = engine.ellipses(ShapeFunction::Ellipse, rung, &cases);
+        let found = engine.ellipses(ShapeFunction::Ellipse, level, &cases);
         let clipped = engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases);
         for ((case, found), clipped) in cases.iter().zip(found).zip(clipped) {
             let (truth, whole) = (form_factor(case).abs(), most(case));

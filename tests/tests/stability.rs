@@ -1,4 +1,4 @@
-//! The battery of hard cases in its short form: every rung keeps every promise, and the yardsticks do not.
+//! The battery of hard cases in its short form: every level keeps every promise, and the yardsticks do not.
 //! `arealight bench stability` is the long form.
 
 use arealight_benches::kernel::FormFactorKernel;
@@ -22,14 +22,17 @@ fn short(host: &arealight_host::Host, methods: impl Fn(&&Method) -> bool) -> Sta
 }
 
 #[test]
-fn every_rung_keeps_every_promise() {
+fn every_level_keeps_every_promise() {
     let Some(host) = device_or_skip() else { return };
     let stability = short(&host, |method| !method.is_yardstick);
     let judged: usize = stability.rows.iter().map(|row| row.tally.samples).sum();
-    let walks = stability.rows.iter().filter(|row| row.method.contains("walk"));
-    assert!(walks.clone().all(|row| row.tally.samples == SAMPLES as usize), "the walk takes every polygon");
+    let polygons = stability.rows.iter().filter(|row| row.method.starts_with("polygon"));
+    assert!(
+        polygons.clone().all(|row| row.tally.samples == SAMPLES as usize),
+        "the polygon kernel takes every polygon"
+    );
     // Of two ways in by two levels: outlines take every polygon, quads about half of them
-    assert!(walks.count() == 2 * FAMILIES.len() && judged > 38_000, "{judged}");
+    assert!(polygons.count() == 2 * FAMILIES.len() && judged > 38_000, "{judged}");
     assert_eq!(stability.shortfalls().count(), 0, "{}", stability.to_text());
 }
 
@@ -93,7 +96,7 @@ fn the_yardsticks_are_what_they_are_named_for() {
 #[test]
 fn spoiled_results_are_found_out() {
     let Some(host) = device_or_skip() else { return };
-    let (family, method) = (Family::find("crossing").unwrap(), Method::find("walk-exact").unwrap());
+    let (family, method) = (Family::find("crossing").unwrap(), Method::find("polygon-exact").unwrap());
     let table = arealight_table::ggx();
     let cases: Vec<_> = (0..100).map(|index| family.case(index, 0, &table)).collect();
     let results = FormFactorKernel::new(&host, &[method]).unwrap().run(&cases).unwrap().remove(0);

@@ -4,7 +4,7 @@
 use arealight::{Effects, Horizon, LightTable};
 use arealight_engine::EvalPoint;
 use arealight_tests::lobe::{Judge, Lobe, Seen};
-use arealight_tests::{Cases, Comparison, Path, Random, Rung, TestEngine, glossy_surface, point};
+use arealight_tests::{Cases, Comparison, Level, Path, Random, TestEngine, glossy_surface, point};
 use arealight_vk::TableFormat;
 use glam::DVec3;
 use half::f16;
@@ -94,17 +94,17 @@ fn judges(table: &LightTable, points: &[EvalPoint], given: &Cases, horizon: Hori
 fn check(engine: &TestEngine, table: &LightTable, what: &str, points: &[EvalPoint], horizon: Horizon) {
     let given = Cases::new(points);
     let judges = judges(table, points, &given, horizon);
-    for rung in Rung::of(&[Path::Walk], &[horizon]) {
-        let found = engine.factors(&given, Effects::GLOSSY, rung);
-        let mut comparison = Comparison::new(format!("{what}, {rung}"));
+    for level in Level::of(&[Path::Polygon], &[horizon]) {
+        let found = engine.factors(&given, Effects::GLOSSY, level);
+        let mut comparison = Comparison::new(format!("{what}, {level}"));
         let mut shifted = Comparison::new("a point as the next one");
         for (index, (found, judge)) in found.iter().zip(&judges).enumerate() {
             let place = || format!("point {index}, {judge:?}: {:?}", points[index]);
-            comparison.add(*found, judge.expected(), judge.bound(rung), place);
+            comparison.add(*found, judge.expected(), judge.bound(level), place);
             shifted.add(
                 *found,
                 judges[(index + 1) % judges.len()].expected(),
-                judge.bound(rung),
+                judge.bound(level),
                 String::new,
             );
         }
@@ -164,9 +164,10 @@ fn hard_surfaces_of_a_table_in_float16_are_that_tables() {
     check(&engine, &in_float16(&TABLE), "float16", &points, Horizon::Cosine);
     // The twin: it is not the other table
     let given = Cases::new(&points);
-    let rung = Rung::of(&[Path::Walk], &[Horizon::Cosine])[0];
-    let found = engine.factors(&given, Effects::GLOSSY, rung);
+    let level = Level::of(&[Path::Polygon], &[Horizon::Cosine])[0];
+    let found = engine.factors(&given, Effects::GLOSSY, level);
     let judges = judges(&TABLE, &points, &given, Horizon::Cosine);
-    let apart = found.iter().zip(&judges).filter(|(f, j)| (**f - j.expected()).abs() > j.bound(rung)).count();
+    let apart =
+        found.iter().zip(&judges).filter(|(f, j)| (**f - j.expected()).abs() > j.bound(level)).count();
     assert!(apart > COUNT / 10, "{apart} differ");
 }

@@ -6,7 +6,7 @@ use arealight::plan::ShadeOptions;
 use arealight::{Effects, Horizon, LightTable, Material, PackedLights, PolygonLight};
 use arealight_host::{Image, ImageDescription, Usage};
 use arealight_tests::lobe::{Lobe, Seen};
-use arealight_tests::{Cases, Comparison, Path, Rung, TestEngine};
+use arealight_tests::{Cases, Comparison, Level, Path, TestEngine};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DQuat, DVec3, Vec3};
@@ -130,10 +130,10 @@ impl<'a> Sweep<'a> {
     }
 
     /// The red channel of every pixel.
-    fn shade(&self, rung: Rung) -> Vec<f32> {
+    fn shade(&self, level: Level) -> Vec<f32> {
         let host = self.engine.host();
-        let effects = rung.effects(Effects::DIFFUSE | Effects::GLOSSY);
-        let options = ShadeOptions { effects, quality: rung.quality, ..ShadeOptions::all() };
+        let effects = level.effects(Effects::DIFFUSE | Effects::GLOSSY);
+        let options = ShadeOptions { effects, quality: level.quality, ..ShadeOptions::all() };
         let sampled =
             |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
         let [position, normal, color, radiance] = &self.images;
@@ -179,7 +179,7 @@ impl<'a> Sweep<'a> {
 fn check(concave: bool) {
     let Some(engine) = TestEngine::new() else { return };
     let sweep = Sweep::new(&engine, &light(concave));
-    let path = if concave { Path::Walk } else { Path::Quad };
+    let path = if concave { Path::Polygon } else { Path::Quad };
     for horizon in [Horizon::Cosine, Horizon::Both] {
         let judges: Vec<_> = (0..sweep.given.cases.len())
             .map(|pixel| {
@@ -189,12 +189,12 @@ fn check(concave: bool) {
             })
             .collect();
         let expected: Vec<f64> = judges.iter().map(|(d, g)| d.expected() + g.expected()).collect();
-        for rung in Rung::of(&[path], &[horizon]) {
-            let found = sweep.shade(rung);
-            let bounds: Vec<f64> = judges.iter().map(|(d, g)| d.bound(rung) + g.bound(rung)).collect();
-            let mut frames = Comparison::new(format!("frames, {rung}"));
+        for level in Level::of(&[path], &[horizon]) {
+            let found = sweep.shade(level);
+            let bounds: Vec<f64> = judges.iter().map(|(d, g)| d.bound(level) + g.bound(level)).collect();
+            let mut frames = Comparison::new(format!("frames, {level}"));
             let mut later = Comparison::new("a frame as the next one");
-            let mut jumps = Comparison::new(format!("jumps, {rung}"));
+            let mut jumps = Comparison::new(format!("jumps, {level}"));
             for pixel in 0..found.len() {
                 let place = || format!("pixel {pixel}: {:?}", sweep.positions[pixel]);
                 frames.add(found[pixel].into(), expected[pixel], bounds[pixel], place);

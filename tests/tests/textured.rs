@@ -104,11 +104,11 @@ fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
     points.iter().map(plain).collect()
 }
 
-/// Rungs with textures; the dearest with the dearest of the other choices. A software driver takes a second for each
+/// Levels with textures; the dearest with the dearest of the other choices. A software driver takes a second for each
 /// pipeline, and there are four for a quality: of quads and of polygons, with and without images.
 fn qualities() -> [Quality; 4] {
-    let rung = |footprint| Quality { footprint, ..Quality::default() };
-    let [round, ellipse, split] = FOOTPRINTS.map(rung);
+    let level = |footprint| Quality { footprint, ..Quality::default() };
+    let [round, ellipse, split] = FOOTPRINTS.map(level);
     let dear = Quality {
         form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,
@@ -167,7 +167,7 @@ fn lookups_are_those_of_their_float64_twins() {
         let mut comparison = Comparison::new(format!("{footprint:?}"));
         let mut twin = 0;
         for (index, (point, answer)) in given.iter().zip(&answers).enumerate() {
-            let expected = seen_color(point, &pyramid, Filter::Rung(footprint));
+            let expected = seen_color(point, &pyramid, Filter::Level(footprint));
             // Sixteen bits a texel and levels' share and place to 1/256 between texels that differ by one: 1/256 of the
             // light, twice; a footprint's axis turns freely where it is nearly round, which moves taps by what is left
             let whole =

@@ -194,7 +194,7 @@ fn lookups_are_within_the_bars_of_polygons() {
         for footprint in [Footprint::Round, Footprint::Ellipse] {
             let found = errors(&points, footprint);
             println!("{} {footprint:?}: {found:.2?}", family.description());
-            let Some(bar) = Bar::of(Filter::Rung(footprint), family) else { continue };
+            let Some(bar) = Bar::of(Filter::Level(footprint), family) else { continue };
             assert!(bar.holds(&found), "{family:?}, {footprint:?}: {found:?}, {bar:?}");
             // The twin: of one colour
             let plain = errors(&showing(&points, Some(WHITE)), footprint);

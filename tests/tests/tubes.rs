@@ -81,9 +81,9 @@ fn ends_of(tubes: &[Tube]) -> Vec<Ends> {
     tubes.iter().map(|tube| tube.ends).collect()
 }
 
-fn found(engine: &TestEngine, rung: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
+fn found(engine: &TestEngine, level: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
     let arguments: Vec<_> = tubes.iter().zip(matrices).map(|(t, m)| tube_arguments(t, m)).collect();
-    let found = engine.tubes(false, rung, &arguments, &ends_of(tubes));
+    let found = engine.tubes(false, level, &arguments, &ends_of(tubes));
     let bits = found.iter().all(|factor| factor.to_bits() <= 1.0_f32.to_bits());
     assert!(bits, "{found:?}");
     found.into_iter().map(f64::from).collect()
@@ -101,18 +101,18 @@ fn tubes_are_what_their_outlines_are() {
                 (0..COUNT).map(|i| if i % 2 == 0 { DMat3::IDENTITY } else { lobe(&mut random) }).collect();
             let truth: Vec<_> =
                 tubes.iter().zip(&lobes).map(|(t, m)| transformed_form_factor(m, t)).collect();
-            for rung in [EXACT, DIFFERENCE] {
+            for level in [EXACT, DIFFERENCE] {
                 // A thousandth of the radius away, the center's rounding of 6e-8 of it is 6e-5 of the distance: of the form
                 // factor that is a tenth or less, as a rim's place is what matters
-                let bound = match (rung, place) {
+                let bound = match (level, place) {
                     (_, Place::Near) => 1e-5,
                     _ => 2e-6,
                 };
-                let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, rung {rung}"));
-                for (i, found) in found(&engine, rung, &tubes, &lobes).into_iter().enumerate() {
+                let mut comparison = Comparison::new(format!("{ends:?}, {place:?}, level {level}"));
+                for (i, found) in found(&engine, level, &tubes, &lobes).into_iter().enumerate() {
                     comparison.add(found, truth[i], bound, || format!("{:?}, {:?}", tubes[i], lobes[i]));
                     let polygon = polygon::transformed_form_factor(&lobes[i], &tubes[i].outline(16));
-                    sixteen += usize::from(rung == EXACT && (polygon.abs() - truth[i]).abs() > bound);
+                    sixteen += usize::from(level == EXACT && (polygon.abs() - truth[i]).abs() > bound);
                 }
                 comparison.assert_all();
             }
@@ -408,13 +408,13 @@ fn any_bits_give_a_form_factor() {
     // Each with every kind of end
     let ends = [0, 1, 2].map(|kind| vec![ENDS[kind]; arguments.len()]).concat();
     let thrice = arguments.repeat(3);
-    for (cut, rung) in [(false, 0), (false, 1), (false, 2), (false, 3), (true, 0), (true, 1)] {
-        let found = engine.tubes(cut, rung, &thrice, &ends);
+    for (cut, level) in [(false, 0), (false, 1), (false, 2), (false, 3), (true, 0), (true, 1)] {
+        let found = engine.tubes(cut, level, &thrice, &ends);
         for (ends, found) in ENDS.iter().zip(found.chunks_exact(arguments.len())) {
             let wrong = found.iter().filter(|factor| factor.to_bits() > 1.0_f32.to_bits()).count();
             let partial = found.iter().filter(|factor| **factor > 0.0 && **factor < 1.0).count();
-            println!("{ends:?}, rung {rung}: {partial} between 0 and 1");
-            assert_eq!(wrong, 0, "{ends:?}, rung {rung}");
+            println!("{ends:?}, level {level}: {partial} between 0 and 1");
+            assert_eq!(wrong, 0, "{ends:?}, level {level}");
             // The twin: it is not that all are dark
             assert!(partial > 1000, "{partial}");
         }

@@ -20,7 +20,7 @@ pub struct Cost {
     pub nanoseconds: f64,
     /// The median over the rounds of the ratio to the light without a texture in the same round.
     pub to_untextured: f64,
-    /// The same to the first rung.
+    /// The same to the first level.
     pub to_round: f64,
 }
 

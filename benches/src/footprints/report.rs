@@ -112,8 +112,8 @@ impl Footprints {
             self.far_table().to_text()
         );
         match self.shortfalls().count() {
-            0 => text + "Every rung is within its bars.\n",
-            count => format!("{text}RUNGS MISS THEIR BARS in {count} places: see above.\n"),
+            0 => text + "Every level is within its bars.\n",
+            count => format!("{text}LEVELS MISS THEIR BARS in {count} places: see above.\n"),
         }
     }
 

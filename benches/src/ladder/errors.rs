@@ -155,7 +155,7 @@ impl Known {
     /// Judges what a method made of the points.
     pub fn judge(&mut self, method: Method, table: &LightTable, found: &[DVec3]) -> SplitErrors {
         let quality = match method {
-            Method::Rung { quality, .. } => quality,
+            Method::Level { quality, .. } => quality,
             Method::Yardstick { .. } | Method::Samples { .. } => Quality::default(),
         };
         let has_published =

@@ -122,7 +122,7 @@ impl<'a> Frame<'a> {
     /// The kernel of a method's pipeline, and what it is specialised with.
     pub fn pipeline(&self, method: Method) -> (&'static Kernel, Vec<(u32, u32)>) {
         match method {
-            Method::Rung { effects, quality } => {
+            Method::Level { effects, quality } => {
                 let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
                 let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
                 (&SHADE, shade_variant_specialization(options, variant))

@@ -1,4 +1,4 @@
-//! What is measured: the rungs one by one, the yardsticks, and Monte Carlo.
+//! What is measured: the levels one by one, the yardsticks, and Monte Carlo.
 
 use super::points::LightKind;
 use crate::school::{School, YardstickTable};
@@ -15,10 +15,10 @@ pub static SHADE_YARDSTICK: Kernel = Kernel {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// The library's.
-    Rung {
+    Level {
         /// What the pipeline is specialised for.
         effects: Effects,
-        /// On which rungs.
+        /// On which levels.
         quality: Quality,
     },
     /// Somebody else's.
@@ -48,7 +48,7 @@ pub struct Named {
     pub method: Method,
 }
 
-/// Rungs over one kind of lights.
+/// Levels over one kind of lights.
 #[derive(Debug, Clone)]
 pub struct Workload {
     /// A short name.
@@ -66,7 +66,7 @@ pub struct Workload {
 /// What points of the workloads call for, beside their lights.
 pub const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
 
-/// The rung that every host starts from.
+/// The level that every host starts from.
 pub const DEFAULT: &str = "exact";
 
 /// The yardstick of the ratios: the school that is used most, with our table.
@@ -96,12 +96,12 @@ const DIFFERENCE: Quality = Quality { form_factor: FormFactor::Difference, ..EXA
 
 /// Every workload; the first has the whole ladder.
 pub fn workloads() -> Vec<Workload> {
-    let rung = |name, description, effects: Effects, quality: Quality| Named {
+    let level = |name, description, effects: Effects, quality: Quality| Named {
         name,
         description,
-        method: Method::Rung { effects: LOBES | effects, quality },
+        method: Method::Level { effects: LOBES | effects, quality },
     };
-    let plain = |name, description, quality| rung(name, description, Effects::empty(), quality);
+    let plain = |name, description, quality| level(name, description, Effects::empty(), quality);
     let yardstick = |name, description, school, table| Named {
         name,
         description,
@@ -148,7 +148,7 @@ pub fn workloads() -> Vec<Workload> {
         plain("difference", "relative precision", DIFFERENCE),
     ];
     let textured = |name, description, footprint| {
-        rung(name, description, Effects::TEXTURED, Quality { footprint, ..EXACT })
+        level(name, description, Effects::TEXTURED, Quality { footprint, ..EXACT })
     };
     vec![
         Workload {
@@ -180,14 +180,14 @@ pub fn workloads() -> Vec<Workload> {
             name: "two-sided",
             description: "quads that light both sides",
             lights: LightKind::TwoSided,
-            methods: vec![rung(DEFAULT, "the default", Effects::TWO_SIDED, EXACT)],
+            methods: vec![level(DEFAULT, "the default", Effects::TWO_SIDED, EXACT)],
             share: 0.25,
         },
         Workload {
             name: "stars",
             description: "concave lights of ten vertices",
             lights: LightKind::Stars,
-            methods: vec![rung(DEFAULT, "the default, any outline", Effects::POLYGON, EXACT)],
+            methods: vec![level(DEFAULT, "the default, any outline", Effects::POLYGON, EXACT)],
             share: 0.25,
         },
     ]

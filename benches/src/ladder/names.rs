@@ -1,11 +1,11 @@
-//! The rungs of a quality as words, for files.
+//! The levels of a quality as words, for files.
 
 use arealight::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use serde::{Deserialize, Serialize};
 
 /// A [`Quality`] in words, those of the options of `arealight render`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RungNames {
+pub struct LevelNames {
     /// `--form-factor`
     pub form_factor: String,
     /// `--horizon`
@@ -18,10 +18,10 @@ pub struct RungNames {
     pub footprint: String,
 }
 
-/// A name that no rung has.
+/// A name that no level has.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{field}: '{name}' is no rung; there are {}", .known.join(", "))]
-pub struct UnknownRung {
+#[error("{field}: '{name}' is no level; there are {}", .known.join(", "))]
+pub struct UnknownLevel {
     /// The field.
     pub field: &'static str,
     /// What it says.
@@ -38,10 +38,10 @@ const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::F
 const FOOTPRINTS: [(&str, Footprint); 3] =
     [("round", Footprint::Round), ("ellipse", Footprint::Ellipse), ("split", Footprint::Split)];
 
-impl From<Quality> for RungNames {
+impl From<Quality> for LevelNames {
     fn from(quality: Quality) -> Self {
-        fn name<T: Copy + PartialEq>(names: &[(&str, T)], rung: T) -> String {
-            let known = names.iter().find(|(_, known)| *known == rung);
+        fn name<T: Copy + PartialEq>(names: &[(&str, T)], level: T) -> String {
+            let known = names.iter().find(|(_, known)| *known == level);
             known.map_or_else(String::new, |(name, _)| (*name).to_owned())
         }
         Self {
@@ -54,20 +54,20 @@ impl From<Quality> for RungNames {
     }
 }
 
-impl RungNames {
-    /// The rungs.
+impl LevelNames {
+    /// The levels.
     ///
     /// # Errors
-    /// [`UnknownRung`] names the field.
-    pub fn quality(&self) -> Result<Quality, UnknownRung> {
+    /// [`UnknownLevel`] names the field.
+    pub fn quality(&self) -> Result<Quality, UnknownLevel> {
         fn find<T: Copy>(
             names: &[(&'static str, T)],
             field: &'static str,
             name: &str,
-        ) -> Result<T, UnknownRung> {
+        ) -> Result<T, UnknownLevel> {
             let known = || names.iter().map(|(known, _)| *known).collect();
-            let found = names.iter().find(|(known, _)| *known == name).map(|(_, rung)| *rung);
-            found.ok_or_else(|| UnknownRung { field, name: name.to_owned(), known: known() })
+            let found = names.iter().find(|(known, _)| *known == name).map(|(_, level)| *level);
+            found.ok_or_else(|| UnknownLevel { field, name: name.to_owned(), known: known() })
         }
         Ok(Quality {
             form_factor: find(&FORM_FACTORS, "form_factor", &self.form_factor)?,
@@ -84,17 +84,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_rung_has_a_name_and_is_found_by_it() {
+    fn every_level_has_a_name_and_is_found_by_it() {
         for (_, form_factor) in FORM_FACTORS {
             for (_, horizon) in HORIZONS {
                 for (_, footprint) in FOOTPRINTS {
                     let quality = Quality { form_factor, horizon, footprint, ..Quality::default() };
-                    assert_eq!(RungNames::from(quality).quality(), Ok(quality));
+                    assert_eq!(LevelNames::from(quality).quality(), Ok(quality));
                 }
             }
         }
-        let wrong = RungNames { lobes: "magic".into(), ..RungNames::from(Quality::default()) };
+        let wrong = LevelNames { lobes: "magic".into(), ..LevelNames::from(Quality::default()) };
         let error = wrong.quality().unwrap_err().to_string();
-        assert_eq!(error, "lobes: 'magic' is no rung; there are table, formula");
+        assert_eq!(error, "lobes: 'magic' is no level; there are table, formula");
     }
 }

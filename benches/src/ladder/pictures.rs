@@ -56,7 +56,7 @@ const REPEATS: usize = 5;
 /// Monte Carlo.
 fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let effects = scene.effects();
-    let rung = |quality| Method::Rung { effects, quality };
+    let level = |quality| Method::Level { effects, quality };
     let yardstick = |school| Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     let exact = Quality::default();
     let both = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..exact };
@@ -64,10 +64,10 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
         (CLIPLESS_PUBLISHED, yardstick(School::Clipless)),
         (SPHERE_PUBLISHED, yardstick(School::SphereHorizon)),
         (CASES_PUBLISHED, yardstick(School::ClipByCases)),
-        ("exact", rung(exact)),
-        ("split", rung(Quality { fresnel: Fresnel::Split, ..exact })),
-        ("both horizons", rung(Quality { horizon: Horizon::Both, ..exact })),
-        ("everything", rung(Quality { form_factor: FormFactor::Difference, ..both })),
+        ("exact", level(exact)),
+        ("split", level(Quality { fresnel: Fresnel::Split, ..exact })),
+        ("both horizons", level(Quality { horizon: Horizon::Both, ..exact })),
+        ("everything", level(Quality { form_factor: FormFactor::Difference, ..both })),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
         ("Monte Carlo, 16 samples", Method::Samples { count: 16 }),
     ];
@@ -76,7 +76,7 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
             let is_for_quads = *school == School::ClipByCases && effects.contains(Effects::POLYGON);
             !is_for_quads && !effects.intersects(Effects::TEXTURED)
         }
-        Method::Rung { .. } | Method::Samples { .. } => true,
+        Method::Level { .. } | Method::Samples { .. } => true,
     });
     methods
 }

@@ -50,7 +50,7 @@ fn methods() -> [(&'static str, Method); 3] {
             BASELINE.name(),
             Method::Yardstick { effects: LOBES, school: BASELINE, table: YardstickTable::Ours },
         ),
-        (DEFAULT, Method::Rung { effects: LOBES, quality: Quality::default() }),
+        (DEFAULT, Method::Level { effects: LOBES, quality: Quality::default() }),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),
     ]
 }

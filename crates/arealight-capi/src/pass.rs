@@ -115,11 +115,11 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         Failure::argument(format!("options.effects: {unknown:#x} are no AREALIGHT_EFFECT_*"))
     })?;
     let quality = Quality {
-        form_factor: rung(options.form_factor, &[FormFactor::Exact, FormFactor::Difference], "form_factor")?,
-        horizon: rung(options.horizon, &[Horizon::Cosine, Horizon::Both], "horizon")?,
-        fresnel: rung(options.fresnel, &[Fresnel::ByF0, Fresnel::Split], "fresnel")?,
-        lobes: rung(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
-        footprint: rung(
+        form_factor: level(options.form_factor, &[FormFactor::Exact, FormFactor::Difference], "form_factor")?,
+        horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "horizon")?,
+        fresnel: level(options.fresnel, &[Fresnel::ByF0, Fresnel::Split], "fresnel")?,
+        lobes: level(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
+        footprint: level(
             options.footprint,
             &[Footprint::Round, Footprint::Ellipse, Footprint::Split],
             "footprint",
@@ -128,8 +128,8 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
     Ok(ShadeOptions {
         effects,
         quality,
-        position: rung(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
-        g_buffer: rung(
+        position: level(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
+        g_buffer: level(
             options.g_buffer,
             &[
                 GBufferLayout::Arealight,
@@ -139,13 +139,13 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             ],
             "g_buffer",
         )?,
-        output: rung(options.output, &[Output::Overwrite, Output::Add], "output")?,
-        images: rung(
+        output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
+        images: level(
             options.radiance_images,
             &[RadianceImages::One, RadianceImages::Apart],
             "radiance_images",
         )?,
-        format: rung(
+        format: level(
             options.radiance_format,
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
             "radiance_format",
@@ -154,10 +154,10 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
     })
 }
 
-/// The rung that a number stands for: its place among them.
-fn rung<T: Copy>(number: u32, rungs: &[T], field: &str) -> Result<T, Failure> {
-    rungs.get(number as usize).copied().ok_or_else(|| {
-        Failure::argument(format!("options.{field}: {number} must be from 0 to {}", rungs.len() - 1))
+/// The level that a number stands for: its place among them.
+fn level<T: Copy>(number: u32, levels: &[T], field: &str) -> Result<T, Failure> {
+    levels.get(number as usize).copied().ok_or_else(|| {
+        Failure::argument(format!("options.{field}: {number} must be from 0 to {}", levels.len() - 1))
     })
 }
 

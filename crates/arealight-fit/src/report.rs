@@ -17,7 +17,7 @@ pub use quads::{Family, Quad, near_mirror_quads, random_quads};
 
 /// How a table is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Rung {
+pub struct Level {
     /// One integral or two.
     pub fresnel: Fresnel,
     /// Where quads are clipped. With [`Horizon::Both`] what is left of the lobe is scaled to keep its energy
@@ -96,42 +96,42 @@ pub fn integrate(quads: Vec<Quad>, progress: &(dyn Fn() + Sync)) -> Vec<Case> {
 }
 
 /// Measures a table at each of [`REFLECTANCES`].
-pub fn measure(table: &LightTable, rung: Rung, cases: &[Case]) -> Vec<Errors> {
-    measure_lookup(|roughness, cos_view| table.lookup(roughness, cos_view), rung, cases)
+pub fn measure(table: &LightTable, level: Level, cases: &[Case]) -> Vec<Errors> {
+    measure_lookup(|roughness, cos_view| table.lookup(roughness, cos_view), level, cases)
 }
 
 /// Measures anything that answers a roughness and a view's cosine with a lobe: tables stored in other ways,
 /// or formulas.
 pub fn measure_lookup(
     lookup: impl Fn(f64, f64) -> TableSample + Sync,
-    rung: Rung,
+    level: Level,
     cases: &[Case],
 ) -> Vec<Errors> {
     REFLECTANCES
         .iter()
-        .map(|&f0| Errors { f0, ..measure_f0(&lookup, rung, DVec3::splat(f0), cases) })
+        .map(|&f0| Errors { f0, ..measure_f0(&lookup, level, DVec3::splat(f0), cases) })
         .collect()
 }
 
 /// Measures a table for a reflectance that has a colour. The errors of all channels count alike; `f0` of the
 /// result is their mean.
-pub fn measure_colour(table: &LightTable, rung: Rung, f0: DVec3, cases: &[Case]) -> Errors {
-    measure_lookup_colour(|roughness, cos_view| table.lookup(roughness, cos_view), rung, f0, cases)
+pub fn measure_colour(table: &LightTable, level: Level, f0: DVec3, cases: &[Case]) -> Errors {
+    measure_lookup_colour(|roughness, cos_view| table.lookup(roughness, cos_view), level, f0, cases)
 }
 
 /// Measures what [`measure_lookup`] does, for a reflectance that has a colour.
 pub fn measure_lookup_colour(
     lookup: impl Fn(f64, f64) -> TableSample + Sync,
-    rung: Rung,
+    level: Level,
     f0: DVec3,
     cases: &[Case],
 ) -> Errors {
-    measure_f0(&lookup, rung, f0, cases)
+    measure_f0(&lookup, level, f0, cases)
 }
 
 fn measure_f0(
     lookup: &(impl Fn(f64, f64) -> TableSample + Sync),
-    rung: Rung,
+    level: Level,
     f0: DVec3,
     cases: &[Case],
 ) -> Errors {
@@ -140,16 +140,16 @@ fn measure_f0(
         .map(|case| {
             let sample = lookup(case.quad.roughness, case.quad.cos_view);
             let truth = f0 * case.lobe + (1.0 - f0) * case.schlick;
-            (radiance(&sample, rung, f0, &case.quad.vertices) - truth).abs().to_array()
+            (radiance(&sample, level, f0, &case.quad.vertices) - truth).abs().to_array()
         })
         .collect();
     summarise(f0.element_sum() / 3.0, errors.into_flattened())
 }
 
 /// What a table makes of a quad of unit radiance, with F90 = 1.
-fn radiance(sample: &TableSample, rung: Rung, f0: DVec3, quad: &[DVec3; 4]) -> DVec3 {
-    let integral = |inverse: &DMat3| integral(inverse, rung.horizon, quad);
-    match rung.fresnel {
+fn radiance(sample: &TableSample, level: Level, f0: DVec3, quad: &[DVec3; 4]) -> DVec3 {
+    let integral = |inverse: &DMat3| integral(inverse, level.horizon, quad);
+    match level.fresnel {
         Fresnel::ByF0 => {
             let inverse = sample.inverse_by_f0(f0.element_sum() / 3.0, 1.0);
             (f0 * sample.albedo + (1.0 - f0) * sample.schlick) * integral(&inverse)

@@ -214,7 +214,7 @@ fn lengths_on_lobe(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
 /// Masking that changes over less height than this is left to the error estimate: its share is as small.
 const FINEST_HEIGHT: f64 = 1e-6;
 
-/// Outgoing radiance by the fitted table (Heitz et al. 2016) on the default rungs: [`ltc_on`] with
+/// Outgoing radiance by the fitted table (Heitz et al. 2016) on the default levels: [`ltc_on`] with
 /// [`Quality::default`].
 pub fn ltc(
     table: &LightTable,

@@ -1,11 +1,11 @@
-//! From a budget to rungs: what was measured on a device picks the quality there ([`Quality::within`]).
+//! From a budget to levels: what was measured on a device picks the quality there ([`Quality::within`]).
 
 use crate::Quality;
 
 /// A quality with what it costs and errs on one device.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ProfileRung {
-    /// The rungs.
+pub struct ProfileLevel {
+    /// The levels.
     pub quality: Quality,
     /// Whether it was measured with lights that show images ([`crate::Effects::TEXTURED`]).
     pub textured: bool,
@@ -17,7 +17,7 @@ pub struct ProfileRung {
     pub per_light: f64,
 }
 
-impl ProfileRung {
+impl ProfileLevel {
     /// Milliseconds that a frame takes.
     pub fn milliseconds(&self, frame: FrameLoad) -> f64 {
         frame.megapixels * (self.fixed + f64::from(frame.lights) * self.per_light)
@@ -30,7 +30,7 @@ pub struct Profile {
     /// The device's name.
     pub device: String,
     /// Its quality levels.
-    pub rungs: Vec<ProfileRung>,
+    pub levels: Vec<ProfileLevel>,
 }
 
 /// What a pass has to do.
@@ -62,7 +62,7 @@ pub struct Budget {
     pub limit: Limit,
 }
 
-/// Why no rung was picked.
+/// Why no level was picked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BudgetError {
@@ -75,16 +75,16 @@ pub enum BudgetError {
         value: f64,
     },
     /// Nothing was measured for such lights.
-    #[error("the profile of '{device}' has no rung for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that show images" } else { "of one colour" })]
-    NoRung {
+    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that show images" } else { "of one colour" })]
+    NoLevel {
         /// The device.
         device: String,
         /// Whether some light shows an image.
         textured: bool,
     },
-    /// Even the fastest rung takes longer.
+    /// Even the fastest level takes longer.
     #[error(
-        "no rung takes at most {limit} ms on '{device}': the fastest takes {nearest:.3} ms ({quality:?}); use fewer lights or pixels, \
+        "no level takes at most {limit} ms on '{device}': the fastest takes {nearest:.3} ms ({quality:?}); use fewer lights or pixels, \
          or allow {nearest:.3} ms"
     )]
     TooSlow {
@@ -92,14 +92,14 @@ pub enum BudgetError {
         device: String,
         /// The milliseconds allowed.
         limit: f64,
-        /// Those of the fastest rung.
+        /// Those of the fastest level.
         nearest: f64,
-        /// The fastest rung.
+        /// The fastest level.
         quality: Box<Quality>,
     },
-    /// Even the most accurate rung errs more.
+    /// Even the most accurate level errs more.
     #[error(
-        "no rung errs at most {limit} on '{device}': the most accurate errs {nearest:.5} ({quality:?}); allow that, or use the \
+        "no level errs at most {limit} on '{device}': the most accurate errs {nearest:.5} ({quality:?}); allow that, or use the \
          Monte Carlo reference"
     )]
     TooInaccurate {
@@ -107,27 +107,27 @@ pub enum BudgetError {
         device: String,
         /// The error allowed.
         limit: f64,
-        /// That of the most accurate rung.
+        /// That of the most accurate level.
         nearest: f64,
-        /// The most accurate rung.
+        /// The most accurate level.
         quality: Box<Quality>,
     },
 }
 
-/// Errors, or times, that are apart by no more than this factor count as equal: a rung of the same error to three digits must
+/// Errors, or times, that are apart by no more than this factor count as equal: a level of the same error to three digits must
 /// not be taken for its last one, at twice the time.
 const EQUAL: f64 = 1.01;
 
 impl Quality {
-    /// Picks a rung from what was measured on a device: the most accurate that takes no longer than allowed, or the fastest
+    /// Picks a level from what was measured on a device: the most accurate that takes no longer than allowed, or the fastest
     /// that errs no more than allowed. Of equals the faster, or the more accurate.
     ///
     /// Times are those of the profile's frame, scaled: they hold for the shade pass alone, for lights like the profile's, on the
     /// same device.
     ///
     /// # Errors
-    /// [`BudgetError`] names the nearest rung where none fits.
-    pub fn within(budget: Budget, profile: &Profile) -> Result<ProfileRung, BudgetError> {
+    /// [`BudgetError`] names the nearest level where none fits.
+    pub fn within(budget: Budget, profile: &Profile) -> Result<ProfileLevel, BudgetError> {
         let (Limit::Milliseconds(limit) | Limit::Error(limit)) = budget.limit;
         for (field, value) in [("limit", limit), ("megapixels", budget.frame.megapixels)] {
             if !(value.is_finite() && value > 0.0) {
@@ -135,29 +135,29 @@ impl Quality {
             }
         }
         // What is bounded first, then what is wanted
-        let keys = |rung: &ProfileRung| {
-            let milliseconds = rung.milliseconds(budget.frame);
+        let keys = |level: &ProfileLevel| {
+            let milliseconds = level.milliseconds(budget.frame);
             match budget.limit {
-                Limit::Milliseconds(_) => (milliseconds, rung.error),
-                Limit::Error(_) => (rung.error, milliseconds),
+                Limit::Milliseconds(_) => (milliseconds, level.error),
+                Limit::Error(_) => (level.error, milliseconds),
             }
         };
-        let measured = |rung: &&ProfileRung| {
-            let (bounded, wanted) = keys(rung);
+        let measured = |level: &&ProfileLevel| {
+            let (bounded, wanted) = keys(level);
             let is_known = |value: f64| value.is_finite() && value >= 0.0;
-            rung.textured == budget.frame.textured && is_known(bounded) && is_known(wanted)
+            level.textured == budget.frame.textured && is_known(bounded) && is_known(wanted)
         };
-        let rungs = || profile.rungs.iter().filter(measured);
-        let allowed = || rungs().filter(|rung| keys(rung).0 <= limit);
-        if let Some(best) = allowed().map(|rung| keys(rung).1).min_by(f64::total_cmp) {
-            let equal = allowed().filter(|rung| keys(rung).1 <= best * EQUAL);
+        let levels = || profile.levels.iter().filter(measured);
+        let allowed = || levels().filter(|level| keys(level).0 <= limit);
+        if let Some(best) = allowed().map(|level| keys(level).1).min_by(f64::total_cmp) {
+            let equal = allowed().filter(|level| keys(level).1 <= best * EQUAL);
             if let Some(best) = equal.min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) {
                 return Ok(*best);
             }
         }
         let device = profile.device.clone();
-        let Some(nearest) = rungs().min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) else {
-            return Err(BudgetError::NoRung { device, textured: budget.frame.textured });
+        let Some(nearest) = levels().min_by(|a, b| keys(a).0.total_cmp(&keys(b).0)) else {
+            return Err(BudgetError::NoLevel { device, textured: budget.frame.textured });
         };
         let quality = Box::new(nearest.quality);
         let nearest = keys(nearest).0;
@@ -189,7 +189,7 @@ mod tests {
     /// The formula has no table to read, and takes half as long for few lights.
     fn profile() -> Profile {
         let split = Quality { fresnel: Fresnel::Split, ..EXACT };
-        let rung = |quality, error, fixed, per_light| ProfileRung {
+        let level = |quality, error, fixed, per_light| ProfileLevel {
             quality,
             textured: false,
             error,
@@ -198,11 +198,11 @@ mod tests {
         };
         Profile {
             device: "made up".into(),
-            rungs: vec![
-                rung(split, 0.01, 2.0, 3.0),
-                rung(EXACT, 0.02, 2.0, 2.0),
-                rung(FORMULA, 0.03, 1.0, 2.0),
-                ProfileRung { textured: true, ..rung(EXACT, 0.05, 2.0, 4.0) },
+            levels: vec![
+                level(split, 0.01, 2.0, 3.0),
+                level(EXACT, 0.02, 2.0, 2.0),
+                level(FORMULA, 0.03, 1.0, 2.0),
+                ProfileLevel { textured: true, ..level(EXACT, 0.05, 2.0, 4.0) },
             ],
         }
     }
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn the_most_accurate_rung_that_is_fast_enough_is_picked() {
+    fn the_most_accurate_level_that_is_fast_enough_is_picked() {
         let pick = |limit| Quality::within(budget(10, Limit::Milliseconds(limit)), &profile());
         // 16, 11 and 10.5 ms
         assert_eq!(pick(16.0).unwrap().quality.fresnel, Fresnel::Split);
@@ -229,18 +229,18 @@ mod tests {
     #[test]
     fn the_last_digit_of_an_error_is_not_paid_for() {
         let mut profile = profile();
-        let dear = ProfileRung { error: 0.01 * (1.0 - 1e-6), per_light: 7.0, ..profile.rungs[0] };
-        profile.rungs.push(dear);
+        let dear = ProfileLevel { error: 0.01 * (1.0 - 1e-6), per_light: 7.0, ..profile.levels[0] };
+        profile.levels.push(dear);
         let pick =
             |profile: &Profile| Quality::within(budget(10, Limit::Milliseconds(1e3)), profile).unwrap();
         assert_eq!(pick(&profile).per_light, 3.0);
         // What is better by more is
-        profile.rungs.last_mut().unwrap().error = 0.009;
+        profile.levels.last_mut().unwrap().error = 0.009;
         assert_eq!(pick(&profile).per_light, 7.0);
     }
 
     #[test]
-    fn the_fastest_rung_that_is_accurate_enough_is_picked() {
+    fn the_fastest_level_that_is_accurate_enough_is_picked() {
         let pick = |limit| Quality::within(budget(1, Limit::Error(limit)), &profile());
         assert_eq!(pick(0.5).unwrap().quality, FORMULA);
         assert_eq!(pick(0.02).unwrap().quality, EXACT);
@@ -250,17 +250,17 @@ mod tests {
     }
 
     #[test]
-    fn lights_that_show_images_have_rungs_of_their_own() {
+    fn lights_that_show_images_have_levels_of_their_own() {
         let mut load = budget(1, Limit::Error(0.05));
         load.frame.textured = true;
         assert_eq!(Quality::within(load, &profile()).unwrap().error, 0.05);
         let mut plain = profile();
-        plain.rungs.pop();
+        plain.levels.pop();
         let error = Quality::within(load, &plain).unwrap_err();
-        assert!(error.to_string().contains("no rung for lights that show images"), "{error}");
+        assert!(error.to_string().contains("no level for lights that show images"), "{error}");
         assert!(matches!(
             Quality::within(budget(1, Limit::Error(0.1)), &Profile::default()),
-            Err(BudgetError::NoRung { .. })
+            Err(BudgetError::NoLevel { .. })
         ));
     }
 
@@ -276,11 +276,11 @@ mod tests {
             Quality::within(nowhere, &profile()),
             Err(BudgetError::NotPositive { field: "megapixels", .. })
         ));
-        // A rung that was not measured is none
+        // A level that was not measured is none
         let mut broken = profile();
-        broken.rungs.truncate(1);
-        broken.rungs[0].error = f64::NAN;
+        broken.levels.truncate(1);
+        broken.levels[0].error = f64::NAN;
         let picked = Quality::within(budget(1, Limit::Milliseconds(1e9)), &broken);
-        assert!(matches!(picked, Err(BudgetError::NoRung { .. })));
+        assert!(matches!(picked, Err(BudgetError::NoLevel { .. })));
     }
 }

@@ -27,8 +27,8 @@
 //! | [`light_sampling`] | what the Monte Carlo reference needs of them |
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what a scene calls for, and nothing else |
-//! | [`quality`] | the rungs of the quality ladder |
-//! | [`budget`] | rungs picked by what was measured on a device |
+//! | [`quality`] | the quality levels |
+//! | [`budget`] | levels picked by what was measured on a device |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
@@ -54,7 +54,7 @@ pub mod table;
 pub mod texture_part;
 pub mod tiles;
 
-pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileRung};
+pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileLevel};
 pub use effects::{Effects, UnknownEffect};
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;

@@ -93,7 +93,7 @@ pub struct ShadeOptions {
 }
 
 impl ShadeOptions {
-    /// The catch-all: every effect, the exact rung, positions from an image, overwriting one image of 32-bit floats.
+    /// The catch-all: every effect, the exact level, positions from an image, overwriting one image of 32-bit floats.
     pub fn all() -> Self {
         Self {
             effects: Effects::all(),

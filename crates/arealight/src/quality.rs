@@ -1,4 +1,4 @@
-//! The quality ladder: what accuracy costs is the host's choice, made for each pass.
+//! Quality levels: what accuracy costs is the host's choice, made for each pass.
 
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///

@@ -3,7 +3,7 @@
 use crate::{COUNT, lambert, view};
 use arealight::LightTable;
 use arealight_engine::EvalPoint;
-use arealight_tests::{Comparison, Property, Random, Rung, TestEngine, glossy_surface, point};
+use arealight_tests::{Comparison, Level, Property, Random, TestEngine, glossy_surface, point};
 use glam::DVec3;
 
 /// The faces of a box around the origin, fronts inwards.
@@ -24,7 +24,7 @@ fn faces_of_a_box(low: DVec3, high: DVec3) -> Vec<Vec<DVec3>> {
 pub fn a_box_of_lights_around_the_point_sums_to_one(
     engine: &TestEngine,
     table: Option<&LightTable>,
-    rungs: &[Rung],
+    levels: &[Level],
 ) {
     let mut random = Random::new(11);
     let one_box = |_| -> Vec<EvalPoint> {
@@ -39,10 +39,10 @@ pub fn a_box_of_lights_around_the_point_sums_to_one(
     };
     let boxes: Vec<Vec<EvalPoint>> = (0..COUNT).map(one_box).collect();
     let property = Property::new("box", table, &boxes);
-    for &rung in rungs {
-        let mut comparison = Comparison::new(format!("box, {rung}"));
+    for &level in levels {
+        let mut comparison = Comparison::new(format!("box, {level}"));
         let mut open = Comparison::new("box without a ceiling");
-        for ((factors, bound), whole) in property.groups(engine, rung).iter().zip(property.wholes(rung)) {
+        for ((factors, bound), whole) in property.groups(engine, level).iter().zip(property.wholes(level)) {
             let sum: f64 = factors.iter().sum();
             comparison.add(sum, whole, *bound, || format!("{factors:?}"));
             open.add(sum - factors[1], whole, *bound, String::new);

@@ -1,9 +1,9 @@
-//! Lights at the horizons, and the rung that has none.
+//! Lights at the horizons, and the level that has none.
 
 use crate::{COUNT, PATHS, TABLE, lambert, outline, view};
 use arealight::gpu::GpuLight;
 use arealight::{Effects, Horizon};
-use arealight_tests::{Cases, Comparison, Path, Property, Random, Rung, TestEngine, glossy_surface, point};
+use arealight_tests::{Cases, Comparison, Level, Path, Property, Random, TestEngine, glossy_surface, point};
 use glam::{DQuat, DVec3};
 
 /// Steps of a light that rises over the horizon.
@@ -36,11 +36,11 @@ fn rising() -> Vec<Vec<DVec3>> {
 /// A light rises over the horizon in 40,000 steps, each of a millionth of its distance or so. What it gains in one is that times
 /// the sine of its elevation at most, which is 0.05 in the end. The roundings of neighbours differ by a few units in
 /// the last place of arcs of up to a right angle.
-pub fn a_light_rises_without_a_jump(engine: &TestEngine, rungs: &[Rung]) {
-    for &rung in rungs {
+pub fn a_light_rises_without_a_jump(engine: &TestEngine, levels: &[Level]) {
+    for &level in levels {
         let bound = REACH * 2.0 * REACH / STEPS as f64 + 2.0 * f64::from(f32::EPSILON);
         for (kind, light) in rising().iter().enumerate() {
-            if rung.path == Path::Quad && light.len() > 4 {
+            if level.path == Path::Quad && light.len() > 4 {
                 continue;
             }
             let height = |step: usize| REACH * (2.0 * step as f64 / STEPS as f64 - 1.0);
@@ -55,25 +55,25 @@ pub fn a_light_rises_without_a_jump(engine: &TestEngine, rungs: &[Rung]) {
                 })
                 .collect();
             given.cases = (0..=STEPS as u32).map(|light| arealight::gpu::GpuCase { light, ..case }).collect();
-            let factors = engine.factors(&given, Effects::DIFFUSE, rung);
+            let factors = engine.factors(&given, Effects::DIFFUSE, level);
             let jump = factors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
             let rise = factors[STEPS] - factors[0];
-            println!("{rung}, light {kind}: rises by {rise:.2e}, by at most {jump:.2e} at once");
-            assert!(jump <= bound, "{rung}, light {kind}: a jump of {jump:e}, {bound:e} allowed");
-            assert_eq!(factors[0], 0.0, "{rung}, light {kind}: dark below the horizon");
+            println!("{level}, light {kind}: rises by {rise:.2e}, by at most {jump:.2e} at once");
+            assert!(jump <= bound, "{level}, light {kind}: a jump of {jump:e}, {bound:e} allowed");
+            assert_eq!(factors[0], 0.0, "{level}, light {kind}: dark below the horizon");
             // The twin: it does rise, by more than is allowed at once
-            assert!(rise > bound, "{rung}, light {kind}: rises by {rise:e}");
+            assert!(rise > bound, "{level}, light {kind}: rises by {rise:e}");
         }
     }
 }
 
 /// Lights wholly below the surface, out to grazing views: exactly nothing, of a lobe that reaches there.
-pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, rungs: &[Rung]) {
-    for &rung in rungs {
+pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, levels: &[Level]) {
+    for &level in levels {
         let mut random = Random::new(31);
         let mut points = Vec::new();
         for index in 0..2 * COUNT {
-            let mut vertices = outline(&mut random, rung.path, index);
+            let mut vertices = outline(&mut random, level.path, index);
             // From just below, by more than float32's rounding, on down
             let top = vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
             let depth = 10.0_f64.powf(random.between(-5.0, 0.0));
@@ -87,11 +87,11 @@ pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, rungs: &[Rung])
             points.push(point(glossy_surface(random.between(0.01, 1.0)), view, vertices, two_sided));
         }
         let given = Cases::new(&points);
-        let answers = engine.run(&given, rung.effects(Effects::GLOSSY), rung.quality);
+        let answers = engine.run(&given, level.effects(Effects::GLOSSY), level.quality);
         let lit = answers.iter().position(|answer| *answer != [0; 4]);
-        assert_eq!(lit, None, "{rung}: {:?}", lit.map(|index| &points[index]));
+        assert_eq!(lit, None, "{level}: {:?}", lit.map(|index| &points[index]));
         // The twin: clipped once, they do shine in
-        let once = Rung::of(&[rung.path], &[Horizon::Cosine])[0];
+        let once = Level::of(&[level.path], &[Horizon::Cosine])[0];
         let leaks = engine.factors(&given, Effects::GLOSSY, once);
         let many = leaks.iter().filter(|leak| **leak > 1e-4).count();
         assert!(many > COUNT / 20, "{once}: {many} leak");
@@ -112,13 +112,13 @@ pub fn clipping_twice_is_no_brighter(engine: &TestEngine) {
         };
         let property =
             Property::new("both horizons", Some(&TABLE), &(0..2 * COUNT).map(group).collect::<Vec<_>>());
-        for rung in Rung::of(&[path], &[Horizon::Both]) {
-            let mut once = rung;
+        for level in Level::of(&[path], &[Horizon::Both]) {
+            let mut once = level;
             once.quality.horizon = Horizon::Cosine;
-            let mut comparison = Comparison::new(format!("no brighter, {rung}"));
+            let mut comparison = Comparison::new(format!("no brighter, {level}"));
             let mut darker = 0;
-            let gains = property.gains(rung);
-            let pairs = property.groups(engine, rung).into_iter().zip(property.groups(engine, once));
+            let gains = property.gains(level);
+            let pairs = property.groups(engine, level).into_iter().zip(property.groups(engine, once));
             for (((twice, bound), (once, other)), gain) in pairs.zip(gains) {
                 let more = twice[0] / gain - once[0];
                 comparison.add(more.max(0.0), 0.0, bound + other, || format!("{twice:?} {once:?}"));

@@ -5,7 +5,7 @@ use crate::{COUNT, PATHS, lambert, outline};
 use arealight::gpu::GpuLight;
 use arealight::{FormFactor, Horizon};
 use arealight_engine::EvalPoint;
-use arealight_tests::{Comparison, Property, Random, Rung, TestEngine};
+use arealight_tests::{Comparison, Level, Property, Random, TestEngine};
 use glam::DVec3;
 
 /// How much farther a light's farthest vertex is from the second center than from the first.
@@ -13,10 +13,10 @@ const STEP: f64 = 8e-6;
 
 /// Pairs of a light with two centers. From the first one its farthest vertex is `edge` times the center's distance away, but for
 /// half of [`STEP`]; from the second one as much more.
-fn pairs(rung: Rung, seed: u64, edge: f64) -> Property<'static> {
+fn pairs(level: Level, seed: u64, edge: f64) -> Property<'static> {
     let mut random = Random::new(seed);
     let group = |index| -> Vec<EvalPoint> {
-        let vertices = outline(&mut random, rung.path, index);
+        let vertices = outline(&mut random, level.path, index);
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let away = center.with_z(center.z.abs());
         let moved: Vec<DVec3> = vertices.iter().map(|v| away + (*v - center)).collect();
@@ -46,11 +46,11 @@ fn pairs(rung: Rung, seed: u64, edge: f64) -> Property<'static> {
 }
 
 /// The two forms are the same but for what each may err, and are not the same.
-fn assert_continuous(engine: &TestEngine, property: &Property<'_>, rung: Rung) {
-    let mut comparison = Comparison::new(format!("switch, {rung}"));
+fn assert_continuous(engine: &TestEngine, property: &Property<'_>, level: Level) {
+    let mut comparison = Comparison::new(format!("switch, {level}"));
     let mut twin = Comparison::new("a thousandth brighter");
     let mut changed = 0;
-    for (index, (factors, bound)) in property.groups(engine, rung).iter().enumerate() {
+    for (index, (factors, bound)) in property.groups(engine, level).iter().enumerate() {
         comparison.add(factors[0], factors[1], *bound, || format!("group {index}: {factors:?}"));
         twin.add(factors[0], 1.001 * factors[1], *bound, String::new);
         changed += usize::from(factors[0].to_bits() != factors[1].to_bits());
@@ -63,9 +63,9 @@ fn assert_continuous(engine: &TestEngine, property: &Property<'_>, rung: Rung) {
 /// `arealight_anchor` takes a light as distant whose vertices are within half of its distance.
 pub fn the_difference_form_begins_without_a_jump(engine: &TestEngine) {
     for path in PATHS {
-        for rung in Rung::of(&[path], &[Horizon::Cosine]) {
-            if rung.quality.form_factor == FormFactor::Difference {
-                assert_continuous(engine, &pairs(rung, 41, 0.5), rung);
+        for level in Level::of(&[path], &[Horizon::Cosine]) {
+            if level.quality.form_factor == FormFactor::Difference {
+                assert_continuous(engine, &pairs(level, 41, 0.5), level);
             }
         }
     }

@@ -1,7 +1,7 @@
-//! Rungs by what was measured, as options of a command.
+//! Levels by what was measured, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Budget, FrameLoad, Limit, ProfileRung, Quality};
+use arealight::{Budget, FrameLoad, Limit, ProfileLevel, Quality};
 use arealight_benches::ladder::Ladder;
 use std::path::{Path, PathBuf};
 
@@ -19,10 +19,10 @@ pub fn read_profile(path: &Path) -> Result<Ladder, Failure> {
 /// What may not be exceeded, and what was measured.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct BudgetArguments {
-    /// Shade on the most accurate rung that takes no longer
+    /// Shade on the most accurate level that takes no longer
     #[arg(long, value_name = "MS", requires = "profile", conflicts_with_all = ["max_error", "reference", "form_factor", "horizon", "fresnel", "lobes", "footprint"])]
     budget_ms: Option<f64>,
-    /// Shade on the fastest rung that errs no more, as root of the mean square over the mean
+    /// Shade on the fastest level that errs no more, as root of the mean square over the mean
     #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "fresnel", "lobes", "footprint"])]
     max_error: Option<f64>,
     /// What `arealight bench --json FILE` measured on this device
@@ -31,11 +31,11 @@ pub struct BudgetArguments {
 }
 
 impl BudgetArguments {
-    /// The rung for a frame on a device; none without a budget. A profile of another device is said to be one.
+    /// The level for a frame on a device; none without a budget. A profile of another device is said to be one.
     ///
     /// # Errors
-    /// A profile without a budget, or that cannot be read; a budget that no rung keeps, with the nearest.
-    pub fn pick(&self, frame: FrameLoad, device: &str) -> Result<Option<ProfileRung>, Failure> {
+    /// A profile without a budget, or that cannot be read; a budget that no level keeps, with the nearest.
+    pub fn pick(&self, frame: FrameLoad, device: &str) -> Result<Option<ProfileLevel>, Failure> {
         let (argument, limit) = match (self.budget_ms, self.max_error) {
             (Some(limit), _) => ("--budget-ms", Limit::Milliseconds(limit)),
             (None, Some(limit)) => ("--max-error", Limit::Error(limit)),

@@ -25,7 +25,7 @@ const AFTER_HELP: &str = "\
 Without a command, the demo scene is rendered.
 
 Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, or a \
-rung falls short of its promises in bench stability or misses a bar in bench textures, \
+level falls short of its promises in bench stability or misses a bar in bench textures, \
 or a kernel takes more than bench compiled --check allows, \
 2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written, \
 6 no compiler for bench compiled.";

@@ -198,7 +198,7 @@ fn inspect_draws_lobes_entries_and_errors() {
     };
     let picture = |name: &str| image::open(folder.path().join(name)).unwrap().to_rgb8();
 
-    // The lobes depend on the reflectance and the rung
+    // The lobes depend on the reflectance and the level
     let summary = inspect(&["-o", "metal.png"]);
     assert_eq!(summary["channels"].as_array().unwrap().len(), 10, "two matrices and the albedos");
     assert_eq!(summary["errors"], serde_json::Value::Null);

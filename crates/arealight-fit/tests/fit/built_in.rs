@@ -3,7 +3,7 @@
 use arealight::{GrazingDip, LightTable, TableDescription};
 use arealight_fit::brdf::view_direction;
 use arealight_fit::report::{
-    COUNT, Case, PUBLISHED, REFLECTANCES, Rung, SEED, cases, measure, measure_lookup,
+    COUNT, Case, Level, PUBLISHED, REFLECTANCES, SEED, cases, measure, measure_lookup,
 };
 use arealight_fit::{Brdf, GgxBrdf, Settings as FitSettings, fit};
 use arealight_oracle::cubature::{Region, Settings};
@@ -20,7 +20,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(COUNT, SEED, &|| {}))
 #[test]
 fn it_is_better_than_the_published_table_at_every_reflectance() {
     for ((ours, published), f0) in
-        measure(&ggx(), Rung::default(), &CASES).iter().zip(&PUBLISHED).zip(REFLECTANCES)
+        measure(&ggx(), Level::default(), &CASES).iter().zip(&PUBLISHED).zip(REFLECTANCES)
     {
         assert_eq!((ours.f0, published.f0), (f0, f0));
         assert!(ours.mean < published.mean && ours.max < published.max, "{ours:?} {published:?}");
@@ -32,7 +32,7 @@ fn the_measure_sees_a_lobe_that_is_too_wide() {
     let table = ggx();
     let widened = measure_lookup(
         |roughness, cos_view| table.lookup(1.1 * roughness, cos_view),
-        Rung::default(),
+        Level::default(),
         &CASES,
     );
     assert!(widened.iter().zip(&PUBLISHED).any(|(ours, published)| ours.mean > published.mean));

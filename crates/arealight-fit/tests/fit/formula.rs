@@ -3,7 +3,7 @@
 use arealight::table::{Formula, MIN_COS_VIEW};
 use arealight::{Fresnel, Horizon, LightTable};
 use arealight_fit::report::{
-    Case, PUBLISHED, Rung, SEED, cases, integrate, measure, measure_lookup, near_mirror_quads,
+    Case, Level, PUBLISHED, SEED, cases, integrate, measure, measure_lookup, near_mirror_quads,
 };
 use arealight_fit::{Brdf, FitError, GgxBrdf, formula};
 use arealight_table::ggx;
@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 /// Other quads than those of the report.
 static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(1500, SEED + 2, &|| {}));
 
-const BY_F0: Rung = Rung { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
+const BY_F0: Level = Level { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
 
 /// Every coefficient.
 fn coefficients(formula: &Formula) -> Vec<f64> {

@@ -4,7 +4,7 @@ use arealight::{Fresnel, Horizon, LightTable, TableError};
 use arealight_fit::brdf::view_direction;
 use arealight_fit::lobe::{Lobe, to_mirror_frame};
 use arealight_fit::report::{
-    Case, METALS, PUBLISHED, Rung, SEED, cases, integrate, measure, measure_colour, near_mirror_quads,
+    Case, Level, METALS, PUBLISHED, SEED, cases, integrate, measure, measure_colour, near_mirror_quads,
 };
 use arealight_fit::{Aim, Brdf, FitError, GgxBrdf, Magnitude, Settings, fit};
 use glam::DVec3;
@@ -16,8 +16,8 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(1500, SEED + 1, &|| {
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(|| fitted(&GgxBrdf, &settings(32)));
 
-const BY_F0: Rung = Rung { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
-const SPLIT: Rung = Rung { fresnel: Fresnel::Split, horizon: Horizon::Cosine };
+const BY_F0: Level = Level { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
+const SPLIT: Level = Level { fresnel: Fresnel::Split, horizon: Horizon::Cosine };
 
 fn settings(size: u32) -> Settings {
     Settings { size, ..Settings::default() }
@@ -88,8 +88,8 @@ fn a_transformed_cosine_is_found_again() {
 fn two_matrices_meet_their_bars_at_every_reflectance() {
     // Half of the nodes a side that a table has by default: the bars hold with room there
     for horizon in [Horizon::Cosine, Horizon::Both] {
-        let split = measure(&TABLE, Rung { horizon, ..SPLIT }, &CASES);
-        let by_f0 = measure(&TABLE, Rung { horizon, ..BY_F0 }, &CASES);
+        let split = measure(&TABLE, Level { horizon, ..SPLIT }, &CASES);
+        let by_f0 = measure(&TABLE, Level { horizon, ..BY_F0 }, &CASES);
         let [at_4_percent, at_1] = [1, 6];
         assert!(split[at_4_percent].mean < 4e-4 && split[at_1].mean < 2.2e-3, "{split:?}");
         assert!(by_f0[at_4_percent].mean < 7e-4 && by_f0[at_1].mean < 2.2e-3, "{by_f0:?}");
@@ -103,8 +103,8 @@ fn two_matrices_meet_their_bars_at_every_reflectance() {
 }
 
 #[test]
-fn the_measure_tells_the_rungs_apart() {
-    let mean = |rung| measure(&TABLE, rung, &CASES)[1].mean;
+fn the_measure_tells_the_levels_apart() {
+    let mean = |level| measure(&TABLE, level, &CASES)[1].mean;
     assert!(mean(SPLIT) < 0.75 * mean(BY_F0));
     let swapped = {
         let schlick = TABLE.schlick_matrix().unwrap().to_vec();
@@ -120,7 +120,7 @@ fn the_measure_tells_the_rungs_apart() {
 #[test]
 fn coloured_metals_lose_little_by_one_integral() {
     for (name, f0) in METALS {
-        let [by_f0, split] = [BY_F0, SPLIT].map(|rung| measure_colour(&TABLE, rung, f0, &CASES).mean);
+        let [by_f0, split] = [BY_F0, SPLIT].map(|level| measure_colour(&TABLE, level, f0, &CASES).mean);
         // Gold is the more coloured: 1.23 times
         assert!(split < by_f0 && by_f0 < 1.4 * split && by_f0 < 2.2e-3, "{name}: {by_f0} {split}");
     }
@@ -161,9 +161,9 @@ fn near_mirrors_are_no_exception() {
         cases.iter().filter(|case| case.quad.cos_view > smallest).cloned().collect()
     };
     for fresnel in [Fresnel::ByF0, Fresnel::Split] {
-        let rung = Rung { fresnel, horizon: Horizon::Cosine };
+        let level = Level { fresnel, horizon: Horizon::Cosine };
         for (degrees, mean, max) in [(60.0, 2e-4, 5e-3), (85.0, 6e-4, 0.02)] {
-            for errors in measure(&TABLE, rung, &below(degrees)) {
+            for errors in measure(&TABLE, level, &below(degrees)) {
                 // The chord of a narrow lobe's width between nodes, which grows towards grazing views
                 assert!(errors.mean < mean && errors.max < max, "{degrees}: {errors:?}");
             }

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What the reference walk computes with: float64 for searches, [`Double`] for the truth.
+/// What the reference computes with: float64 for searches, [`Double`] for the truth.
 pub trait Number:
     Copy
     + PartialOrd

@@ -6,13 +6,14 @@
 //! | [`family`] | the families, and the case of each index |
 //! | [`double`] | numbers of 106 bits |
 //! | [`stream`] | random numbers, the same on every machine |
-//! | [`walk`] | the form factor in float64 or in those |
+//! | [`edges`] | the form factor in float64 or in those |
 //! | [`mod@reference`] | the truth about a case |
 //! | [`promise`] | what a way to compute form factors promises |
 //! | [`nearby`] | the values that polygons nearby have: the backward error |
 //! | [`judge`] | a family's results against its promises |
 
 pub mod double;
+pub mod edges;
 pub mod family;
 pub mod judge;
 pub mod nearby;
@@ -20,7 +21,6 @@ mod outline;
 pub mod promise;
 pub mod reference;
 pub mod stream;
-pub mod walk;
 
 /// A polygon in the space whose z axis is the normal, as seen from the shading point at the origin. Its vertices
 /// are the real sums `anchor + offset`, which float32 need not hold.

@@ -9,9 +9,9 @@
 //! that is too weak overstates the error and never understates it.
 
 use super::HardCase;
+use super::edges::sum_edges;
 use super::promise::MOVE;
 use super::stream::Stream;
-use super::walk::walk;
 use glam::DVec3;
 
 /// A polygon nearby, as each vertex's move in units of the largest one allowed: lengths up to 1.
@@ -58,7 +58,7 @@ impl Nearby {
     fn signed(&self, moves: &[DVec3]) -> f64 {
         let moved = self.vertices.iter().zip(&self.radii).zip(moves);
         let vertices: Vec<[f64; 3]> = moved.map(|((v, radius), m)| (*v + *m * *radius).to_array()).collect();
-        walk::<f64>([0.0; 3], &vertices).signed_form_factor().clamp(-1.0, 1.0)
+        sum_edges::<f64>([0.0; 3], &vertices).signed_form_factor().clamp(-1.0, 1.0)
     }
 
     /// An upper bound of the distance from `computed`, which is the absolute value of a signed form factor, to the

@@ -2,8 +2,8 @@
 
 use super::HardCase;
 use super::double::Double;
+use super::edges::sum_edges;
 use super::promise::{MOVE, SMALL};
-use super::walk::walk;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -27,7 +27,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Walks around the polygon in 106 bits. Vertices must be finite.
+    /// Sums its edges in 106 bits. Vertices must be finite.
     pub fn new(case: &HardCase) -> Self {
         Self::with_closings(case).0
     }
@@ -38,7 +38,7 @@ impl Reference {
     /// rounding, which matters where the point lies in their plane.
     pub fn with_closings(case: &HardCase) -> (Self, Vec<f64>) {
         let (anchor, offsets) = (case.anchor.map(f64::from), case.offsets_exactly());
-        let walked = walk::<Double>(anchor, &offsets);
+        let edges = sum_edges::<Double>(anchor, &offsets);
         let offsets: Vec<DVec3> = offsets.iter().map(|offset| DVec3::from_array(*offset)).collect();
         let anchor = DVec3::from_array(anchor);
 
@@ -59,7 +59,7 @@ impl Reference {
             distance = distance.min(plane);
         }
         if !case.flat {
-            distance = distance.min(walked.nearest_edge);
+            distance = distance.min(edges.nearest_edge);
         }
 
         let farthest = offsets.iter().map(|o| (anchor + *o).length()).fold(0.0, f64::max);
@@ -68,9 +68,9 @@ impl Reference {
         // A vertex of four units in the last place moves the area by so much along each edge
         let perimeter: f64 = (0..offsets.len()).map(|i| (next(i) - offsets[i]).length()).sum();
         let small_area = area.max(PER_AREA * extent * perimeter);
-        let signed = walked.signed_form_factor();
-        let in_plane = walked.nearest_edge < 4.0 * MOVE * farthest;
-        let ambiguous = walked.exits > 1 && (!case.flat || in_plane);
+        let signed = edges.signed_form_factor();
+        let in_plane = edges.nearest_edge < 4.0 * MOVE * farthest;
+        let ambiguous = edges.exits > 1 && (!case.flat || in_plane);
         let closings = if ambiguous { other_closings(signed) } else { Vec::new() };
         let reference = Self {
             form_factor: signed.abs().min(1.0),

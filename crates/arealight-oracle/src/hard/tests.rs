@@ -1,9 +1,9 @@
 use super::double::{Double, Number};
+use super::edges::sum_edges;
 use super::family::{FAMILIES, Family, Scope};
 use super::judge::{Judged, Tally};
 use super::promise::{Promise, Promises};
 use super::reference::Reference;
-use super::walk::walk;
 use super::*;
 use crate::polygon;
 use glam::DVec3;
@@ -20,7 +20,7 @@ fn cases(name: &str, count: u64) -> Vec<HardCase> {
 }
 
 fn sum(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Double {
-    walk::<Double>(anchor, offsets).sum
+    sum_edges::<Double>(anchor, offsets).sum
 }
 
 /// How far two sums are apart, as form factors.
@@ -33,8 +33,8 @@ fn a_square_by_its_closed_form() {
     // A corner of the unit square above the point, one unit up: (atan(1/sqrt 2) / sqrt 2) / pi, by mpmath
     let square = [[0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 0.0, 1.0]];
     let expected = 0.138_531_605_994_892_997;
-    let walked = walk::<Double>([0.0; 3], &square);
-    assert!((walked.signed_form_factor() - expected).abs() < 1e-16);
+    let edges = sum_edges::<Double>([0.0; 3], &square);
+    assert!((edges.signed_form_factor() - expected).abs() < 1e-16);
     assert!(sum([0.0; 3], &square) == sum([0.0, 0.0, 1.0], &square.map(|[x, y, _]| [x, y, 0.0])));
 }
 
@@ -74,7 +74,7 @@ fn parts_add_up_to_the_whole() {
 }
 
 #[test]
-fn the_walk_agrees_with_the_oracle_in_float64() {
+fn the_edge_sum_agrees_with_the_oracle_in_float64() {
     for name in ["above", "crossing", "concave", "many-vertices", "huge-near", "scaled", "far"] {
         let mut largest = 0.0_f64;
         for case in cases(name, 300) {

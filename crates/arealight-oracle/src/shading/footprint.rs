@@ -12,8 +12,8 @@ pub enum Filter {
     /// Heitz et al. 2016: once, at the foot of the perpendicular to the image's plane, with the plane's distance `r` as the
     /// only measure of the blur, `r / sqrt(2 A)`.
     Article,
-    /// A rung of the quality ladder.
-    Rung(Footprint),
+    /// A quality level.
+    Level(Footprint),
 }
 
 /// A light that shows an image, in the cosine space of a lobe.
@@ -47,17 +47,17 @@ pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -
             let sigma = foot.length() / (2.0 * normal.length()).sqrt();
             lookup(whole.clamp(box_coordinate(&light.map, foot)), sigma) * form_factor
         }
-        Filter::Rung(Footprint::Round) => {
+        Filter::Level(Footprint::Round) => {
             let (form_factor, hit) = light.seen(&light.vertices);
             let square = hit.length_squared();
             let sigma = (square / (WHOLE.bump * light.normal().length() + WHOLE.end * square)).sqrt();
             lookup(whole.clamp(box_coordinate(&light.map, hit)), sigma) * form_factor
         }
-        Filter::Rung(Footprint::Ellipse) => {
+        Filter::Level(Footprint::Ellipse) => {
             let taps = [-1.363, -0.378, 0.378, 1.363];
             light.part(&light.vertices, &whole, &taps, &lookup)
         }
-        Filter::Rung(Footprint::Split) => light.parts(4, &lookup),
+        Filter::Level(Footprint::Split) => light.parts(4, &lookup),
     }
 }
 

@@ -204,11 +204,11 @@ impl Bar {
         found.rmse <= self.rmse && found.median <= self.median
     }
 
-    /// That of a rung on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient` and `noise`. There is
+    /// That of a level on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient` and `noise`. There is
     /// none at the horizon, where what is seen of a light changes within a footprint, and none for a yardstick.
     pub fn of(filter: Filter, family: Family) -> Option<Self> {
-        let Filter::Rung(rung) = filter else { return None };
-        let [sharp, rough, diffuse] = match rung {
+        let Filter::Level(level) = filter else { return None };
+        let [sharp, rough, diffuse] = match level {
             Footprint::Round => [(12.0, 6.0), (7.5, 5.5), (9.0, 6.0)],
             Footprint::Ellipse => [(7.0, 4.5), (6.5, 4.5), (9.0, 6.0)],
             Footprint::Split => [(6.5, 2.2), (2.2, 1.0), (3.0, 1.0)],

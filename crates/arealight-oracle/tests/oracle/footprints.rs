@@ -1,4 +1,4 @@
-//! Every rung of the footprint against the integral of image times lobe, by families of poses, all in float64.
+//! Every level of the footprint against the integral of image times lobe, by families of poses, all in float64.
 //! `arealight bench textures` does the same on a device.
 //!
 //! `cargo test --release -p arealight-oracle --test oracle footprints -- --nocapture` prints them.
@@ -15,9 +15,9 @@ const SIDE: usize = 256;
 
 const FILTERS: [(&str, Filter); 4] = [
     ("article", Filter::Article),
-    ("round", Filter::Rung(Footprint::Round)),
-    ("ellipse", Filter::Rung(Footprint::Ellipse)),
-    ("split", Filter::Rung(Footprint::Split)),
+    ("round", Filter::Level(Footprint::Round)),
+    ("ellipse", Filter::Level(Footprint::Ellipse)),
+    ("split", Filter::Level(Footprint::Split)),
 ];
 
 /// Errors of each filter through the pyramid, for poses of a family that show each of `textures`.
@@ -59,7 +59,7 @@ fn pictures() -> Vec<Arc<Texture>> {
 }
 
 #[test]
-fn every_rung_is_within_its_bar_and_the_article_is_not() {
+fn every_level_is_within_its_bar_and_the_article_is_not() {
     let mut article_is_worse = 0;
     for family in Family::ALL {
         let rows = measure(family, &pictures(), 60);
@@ -69,8 +69,8 @@ fn every_rung_is_within_its_bar_and_the_article_is_not() {
                 assert!(bar.holds(found), "{family:?}, {name}: {found:?} over {bar:?}");
             }
         }
-        // The twin: the article's filter against the first rung's bars
-        let bar = Bar::of(Filter::Rung(Footprint::Round), family);
+        // The twin: the article's filter against the first level's bars
+        let bar = Bar::of(Filter::Level(Footprint::Round), family);
         article_is_worse += usize::from(bar.is_some_and(|bar| !bar.holds(&rows[0])));
     }
     assert!(article_is_worse >= 2, "the bars let the article's filter pass");

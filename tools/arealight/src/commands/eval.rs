@@ -189,7 +189,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let known = || sorted.iter().flatten();
     let polygons: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
-    // The most precise rungs, unless others are to be seen
+    // The most precise levels, unless others are to be seen
     let precise = Quality {
         form_factor: FormFactor::Difference,
         fresnel: Fresnel::Split,

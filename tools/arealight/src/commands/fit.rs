@@ -6,7 +6,7 @@ use crate::progress;
 use arealight::table::Formula;
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_fit::report::{
-    COUNT, Case, Errors, METALS, PUBLISHED, Rung, SEED, cases, measure_lookup, measure_lookup_colour,
+    COUNT, Case, Errors, Level, METALS, PUBLISHED, SEED, cases, measure_lookup, measure_lookup_colour,
 };
 use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula};
 use serde_json::{Value, json};
@@ -72,7 +72,7 @@ struct Horizons {
     both_horizons: Comparison,
 }
 
-/// The errors at one horizon rung.
+/// The errors at one horizon level.
 struct Comparison {
     by_f0: Vec<Errors>,
     split: Vec<Errors>,
@@ -135,9 +135,9 @@ impl Horizons {
 
 impl Comparison {
     fn of(lookup: Lookup, horizon: Horizon, cases: &[Case]) -> Self {
-        let rungs = [Fresnel::ByF0, Fresnel::Split].map(|fresnel| Rung { fresnel, horizon });
-        let [by_f0, split] = rungs.map(|rung| measure_lookup(lookup, rung, cases));
-        let metal = |&(_, f0): &(_, _)| rungs.map(|rung| measure_lookup_colour(lookup, rung, f0, cases));
+        let levels = [Fresnel::ByF0, Fresnel::Split].map(|fresnel| Level { fresnel, horizon });
+        let [by_f0, split] = levels.map(|level| measure_lookup(lookup, level, cases));
+        let metal = |&(_, f0): &(_, _)| levels.map(|level| measure_lookup_colour(lookup, level, f0, cases));
         Self { by_f0, split, metals: METALS.iter().map(metal).collect() }
     }
 
@@ -162,9 +162,9 @@ impl Comparison {
             }
             text.push('\n');
         }
-        for ((name, _), rungs) in METALS.iter().zip(&self.metals) {
+        for ((name, _), levels) in METALS.iter().zip(&self.metals) {
             let _ = write!(text, "{name:>6}");
-            for errors in rungs {
+            for errors in levels {
                 columns(&mut text, errors);
             }
             text.push('\n');

@@ -121,7 +121,7 @@ fn load(path: &Path) -> Result<TableFile, Failure> {
     TableFile::load(path).map_err(|error| Failure::input(path, error))
 }
 
-/// Maps the errors of a table in both rungs, of the formula and of other tables, with a progress bar.
+/// Maps the errors of a table in both levels, of the formula and of other tables, with a progress bar.
 fn measure(table: &LightTable, others: &[PathBuf], quads: u16) -> Result<Vec<ErrorMap>, Failure> {
     let loaded = others.iter().map(|path| load(path)).collect::<Result<Vec<_>, _>>()?;
     let subject = |name: &str, lobes, fresnel| Subject { name: name.to_owned(), lobes, fresnel };
@@ -201,7 +201,7 @@ impl Summary<'_> {
         for map in self.errors.unwrap_or_default() {
             let (cell, most) = map.worst();
             let (roughness, view) = errors::middle(cell);
-            let label = format!("{}, {}, F0 = {}", map.name.escape_debug(), map.rung(), map.f0);
+            let label = format!("{}, {}, F0 = {}", map.name.escape_debug(), map.level(), map.f0);
             let _ = write!(
                 text,
                 "\n{label:<30} mean error {:.2e}, most {most:.2e} at roughness {roughness:.2}, view {view:.1}°",
@@ -229,7 +229,7 @@ impl Summary<'_> {
             let (roughness, view) = errors::middle(cell);
             json!({
                 "of": map.name,
-                "fresnel": map.rung(),
+                "fresnel": map.level(),
                 "f0": map.f0,
                 "mean": map.mean(),
                 "largest": { "mean": most, "roughness": roughness, "view_degrees": view },

@@ -8,8 +8,8 @@ use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
 use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{Effects, FrameLoad, ProfileRung, Quality, UnknownEffect};
-use arealight_benches::ladder::RungNames;
+use arealight::{Effects, FrameLoad, ProfileLevel, Quality, UnknownEffect};
+use arealight_benches::ladder::LevelNames;
 use arealight_engine::{Engine, EngineError, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -167,7 +167,7 @@ fn warn_of_dearer_lights(effects: Effects, path: &Path) {
 struct Outcome {
     visibility: Option<Duration>,
     shading: Option<Duration>,
-    picked: Option<ProfileRung>,
+    picked: Option<ProfileLevel>,
     tiles: Option<TileCounts>,
     picture: Picture,
 }
@@ -201,7 +201,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if picked.is_some() {
         warn_of_dearer_lights(effects, &path);
     }
-    let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |rung| rung.quality);
+    let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |level| level.quality);
     let mut outcome = render(&engine, &scene, &camera, samples, (effects, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picked = picked;
@@ -355,12 +355,12 @@ impl Summary<'_> {
                 "tiles    not classified: that would take longer than so few quads".to_owned()
             });
         }
-        if let Some(rung) = outcome.picked {
-            let expected = rung.milliseconds(arguments.load(scene));
+        if let Some(level) = outcome.picked {
+            let expected = level.milliseconds(arguments.load(scene));
             lines.push(format!(
                 "budget   expected {expected:.1} ms at an error of {:.2} %: {:?}",
-                rung.error * 100.0,
-                rung.quality
+                level.error * 100.0,
+                level.quality
             ));
         }
         let per_pixel = arguments.supersample * arguments.supersample;
@@ -390,10 +390,10 @@ impl Summary<'_> {
             "effects_shaded_with": set.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
-            "picked": outcome.picked.map(|rung| json!({
-                "rungs": RungNames::from(rung.quality),
-                "expected_milliseconds": rung.milliseconds(arguments.load(scene)),
-                "error": rung.error,
+            "picked": outcome.picked.map(|level| json!({
+                "levels": LevelNames::from(level.quality),
+                "expected_milliseconds": level.milliseconds(arguments.load(scene)),
+                "error": level.error,
             })),
             "reference_samples": arguments.reference_samples(),
             "tiles": outcome.tiles.as_ref().map(|tiles| json!({

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
 use arealight::{Fresnel, Horizon, LightTable};
-use arealight_fit::report::{COUNT, Errors, Rung, SEED, cases, measure};
+use arealight_fit::report::{COUNT, Errors, Level, SEED, cases, measure};
 use arealight_fit::{Brdf, GgxBrdf};
 use arealight_table::{
     Adjusted, FileError, MAX_GLSL_SIZE, Precision, SaveError, TableFile, Target, WriteError, hash,
@@ -144,7 +144,7 @@ fn measured(table: &LightTable) -> Result<String, Failure> {
     let mut text =
         format!("mean absolute error of the reflected radiance over {COUNT} quads of unit radiance");
     for (name, fresnel) in [("by F0", Fresnel::ByF0), ("split", Fresnel::Split)] {
-        let errors = measure(table, Rung { fresnel, horizon: Horizon::Cosine }, &cases);
+        let errors = measure(table, Level { fresnel, horizon: Horizon::Cosine }, &cases);
         let at = |e: &Errors| format!("{:.2e} at F0 = {}", e.mean, e.f0);
         let _ = write!(text, "; {name}: {}", errors.iter().map(at).collect::<Vec<_>>().join(", "));
     }

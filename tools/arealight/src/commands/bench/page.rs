@@ -94,7 +94,7 @@ fn says_methods() -> &'static str {
 fn methods(found: &Ladder) -> String {
     let mut html = String::from("<table class=\"methods\"><tr><th>method</th><th>what it is</th></tr>");
     for row in found.rows_of(found.first()) {
-        let class = if row.rungs.is_some() { "ours" } else { "theirs" };
+        let class = if row.levels.is_some() { "ours" } else { "theirs" };
         let _ = write!(
             html,
             "<tr><td><i class=\"{class}\"></i>{}</td><td>{}</td></tr>",
@@ -132,7 +132,7 @@ fn says_pareto(found: &Ladder) -> String {
 
 fn says_parts(found: &Ladder) -> String {
     let largest = |pick: fn(&Row) -> f64| {
-        let ours = found.rows_of(found.first()).filter(|row| row.rungs.is_some());
+        let ours = found.rows_of(found.first()).filter(|row| row.levels.is_some());
         ours.map(pick).fold(0.0, f64::max)
     };
     format!(

@@ -9,15 +9,15 @@ use arealight_benches::stability::{self, Options};
 use arealight_oracle::hard::family::{FAMILIES, Family};
 use std::process::ExitCode;
 
-/// Hold every rung of the form factor to its promises, on families of hard cases.
+/// Hold every level of the form factor to its promises, on families of hard cases.
 ///
-/// Each family's polygons go through every rung on the device, and through yardsticks, which are what engines ship:
+/// Each family's polygons go through every level on the device, and through yardsticks, which are what engines ship:
 /// `sphere-horizon`, `clipless`, `clip-by-cases`, and `clip-and-acos`. The results' bits are judged against a reference of 106 bits. Printed
 /// are, for each family: the largest error; the largest distance to the values between those of polygons whose
 /// vertices differ in float32's last places; of small lights the error in parts of their solid angle over pi; how
 /// many results were NaN or infinite; and whether the promises were kept.
 ///
-/// Exit code 1 if a rung falls short of its promises; what the yardsticks do changes nothing.
+/// Exit code 1 if a level falls short of its promises; what the yardsticks do changes nothing.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Polygons of each family.
@@ -29,11 +29,11 @@ pub struct Arguments {
     /// Only this family; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = family)]
     family: Vec<&'static Family>,
-    /// Only this rung or yardstick; may be given several times.
+    /// Only this level or yardstick; may be given several times.
     #[arg(long, value_name = "NAME", value_parser = method)]
-    rung: Vec<&'static Method>,
+    level: Vec<&'static Method>,
     /// Disks, spheres and tubes in the polygons' place.
-    #[arg(long, conflicts_with_all = ["family", "rung", "seed"])]
+    #[arg(long, conflicts_with_all = ["family", "level", "seed"])]
     shapes: bool,
     #[command(flatten)]
     ends: Ends,
@@ -62,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         samples: arguments.samples,
         seed: arguments.seed,
         families: chosen(&arguments.family, FAMILIES),
-        methods: chosen(&arguments.rung, METHODS),
+        methods: chosen(&arguments.level, METHODS),
     };
     let host = arguments.ends.host()?;
 
@@ -111,6 +111,6 @@ mod tests {
         assert_eq!(family("crossing").unwrap().name, "crossing");
         assert!(family("crosing").unwrap_err().contains("in-horizon, just-above"));
         assert_eq!(method("clipless").unwrap().name, "clipless");
-        assert!(method("exact").unwrap_err().starts_with("there are: walk-exact, "));
+        assert!(method("exact").unwrap_err().starts_with("there are: polygon-exact, "));
     }
 }

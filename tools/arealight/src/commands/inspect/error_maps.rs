@@ -48,7 +48,7 @@ fn short(map: &ErrorMap) -> String {
         name.pop();
         name.push('…');
     }
-    format!("{name}, {}", map.rung())
+    format!("{name}, {}", map.level())
 }
 
 /// The logarithm of an error, as a colour.

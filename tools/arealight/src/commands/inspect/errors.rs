@@ -2,7 +2,7 @@
 
 use arealight::table::{ggx_formula, mirror_frame};
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
-use arealight_fit::report::{Case, Family, Quad, Rung, integrate, measure_lookup, random_quads};
+use arealight_fit::report::{Case, Family, Level, Quad, integrate, measure_lookup, random_quads};
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 
@@ -54,7 +54,7 @@ impl Source<'_> {
 
 impl ErrorMap {
     /// How the lobes were used, for people.
-    pub fn rung(&self) -> &'static str {
+    pub fn level(&self) -> &'static str {
         match self.fresnel {
             Fresnel::ByF0 => "by F0",
             Fresnel::Split => "split",
@@ -107,9 +107,9 @@ fn measure_cell(subjects: &[Subject], quads: &[Quad], cell: usize) -> Vec<f64> {
     let cases: Vec<Case> = integrate(aimed, &|| ());
     let mut means = Vec::with_capacity(subjects.len() * REFLECTANCES.len());
     for Subject { lobes, fresnel, .. } in subjects {
-        let rung = Rung { fresnel: *fresnel, horizon: Horizon::Cosine };
+        let level = Level { fresnel: *fresnel, horizon: Horizon::Cosine };
         let sample = lobes.lookup(roughness, cos_view);
-        let errors = measure_lookup(|_, _| sample, rung, &cases);
+        let errors = measure_lookup(|_, _| sample, level, &cases);
         means.extend(
             REFLECTANCES.map(|f0| errors.iter().find(|e| e.f0 == f0).map_or(f64::NAN, |errors| errors.mean)),
         );
@@ -164,15 +164,15 @@ mod tests {
     #[test]
     fn maps_agree_with_the_report() {
         let table = arealight_table::ggx();
-        let rungs = [Fresnel::ByF0, Fresnel::Split];
+        let levels = [Fresnel::ByF0, Fresnel::Split];
         let subjects =
-            rungs.map(|fresnel| Subject { name: String::new(), lobes: Source::Table(&table), fresnel });
+            levels.map(|fresnel| Subject { name: String::new(), lobes: Source::Table(&table), fresnel });
         let maps = measure(&subjects, 6, &|| ());
         let cases = arealight_fit::report::cases(3000, 1, &|| ());
-        for (map, fresnel) in maps.iter().zip(rungs.into_iter().flat_map(|rung| [rung; 2])) {
+        for (map, fresnel) in maps.iter().zip(levels.into_iter().flat_map(|level| [level; 2])) {
             assert_eq!((map.fresnel, map.cells.len()), (fresnel, CELLS * CELLS));
             let report =
-                arealight_fit::report::measure(&table, Rung { fresnel, horizon: Horizon::Cosine }, &cases);
+                arealight_fit::report::measure(&table, Level { fresnel, horizon: Horizon::Cosine }, &cases);
             let expected = report.iter().find(|errors| errors.f0 == map.f0).unwrap().mean;
             // Six quads stand for all: within a factor of three. A wrong view or roughness errs a hundredfold
             let ratio = map.mean() / expected;

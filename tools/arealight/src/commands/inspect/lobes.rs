@@ -35,7 +35,7 @@ struct Cell {
     peak: f64,
 }
 
-/// What is drawn of a table: lobes of a reflectance at normal incidence (and 1 at grazing), as a rung makes them.
+/// What is drawn of a table: lobes of a reflectance at normal incidence (and 1 at grazing), as a level makes them.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
     pub f0: f64,
@@ -249,13 +249,13 @@ mod tests {
             LightTable::new(table.description().clone(), table.size(), matrix, magnitude).unwrap();
         let worst = |table, f0, fresnel| worst(table, (0.75, 0.5), Material { f0, fresnel });
         let [by_f0, split] = [Fresnel::ByF0, Fresnel::Split];
-        // A metal is of the first matrix alone, whatever the rung
+        // A metal is of the first matrix alone, whatever the level
         let metal = worst(&first_only, 1.0, by_f0);
         assert_eq!([worst(&table, 1.0, by_f0), worst(&table, 1.0, split)], [metal; 2]);
         // No reflectance at all is of the second alone, but for rounding; and that is the better one
         let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.0, fresnel));
         assert!((one - two).abs() < 1e-12 && two < worst(&first_only, 0.0, split), "{one} {two}");
-        // Between them the rungs differ, and are better than the first matrix alone
+        // Between them the levels differ, and are better than the first matrix alone
         let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.02, fresnel));
         assert!(two < one && one < worst(&first_only, 0.02, by_f0), "{one} {two}");
     }

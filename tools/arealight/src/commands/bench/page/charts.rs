@@ -29,7 +29,7 @@ pub fn pareto(found: &Ladder) -> String {
         .map(|samples| (samples.count.to_string(), samples.milliseconds, samples.errors.rmse))
         .collect();
     let rows: Vec<&Row> = found.rows_of(found.first()).collect();
-    let near: Vec<&Row> = rows.iter().copied().filter(|row| row.rungs.is_some()).collect();
+    let near: Vec<&Row> = rows.iter().copied().filter(|row| row.levels.is_some()).collect();
     error_against_time("Error against time of every method", &rows, &samples, &NAMED)
         + KEY
         + "<p>Our quality levels from nearer; dotted: the Pareto front.</p>"
@@ -67,7 +67,7 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
         label(&mut drawing, &mut labels, *dot, count, bounds);
     }
     for (row, dot) in rows.iter().zip(&dots) {
-        let class = if row.rungs.is_some() { "ours" } else { "theirs" };
+        let class = if row.levels.is_some() { "ours" } else { "theirs" };
         let [low, high] = row.time.ratio.quartiles.map(number);
         let title = format!(
             "{} ({}): error {}, time {} ({low} to {high}) of {}'s",
@@ -88,7 +88,7 @@ fn error_against_time(title: &str, rows: &[&Row], samples: &[(String, f64, f64)]
 /// Our levels that none is better than in both, from the fastest on.
 fn front(rows: &[&Row], dots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut ours: Vec<(&Row, [f64; 2])> = rows.iter().copied().zip(dots.iter().copied()).collect();
-    ours.retain(|(row, _)| row.rungs.is_some());
+    ours.retain(|(row, _)| row.levels.is_some());
     ours.sort_by(|a, b| a.0.time.milliseconds.median.total_cmp(&b.0.time.milliseconds.median));
     let mut best = f64::INFINITY;
     // Differences below a hundredth are none

@@ -7,9 +7,9 @@ use std::f64::consts::TAU;
 /// A vector of numbers.
 pub type Vector<T> = [T; 3];
 
-/// What one walk around a polygon finds.
+/// What the edges of a polygon add up to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Walked<T> {
+pub struct EdgeSum<T> {
     /// 2 pi times the signed form factor, which is positive where the front faces the origin.
     pub sum: T,
     /// The distance from the origin to the nearest of the clipped polygon's edges, those along the horizon
@@ -19,7 +19,7 @@ pub struct Walked<T> {
     pub exits: usize,
 }
 
-impl<T: Number> Walked<T> {
+impl<T: Number> EdgeSum<T> {
     /// The signed form factor, in [-1, 1] for a polygon that does not overlap itself.
     pub fn signed_form_factor(&self) -> f64 {
         self.sum.round() / TAU
@@ -50,7 +50,7 @@ fn absolute<T: Number>(a: T) -> T {
     if a < T::ZERO { -a } else { a }
 }
 
-/// The sums that become a [`Walked`]; `nearest_square` is the nearest edge's squared distance.
+/// The sums that become a [`EdgeSum`]; `nearest_square` is the nearest edge's squared distance.
 struct Sums<T> {
     sum: T,
     nearest_square: f64,
@@ -105,9 +105,9 @@ fn horizon_point<T: Number>(a: &Vertex<T>, b: &Vertex<T>) -> Vertex<T> {
     Vertex { offset: map(near.offset, step, |a, b| a + b), position }
 }
 
-/// Walks around the polygon of `anchor + offset`. What lies below z = 0 is clipped, a vertex at z = 0 counts as
+/// Sums its edges of `anchor + offset`. What lies below z = 0 is clipped, a vertex at z = 0 counts as
 /// below; the outline is closed along the horizon from where it goes down to where it next comes up.
-pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
+pub fn sum_edges<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> EdgeSum<T> {
     let vertex = |offset: &[f64; 3]| Vertex {
         offset: offset.map(T::exact),
         position: [0, 1, 2].map(|i| T::sum(anchor[i], offset[i])),
@@ -141,5 +141,5 @@ pub fn walk<T: Number>(anchor: [f64; 3], offsets: &[[f64; 3]]) -> Walked<T> {
     if let (Some(exit), Some(entry)) = (&exit, &first_entry) {
         sums.add_edge(exit, entry);
     }
-    Walked { sum: sums.sum, nearest_edge: sums.nearest_square.sqrt(), exits }
+    EdgeSum { sum: sums.sum, nearest_edge: sums.nearest_square.sqrt(), exits }
 }

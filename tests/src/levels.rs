@@ -1,4 +1,4 @@
-//! The rungs of the quality ladder, on both ways around an outline.
+//! The quality levels, by both kernels of a polygon.
 
 use arealight::{Effects, FormFactor, Horizon, Quality};
 use arealight_oracle::hard::promise::Promises;
@@ -8,22 +8,22 @@ use arealight_oracle::hard::promise::Promises;
 pub enum Path {
     /// The convex quad: no more than four vertices.
     Quad,
-    /// The walk around any polygon.
-    Walk,
-    /// The walk around each face of a mesh.
+    /// Any polygon, edge by edge.
+    Polygon,
+    /// Each face of a mesh, edge by edge.
     Mesh,
 }
 
 /// One kind of pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Rung {
+pub struct Level {
     /// The code.
     pub path: Path,
     /// What it is specialised for.
     pub quality: Quality,
 }
 
-impl std::fmt::Display for Rung {
+impl std::fmt::Display for Level {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Quality { form_factor, horizon, .. } = self.quality;
         write!(f, "{:?} {form_factor:?} {horizon:?}", self.path)
@@ -33,19 +33,19 @@ impl std::fmt::Display for Rung {
 /// Every way to integrate edges.
 pub const FORM_FACTORS: [FormFactor; 2] = [FormFactor::Exact, FormFactor::Difference];
 
-impl Rung {
+impl Level {
     /// The quality levels of these paths and horizons.
     pub fn of(paths: &[Path], horizons: &[Horizon]) -> Vec<Self> {
-        let mut rungs = Vec::new();
+        let mut levels = Vec::new();
         for &path in paths {
             for &horizon in horizons {
-                rungs.extend(FORM_FACTORS.map(|form_factor| Self {
+                levels.extend(FORM_FACTORS.map(|form_factor| Self {
                     path,
                     quality: Quality { form_factor, horizon, ..Quality::default() },
                 }));
             }
         }
-        rungs
+        levels
     }
 
     /// The effects of a pass on this path that has these lobes.
@@ -53,7 +53,7 @@ impl Rung {
         let effects = lobes | Effects::TWO_SIDED;
         match self.path {
             Path::Quad => effects,
-            Path::Walk => effects | Effects::POLYGON,
+            Path::Polygon => effects | Effects::POLYGON,
             Path::Mesh => effects | Effects::POLYGON | Effects::MESH,
         }
     }
