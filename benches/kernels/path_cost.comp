@@ -58,7 +58,7 @@ vec3 crossing(ArealightQuad quad, int above) {
         }
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
-    return arcs + arealight_arc(last, exit) + arealight_horizon_arc(exit.xy, entry.xy);
+    return arealight_closed(arcs + arealight_arc(last, exit), exit.xy, entry.xy);
 }
 
 // z of the arc between unit vectors at an acute angle with the cosine x.

@@ -119,6 +119,27 @@ fn spoiled_results_are_found_out() {
     assert_eq!(broken(&|bits| bits | 0x8000_0000), (all, 0));
 }
 
+/// Cases of the long battery in which rounding puts an edge and the arc along the horizon on different sides of the point: the
+/// sum is then that of no polygon nearby, unless it is closed to the smaller one.
+#[test]
+fn an_edge_through_the_point_is_closed_on_its_own_side() {
+    let Some(host) = device_or_skip() else { return };
+    let family = Family::find("antipodal").unwrap();
+    let table = arealight_table::ggx();
+    for (name, index) in [("quad-exact", 9356), ("polygon-exact", 3976)] {
+        let method = Method::find(name).unwrap();
+        let case = family.case(index, 0, &table);
+        let kernel = FormFactorKernel::new(&host, &[method]).unwrap();
+        let bits = kernel.run(std::slice::from_ref(&case)).unwrap()[0][0];
+        let judged = Judged::new(family, &case);
+        let ratio = |bits| judged.judge(bits, &method.promises).ratios[1].unwrap().1;
+        assert!(ratio(bits) <= 1.0, "{name}: {}", f32::from_bits(bits));
+        // The twin: closed on the other side
+        let other = (1.0 - f32::from_bits(bits)).to_bits();
+        assert!(ratio(other) > 1e4, "{name}: {}", f32::from_bits(other));
+    }
+}
+
 /// What the last guard of the library is for: the sums of these polygons are NaN or infinite, as the results of a
 /// formula without a guard show, and the library's results, by their bits and before any clamp, are numbers.
 #[test]

@@ -48,13 +48,29 @@ vec3 arealight_arc(vec3 a, vec3 b) {
     return arealight_arc_weight(cross(a, middle), sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE));
 }
 
-// The arc along the horizon from a to b, unit vectors on it: z is the angle, in (-pi, pi]. An obtuse angle is pi less the other
-// one: here rounding of y would turn the arc, not move its end.
-vec3 arealight_horizon_arc(vec2 a, vec2 b) {
-    float sine = a.x * b.y - a.y * b.x;
+// The arc along the horizon from a to b, unit vectors on it: z is the angle, in [-pi, pi], an obtuse one on the side that
+// `side` has the sign of. It is pi less the acute one: here rounding of y would turn the arc, not move its end.
+vec3 arealight_horizon_arc_by_side(vec2 a, vec2 b, float sine, float side) {
     float cosine = dot(a, b);
     float acute = arealight_acute_weight(sine, abs(cosine));
-    return vec3(0.0, 0.0, cosine < 0.0 ? (sine < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
+    return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
+}
+
+// The same, of an angle in (-pi, pi).
+vec3 arealight_horizon_arc(vec2 a, vec2 b) {
+    float sine = a.x * b.y - a.y * b.x;
+    return arealight_horizon_arc_by_side(a, b, sine, sine);
+}
+
+// What rounding makes of the sine of a half turn: that of vectors that both moved by 2 x 2^-24.
+const float AREALIGHT_HALF_TURN = 2.4e-7;
+
+// Closes the sum of an outline's arcs along the horizon, from a to b. Where rounding alone tells on which side, the point is in
+// the light's plane, before the light or behind it. The smaller of the two sums is the form factor of one of them; the larger one,
+// where rounding put `arcs` on the other side, of neither.
+vec3 arealight_closed(vec3 arcs, vec2 a, vec2 b) {
+    float sine = a.x * b.y - a.y * b.x;
+    return arcs + arealight_horizon_arc_by_side(a, b, sine, abs(sine) > AREALIGHT_HALF_TURN ? sine : -arcs.z);
 }
 
 // The direction in which the edge from `above` to `below`, points of any length on either side of the horizon, meets it: a

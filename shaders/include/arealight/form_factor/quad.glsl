@@ -77,7 +77,7 @@ vec3 arealight_quad_crossing(ArealightQuad quad) {
         }
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
-    return arcs + arealight_arc(last, exit) + arealight_horizon_arc(exit.xy, entry.xy);
+    return arealight_closed(arcs + arealight_arc(last, exit), exit.xy, entry.xy);
 }
 
 // The vector form factor of a convex quad. Seen from its front z is positive.

@@ -115,7 +115,8 @@ fn says_pareto(found: &Ladder) -> String {
             "Against <em>{}</em> our default level errs {} times less, in {} times its time. ",
             escape(name),
             number(theirs.errors.all.rmse / default.errors.all.rmse),
-            number(default.time.milliseconds.median / theirs.time.milliseconds.median)
+            // Of the same rounds, as the ratios of every table are
+            number(default.time.ratio.median / theirs.time.ratio.median)
         );
     }
     if let Some(samples) = default.samples {
