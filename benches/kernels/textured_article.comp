@@ -40,7 +40,7 @@ void main() {
     if (index >= constants.case_count) {
         return;
     }
-    ArealightPolygonLight light = load_polygon(lights[cases[index].light], true);
+    ArealightPolygonLight light = load_polygon(lights[cases[index].light]);
     ArealightPoint point = arealight_point(case_surface(cases[index]));
     vec3 reflected = vec3(0.0);
     ArealightLocalPolygon local;

@@ -5,7 +5,6 @@
 //! | [`school`] | the yardsticks: how others compute a form factor |
 //! | [`published`] | a table of the quality that others ship |
 //! | [`method`] | the ways to compute a form factor: every quality level of the library, and the yardsticks |
-//! | [`effects`] | the time of the shade kernel and pass by effect |
 //! | [`cost`] | the time of each level of the form factor, as a ratio to a yardstick's |
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`model`] | which paths the waves of our scenes take, and what a frame of them costs by the compiler's numbers |
@@ -27,7 +26,6 @@
 
 pub mod compiled;
 pub mod cost;
-pub mod effects;
 pub mod footprints;
 pub mod kernel;
 pub mod ladder;

@@ -29,7 +29,7 @@ vec3 radiance_of(ArealightPoint point, ArealightGpuLight record) {
         return arealight_radiance(point, load_mesh(record));
     }
     if (HAS_POLYGONS) {
-        return arealight_radiance(point, load_polygon(record, (EFFECTS & EFFECT_TEXTURED) != 0u));
+        return arealight_radiance(point, load_polygon(record));
     }
     return arealight_radiance(point, load_quad(record));
 }

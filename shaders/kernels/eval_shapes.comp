@@ -38,7 +38,7 @@ vec3 radiance_of(ArealightPoint point, ArealightGpuShape record) {
     if (kind == SHAPE_SPHERE) {
         return arealight_radiance(point, load_sphere(record));
     }
-    return arealight_radiance(point, load_disk(record, (EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u));
+    return arealight_radiance(point, load_disk(record));
 }
 
 void main() {

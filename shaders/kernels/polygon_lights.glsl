@@ -31,10 +31,10 @@ ArealightQuadLight load_quad(ArealightGpuLight record) {
     return ArealightQuadLight(record.radiance, record.center, record.normal, quad, (record.flags & LIGHT_TWO_SIDED) != 0u);
 }
 
-// The place of a light's image; without one, of none. `textured`: some light has one.
-ArealightImage load_image(ArealightGpuLight record, bool textured) {
+// The place of a light's image; without one, of none.
+ArealightImage load_image(ArealightGpuLight record) {
     ArealightImage image = ArealightImage(AREALIGHT_NO_IMAGE, vec3(0.0), vec3(0.0), vec3(0.0), vec2(0.0), vec2(0.0));
-    if (textured && record.texture_layer != NO_LIGHT_TEXTURE) {
+    if (AREALIGHT_HAS_TEXTURED_POLYGONS && record.texture_layer != NO_LIGHT_TEXTURE) {
         uint row = record.first_vertex + record.vertex_count;
         vec4 corner = light_vertices[row];
         vec4 axis_u = light_vertices[row + 1u];
@@ -45,9 +45,9 @@ ArealightImage load_image(ArealightGpuLight record, bool textured) {
     return image;
 }
 
-ArealightPolygonLight load_polygon(ArealightGpuLight record, bool textured) {
+ArealightPolygonLight load_polygon(ArealightGpuLight record) {
     return ArealightPolygonLight(record.radiance, record.center, record.normal, record.first_vertex, record.vertex_count,
-                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record, textured),
+                                 (record.flags & LIGHT_TWO_SIDED) != 0u, load_image(record),
                                  (record.flags & LIGHT_QUAD) != 0u);
 }
 

@@ -247,7 +247,7 @@ vec3 estimate(Lobes lobes, inout RandomState random) {
     float by_brdf = direction.z > 0.0 ? density(lobes, direction) : 0.0;
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < constants.light_count; index++) {
-        ArealightPolygonLight light = load_polygon(lights[index], true);
+        ArealightPolygonLight light = load_polygon(lights[index]);
         ArealightGpuLightSampling sampling = light_sampling[index];
         if (sampling.triangle_count == 0u) {
             continue;

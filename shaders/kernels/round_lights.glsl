@@ -8,10 +8,9 @@
 #include "light_textures.glsl"
 #include "arealight/arealight.glsl"
 
-// `textured`: some disk shows an image.
-ArealightDiskLight load_disk(ArealightGpuShape record, bool textured) {
+ArealightDiskLight load_disk(ArealightGpuShape record) {
     return ArealightDiskLight(record.radiance, record.center, record.axis_u, record.axis_v,
-                              (record.flags & SHAPE_TWO_SIDED) != 0u, textured ? record.detail : AREALIGHT_NO_IMAGE);
+                              (record.flags & SHAPE_TWO_SIDED) != 0u, AREALIGHT_HAS_TEXTURED_DISKS ? record.detail : AREALIGHT_NO_IMAGE);
 }
 
 ArealightSphereLight load_sphere(ArealightGpuShape record) {

@@ -10,18 +10,16 @@
 
 #include "position.glsl"
 
-const bool HAS_TEXTURES = (EFFECTS & EFFECT_TEXTURED) != 0u;
 const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
 const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
 const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
-const bool HAS_TEXTURED_DISKS = (EFFECTS & EFFECT_TEXTURED_ELLIPSE) != 0u;
 
 void shade_polygon(inout PixelRadiance sum, ArealightPoint point, ArealightGpuLight record) {
     if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
         add_light(sum, record.radiance, arealight_reflected(point, load_mesh(record)));
     } else {
-        add_light(sum, record.radiance, arealight_reflected(point, load_polygon(record, HAS_TEXTURES)));
+        add_light(sum, record.radiance, arealight_reflected(point, load_polygon(record)));
     }
 }
 
@@ -31,7 +29,7 @@ void shade_shape(inout PixelRadiance sum, ArealightPoint point, ArealightGpuShap
     } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
         add_light(sum, record.radiance, arealight_reflected(point, load_sphere(record)));
     } else if (HAS_DISKS && record.kind == SHAPE_DISK) {
-        add_light(sum, record.radiance, arealight_reflected(point, load_disk(record, HAS_TEXTURED_DISKS)));
+        add_light(sum, record.radiance, arealight_reflected(point, load_disk(record)));
     }
 }
 

@@ -9,7 +9,7 @@ use arealight_tests::frame::{bits, scene, with_renderer};
 use arealight_tests::kernel::BRANCHES;
 use arealight_tests::spirv::{tool, words};
 use arealight_vk::prune;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// What branches.comp is to write for a number.
@@ -160,7 +160,7 @@ fn a_fragment_shader_that_includes_the_library_is_pruned_too() {
 }
 
 #[test]
-fn what_is_not_called_for_is_left_out() {
+fn what_is_not_in_use_is_left_out() {
     let words = kernels::SHADE.words();
     let left = |effects: Effects| {
         let options = ShadeOptions { effects, ..ShadeOptions::all() };
@@ -174,8 +174,59 @@ fn what_is_not_called_for_is_left_out() {
     }
 }
 
+/// The names of a module's functions.
+fn function_names(module: &[u32]) -> BTreeSet<String> {
+    const NAME: u32 = 5;
+    const FUNCTION: u32 = 54;
+    let (mut names, mut functions) = (BTreeMap::new(), BTreeSet::new());
+    let mut rest = &module[5..];
+    while let [first, ..] = rest {
+        let (instruction, next) = rest.split_at((first >> 16) as usize);
+        match first & 0xffff {
+            NAME => {
+                let bytes: Vec<u8> = instruction[2..].iter().flat_map(|word| word.to_le_bytes()).collect();
+                let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+                names.insert(instruction[1], String::from_utf8_lossy(&bytes[..end]).into_owned());
+            }
+            FUNCTION => {
+                functions.insert(instruction[2]);
+            }
+            _ => {}
+        }
+        rest = next;
+    }
+    functions.iter().filter_map(|id| names.get(id).cloned()).collect()
+}
+
+/// Every set of kinds of light has a module of its own, without a function of the kinds that it lacks.
 #[test]
-fn what_no_light_of_a_frame_calls_for_leaves_the_pass_its_module_word_for_word() {
+fn each_set_of_lights_has_a_module_of_its_own() {
+    // Of each kind what the names of its functions alone contain. Textured polygons are shaded by the polygon loop
+    let kinds = [
+        (Effects::TEXTURED, "arealight_bridge_light_texture("),
+        (Effects::POLYGON | Effects::MESH, "struct-ArealightMeshLight"),
+        (Effects::ELLIPSE, "struct-ArealightDiskLight"),
+        (Effects::SPHERE, "struct-ArealightSphereLight"),
+        (Effects::TUBE, "struct-ArealightTubeLight"),
+    ];
+    let whole = kernels::SHADE.words();
+    let mut modules = BTreeSet::new();
+    for set in 0..1_u32 << kinds.len() {
+        let chosen = || kinds.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, kind)| kind);
+        let effects = chosen().fold(Effects::DIFFUSE | Effects::GLOSSY, |all, (effect, _)| all | *effect);
+        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        let module = prune(&whole, &shade_specialization(options));
+        let functions = function_names(&module);
+        for (effect, function) in kinds {
+            let is_there = functions.iter().any(|name| name.contains(function));
+            assert_eq!(is_there, effects.contains(effect), "{function} with {effects}: {functions:?}");
+        }
+        assert!(modules.insert(module), "another set has the module of {effects}");
+    }
+}
+
+#[test]
+fn what_no_light_of_a_frame_needs_leaves_the_pass_its_module_word_for_word() {
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
     let words = kernels::SHADE.words();
     let quads =

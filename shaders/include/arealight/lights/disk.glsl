@@ -63,7 +63,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalDisk local) {
 
 vec3 arealight_image_seen(mat3 space, ArealightLocalDisk local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
-    if (local.image != AREALIGHT_NO_IMAGE) {
+    if (AREALIGHT_HAS_TEXTURED_DISKS && local.image != AREALIGHT_NO_IMAGE) {
         vec3 center = space * local.center;
         ArealightLobeImage image =
             arealight_lobe_image(arealight_disk_image(local.image, local.axis_u, local.axis_v), center, space);

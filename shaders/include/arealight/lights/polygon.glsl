@@ -176,7 +176,7 @@ vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLob
 
 vec3 arealight_image_seen(mat3 space, ArealightLocalPolygon local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
-    if (local.image.layer != AREALIGHT_NO_IMAGE) {
+    if (AREALIGHT_HAS_TEXTURED_POLYGONS && local.image.layer != AREALIGHT_NO_IMAGE) {
         ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);
         return AREALIGHT_SPLITS_IMAGES ? arealight_split_color(space, local, image, arealight_form_factor(vector))
                                        : arealight_footprint(image, vector);
