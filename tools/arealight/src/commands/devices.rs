@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::print;
 use arealight::kernels::{self, BindingKind};
-use arealight_host::{DeviceSummary, HostError, devices};
+use arealight_engine::host::{DeviceSummary, HostError, devices};
 use ash::vk::PhysicalDeviceLimits;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -143,7 +143,7 @@ fn to_json(device: &DeviceSummary) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight_host::DeviceKind;
+    use arealight_engine::host::DeviceKind;
 
     fn device(invocations: u32) -> DeviceSummary {
         DeviceSummary {
