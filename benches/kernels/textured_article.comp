@@ -24,7 +24,7 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #include "effects.glsl"
 #include "table_image.glsl"
 #include "polygon_lights.glsl"
-#include "cases.glsl"
+#include "../../tools/kernels/shaders/cases.glsl"
 
 vec3 article_color(mat3 space, ArealightLocalPolygon local) {
     ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);

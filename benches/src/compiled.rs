@@ -1,5 +1,5 @@
 //! What a GPU's compiler makes of the kernels: registers, waves, instructions, and its own estimate of cycles, beside yardsticks.
-//! Nothing runs, and no GPU is needed: [`arealight_host::null_hardware`].
+//! Nothing runs, and no GPU is needed: [`arealight_engine::host::null_hardware`].
 
 mod check;
 mod rows;
@@ -11,8 +11,8 @@ pub use check::{Check, Finding, OtherDriver, THROUGHPUT_TOLERANCE};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
 pub use text::{Markers, replace_section};
 
-use arealight_host::HostError;
-use arealight_host::null_hardware::{Compiler, Statistics};
+use arealight_engine::host::HostError;
+use arealight_engine::host::null_hardware::{Compiler, Statistics};
 use serde::{Deserialize, Serialize};
 
 /// Statistics of shaders on families of GPU.

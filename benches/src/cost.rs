@@ -6,8 +6,8 @@
 use crate::school::School;
 use arealight::FormFactor;
 use arealight::kernels::{Access, Binding, Kernel};
+use arealight_engine::host::{Buffer, Host};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
-use arealight_host::{Buffer, Host};
 use arealight_vk::Resource;
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -2,9 +2,9 @@
 
 use crate::method::Method;
 use arealight::kernels::{Access, Binding, Kernel};
+use arealight_cases::hard::HardCase;
+use arealight_engine::host::Host;
 use arealight_engine::{EngineError, Passes, SharedPass};
-use arealight_host::Host;
-use arealight_oracle::hard::HardCase;
 use arealight_vk::Resource;
 use bytemuck::{Pod, Zeroable};
 

@@ -23,10 +23,11 @@ pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
+use crate::budget::{Profile, ProfileLevel};
 use crate::textures::is_software;
-use arealight::{Effects, LightTable, Profile, ProfileLevel, Quality};
+use arealight::{Effects, LightTable, Quality};
+use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, GBuffer};
-use arealight_host::Host;
 use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
 use arealight_vk::TableFormat;
@@ -162,7 +163,7 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// What [`Quality::within`] picks from: the levels that are right everywhere, over quads and over lights that show images. One
+    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over lights that show images. One
     /// that gave no number, or was judged nowhere, is none of them.
     ///
     /// # Errors

@@ -3,8 +3,8 @@
 
 use crate::school::School;
 use arealight::FormFactor;
-use arealight_oracle::hard::HardCase;
-use arealight_oracle::hard::promise::Promises;
+use arealight_cases::hard::HardCase;
+use arealight_cases::hard::promise::Promises;
 
 /// A way to compute a form factor.
 #[derive(Debug, Clone, Copy)]

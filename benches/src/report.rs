@@ -2,7 +2,7 @@
 
 use crate::method::{METHODS, Method};
 use crate::stability::{Row, Stability};
-use arealight_oracle::hard::family::{Family, Scope};
+use arealight_cases::hard::family::{Family, Scope};
 use std::fmt::Write as _;
 
 /// The heads of a table's columns.

@@ -7,9 +7,9 @@
 use crate::cost::quantile;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
 use crate::svg::{Axis, Drawing, Labels, grid, label};
+use arealight_cases::hard::ellipse::Family;
+use arealight_engine::host::{Buffer, Host};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
-use arealight_host::{Buffer, Host};
-use arealight_oracle::ellipse::hard::Family;
 use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::tube::{Ends, Tube};
 use arealight_vk::Resource;
@@ -99,7 +99,7 @@ const REPEATS: u32 = 64;
 
 /// The disks, across the horizon.
 fn disks() -> Vec<Ellipse> {
-    let family = Family::find("crossing").unwrap_or(&arealight_oracle::ellipse::hard::FAMILIES[0]);
+    let family = Family::find("crossing").unwrap_or(&arealight_cases::hard::ellipse::FAMILIES[0]);
     (0..WORK_ITEMS as u64).map(|index| family.case(index)).collect()
 }
 

@@ -4,12 +4,13 @@
 use crate::shapes::{
     SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, sphere_arguments, tube_arguments,
 };
+use arealight_cases::hard::ellipse::{self as hard, nearby};
+use arealight_cases::hard::promise::MOVE;
+use arealight_engine::host::Host;
 use arealight_engine::{EngineError, Passes};
-use arealight_host::Host;
-use arealight_oracle::ellipse::{self, Ellipse, hard, nearby};
-use arealight_oracle::hard::promise::MOVE;
-use arealight_oracle::hard::stream::Stream;
+use arealight_oracle::ellipse::{self, Ellipse};
 use arealight_oracle::sphere::{self, Sphere};
+use arealight_oracle::stream::Stream;
 use arealight_oracle::tube::{self, Ends, Tube};
 use arealight_vk::Resource;
 use glam::{DMat3, DVec3};

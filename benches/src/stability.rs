@@ -3,11 +3,11 @@
 use crate::kernel::FormFactorKernel;
 use crate::method::{METHODS, Method};
 use arealight::LightTable;
+use arealight_cases::hard::HardCase;
+use arealight_cases::hard::family::{FAMILIES, Family, Scope};
+use arealight_cases::hard::judge::{Finding, Judged, Tally};
 use arealight_engine::EngineError;
-use arealight_host::Host;
-use arealight_oracle::hard::HardCase;
-use arealight_oracle::hard::family::{FAMILIES, Family, Scope};
-use arealight_oracle::hard::judge::{Finding, Judged, Tally};
+use arealight_engine::host::Host;
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! What every benchmark that prints a table begins with.
 
-use arealight_host::{Host, HostOptions};
+use arealight_engine::host::{Host, HostOptions};
 
 /// A device, and `rounds`; under `cargo test`, where a benchmark is only to be seen to run, one round. None, and a word of it,
 /// where there is no device.

@@ -6,10 +6,10 @@
 use crate::cost::quantile;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
 use arealight::{PyramidSize, TexturePart};
+use arealight_engine::host::{Host, Image, ImageDescription, Usage};
 use arealight_engine::{
     BoundSet, EngineError, Passes, SharedPass, SourceImage, SourceTexels, TextureArray, TextureSource,
 };
-use arealight_host::{Host, Image, ImageDescription, Usage};
 use arealight_vk::Resource;
 use ash::vk;
 use serde::Serialize;

@@ -11,8 +11,8 @@ use crate::textures::{clocked, is_software};
 use arealight::kernels::{Kernel, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
 use arealight::{Effects, PolygonLight, Shape, ShapeLight, TileClass};
+use arealight_engine::host::Host;
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
-use arealight_host::Host;
 use glam::{DVec3, Vec3, Vec4};
 use std::fmt::Write as _;
 

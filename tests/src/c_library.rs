@@ -12,7 +12,7 @@ use arealight_capi::{
     arealight_pass_pack_lights, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
     arealight_table_memory, arealight_table_upload,
 };
-use arealight_host::{Buffer, DescriptorPool, Image, Location, Usage};
+use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
 use std::ffi::{CStr, c_char, c_void};

@@ -2,11 +2,13 @@
 
 use crate::{Level, TestEngine};
 use arealight::PackedLights;
-use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
-use arealight::kernels::EVAL;
-use arealight::{Effects, Quality, plan};
+use arealight::gpu::GpuLight;
+use arealight::{Effects, Quality};
+use arealight_cases::hard::HardCase;
 use arealight_engine::{EvalPoint, gpu_case};
-use arealight_oracle::hard::HardCase;
+use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
+use arealight_tool_kernels::kernels::EVAL;
+use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use glam::DVec3;
 

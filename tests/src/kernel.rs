@@ -14,7 +14,7 @@ pub static PROBE: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        arealight::kernels::EVAL.bindings[0],
+        arealight::kernels::TABLE,
         Binding::storage_buffer("arguments", Access::Read, "vec4[3] a call"),
         Binding::storage_buffer("results", Access::Write, "vec4[4] a call"),
     ],

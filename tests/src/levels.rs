@@ -1,7 +1,7 @@
 //! The quality levels, by both kernels of a polygon.
 
 use arealight::{Effects, FormFactor, Horizon, Quality};
-use arealight_oracle::hard::promise::Promises;
+use arealight_cases::hard::promise::Promises;
 
 /// Which code integrates the polygon.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -21,7 +21,7 @@ pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
 pub use property::Property;
 
 use arealight_engine::Engine;
-use arealight_host::testing::TestHost;
+use arealight_engine::host::testing::TestHost;
 use arealight_vk::TableFormat;
 
 /// A device with the built-in table. Fields go in this order, so that the host hears what was left behind.
@@ -58,7 +58,7 @@ impl TestEngine {
     /// # Panics
     /// As [`TestEngine::new`].
     pub fn with_format(format: TableFormat) -> Option<Self> {
-        let host = arealight_host::testing::device_or_skip()?;
+        let host = arealight_engine::host::testing::device_or_skip()?;
         let engine =
             Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
         Some(Self { engine, host })

@@ -14,11 +14,12 @@
 //! edge really hangs on the last bits.
 
 use crate::{Cases, Level};
-use arealight::gpu::{GpuCase, GpuLight};
+use arealight::gpu::GpuLight;
 use arealight::table::{mirror_frame, share_above_surface};
 use arealight::{Horizon, LightTable};
+use arealight_cases::hard::edges::sum_edges;
 use arealight_oracle::frame::SurfaceFrame;
-use arealight_oracle::hard::edges::sum_edges;
+use arealight_tool_kernels::gpu::GpuCase;
 use glam::{DMat3, DVec3, DVec4};
 
 /// float32's unit in the last place.

@@ -3,7 +3,7 @@
 use crate::TestEngine;
 use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::{Effects, PolygonLight};
-use arealight_host::{Image, ImageDescription, Usage};
+use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;

@@ -2,7 +2,7 @@
 
 use arealight::{PolygonLight, Surface};
 use arealight_engine::EvalPoint;
-use arealight_oracle::hard::stream::Stream;
+use arealight_oracle::stream::Stream;
 use glam::{DVec3, Vec3};
 
 /// Random numbers, the same everywhere.

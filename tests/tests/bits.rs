@@ -1,11 +1,13 @@
 //! Every bit pattern gives a finite answer: the eval kernel is given buffers that no host would write, without
 //! the checks of the CPU side in between.
 
-use arealight::gpu::{EvalConstants, GpuCase, GpuLight};
-use arealight::kernels::EVAL;
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, PyramidSize, Quality, plan};
+use arealight::gpu::GpuLight;
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, PyramidSize, Quality};
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::{Random, TestEngine};
+use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
+use arealight_tool_kernels::kernels::EVAL;
+use arealight_tool_kernels::plan;
 use arealight_vk::{ComputePass, Resource};
 use glam::DVec3;
 

@@ -12,8 +12,8 @@ use arealight_capi::{
     arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
     arealight_textures_write_source_set,
 };
+use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
 use arealight_engine::{SourceImage, SourceTexels};
-use arealight_host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_LIGHT, good, refused};
 use arealight_tests::one_pixel::{self, OnePixel, lamp};

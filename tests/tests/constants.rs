@@ -39,7 +39,7 @@ const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.g
 const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/textures/footprint.glsl");
 const LIGHT_RECORDS_GLSL: &str = include_str!("../../shaders/kernels/light_records.glsl");
 const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/tube_outline.glsl");
-const SCENE_GLSL: &str = include_str!("../../shaders/kernels/scene.glsl");
+const SCENE_GLSL: &str = include_str!("../../tools/kernels/shaders/scene.glsl");
 const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
 const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
 const G_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/g_buffer.glsl");
@@ -87,7 +87,8 @@ fn every_effect_is_asked_for_and_no_other() {
 
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
-    use gpu::{GpuLight, GpuMaterial, GpuTexture};
+    use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
+    use gpu::{GpuLight, TextureLoadConstants as Load};
     let flags = [
         ("TWO_SIDED", GpuLight::TWO_SIDED.into()),
         ("FLAT", GpuLight::FLAT.into()),
@@ -109,8 +110,14 @@ fn flags_have_the_same_bits_in_glsl() {
         ("MIRROR_V", GpuTexture::MIRROR_V.into()),
     ];
     assert_constants(SCENE_GLSL, "TEXTURE_", &texture);
-    // A texture is loaded by the same bits
-    assert_constants(TEXTURE_LOAD_COMP, "LOAD_", &texture);
+    let load = [
+        ("SRGB", Load::SRGB.into()),
+        ("CLAMP_U", Load::CLAMP_U.into()),
+        ("CLAMP_V", Load::CLAMP_V.into()),
+        ("MIRROR_U", Load::MIRROR_U.into()),
+        ("MIRROR_V", Load::MIRROR_V.into()),
+    ];
+    assert_constants(TEXTURE_LOAD_COMP, "LOAD_", &load);
 }
 
 #[test]

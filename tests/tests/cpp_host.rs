@@ -4,7 +4,7 @@
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, PolygonLight, Shape, ShapeLight};
 use arealight_capi::AREALIGHT_ABI_VERSION;
-use arealight_host::{Image, ImageDescription, Usage};
+use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;

@@ -3,7 +3,7 @@
 
 use arealight::Footprint;
 use arealight_benches::footprints::{METHODS, Options, run};
-use arealight_host::testing::device_or_skip;
+use arealight_engine::host::testing::device_or_skip;
 use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Family};
 

@@ -2,8 +2,8 @@
 
 use arealight::plan::{PositionSource, ShadeOptions};
 use arealight::{Effects, PolygonLight, Quality};
+use arealight_engine::host::{Image, Usage};
 use arealight_engine::{EvalPoint, SceneRenderer};
-use arealight_host::{Image, Usage};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};

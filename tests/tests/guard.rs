@@ -1,11 +1,12 @@
 //! No NaN comes out, and no compiler may think otherwise: the last guard of a form factor compares bits as whole numbers,
 //! and is still there when the optimiser is done. Outputs are judged by their bits, before any clamp that hides a NaN.
 
-use arealight::kernels::{EVAL, Kernel, SHADE, constant};
+use arealight::kernels::{Kernel, SHADE, constant};
 use arealight::{Effects, FormFactor, Fresnel, Horizon};
 use arealight_tests::kernel::UNGUARDED;
 use arealight_tests::spirv::{tool, words};
 use arealight_tests::{Cases, Level, Path, TestEngine, glossy_surface, point};
+use arealight_tool_kernels::kernels::EVAL;
 use arealight_vk::Resource;
 use glam::DVec3;
 use rspirv::dr::{Instruction, Module, Operand};

@@ -2,10 +2,11 @@
 //! that every answer can be had on any.
 
 use arealight::Effects;
-use arealight::kernels::{SHADE, VISIBILITY};
+use arealight::kernels::SHADE;
 use arealight::plan::ShadeOptions;
-use arealight_host::Location;
+use arealight_engine::host::Location;
 use arealight_tests::TestEngine;
+use arealight_tool_kernels::kernels::VISIBILITY;
 use arealight_vk::{
     ComputePass, Context, Error, HostDevice, LightTextures, Resource, ShadeFrame, ShadePass, TableFormat,
     TableImage,
@@ -119,7 +120,7 @@ fn a_set_that_points_at_a_destroyed_table_is_refused() {
     // SAFETY: no submission uses the pass or the table; the set is new, and the layout the pass's. Nothing is recorded
     // where an error is returned.
     unsafe {
-        let pass = ComputePass::new(engine.context(), &arealight::kernels::EVAL, &[]).unwrap();
+        let pass = ComputePass::new(engine.context(), &arealight_tool_kernels::kernels::EVAL, &[]).unwrap();
         let mut table =
             TableImage::new(engine.context(), &arealight_table::ggx(), TableFormat::default()).unwrap();
         let memory = host.with_allocator(|allocator| table.allocate(allocator)).unwrap();

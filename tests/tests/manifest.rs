@@ -3,6 +3,7 @@
 
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
+use arealight_tool_kernels as tool;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
 use std::collections::BTreeMap;
@@ -185,7 +186,7 @@ macro_rules! layout {
 
 #[test]
 fn the_manifest_agrees_with_every_module() {
-    for kernel in kernels::ALL {
+    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
         compare(kernel, &module(kernel)).unwrap();
     }
 }
@@ -193,13 +194,13 @@ fn the_manifest_agrees_with_every_module() {
 #[test]
 fn the_comparison_can_fail() {
     // One kernel's manifest against another's module
-    assert!(compare(&kernels::SHADE, &module(&kernels::EVAL)).is_err());
+    assert!(compare(&kernels::SHADE, &module(&tool::kernels::EVAL)).is_err());
     // The right module, one binding's kind changed
     let swapped = Kernel {
-        bindings: vec![kernels::EVAL.bindings[1]; kernels::EVAL.bindings.len()].leak(),
-        ..copy(&kernels::EVAL)
+        bindings: vec![tool::kernels::EVAL.bindings[1]; tool::kernels::EVAL.bindings.len()].leak(),
+        ..copy(&tool::kernels::EVAL)
     };
-    assert!(compare(&swapped, &module(&kernels::EVAL)).unwrap_err().contains("SampledImage"));
+    assert!(compare(&swapped, &module(&tool::kernels::EVAL)).unwrap_err().contains("SampledImage"));
     // A binding that is said not to be used, and one that is not used
     for access in [Access::None, Access::Read] {
         let bindings = kernels::CLASSIFY.bindings.iter().map(|binding| match binding.access {
@@ -211,7 +212,7 @@ fn the_comparison_can_fail() {
         assert!(compare(&changed, &module(&kernels::CLASSIFY)).unwrap_err().contains("the module binds"));
     }
     // Two bindings of one kind in each other's place: buffers, then images
-    for (kernel, one, other) in [(&kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
+    for (kernel, one, other) in [(&tool::kernels::EVAL, 1, 2), (&kernels::SHADE, 4, 5)] {
         let mut bindings = kernel.bindings.to_vec();
         bindings.swap(one, other);
         let swapped = Kernel { bindings: Box::leak(bindings.into()), ..copy(kernel) };
@@ -219,10 +220,10 @@ fn the_comparison_can_fail() {
         assert!(error.ends_with(&format!("is named '{}'", kernel.bindings[one].name)), "{error}");
     }
     // Another group size, another constant
-    let resized = Kernel { local_size: [32, 1, 1], ..copy(&kernels::EVAL) };
-    assert!(compare(&resized, &module(&kernels::EVAL)).unwrap_err().contains("local size"));
-    let constants = Kernel { constants: &[0], ..copy(&kernels::EVAL) };
-    assert!(compare(&constants, &module(&kernels::EVAL)).unwrap_err().contains("constants"));
+    let resized = Kernel { local_size: [32, 1, 1], ..copy(&tool::kernels::EVAL) };
+    assert!(compare(&resized, &module(&tool::kernels::EVAL)).unwrap_err().contains("local size"));
+    let constants = Kernel { constants: &[0], ..copy(&tool::kernels::EVAL) };
+    assert!(compare(&constants, &module(&tool::kernels::EVAL)).unwrap_err().contains("constants"));
 }
 
 fn copy(kernel: &Kernel) -> Kernel {
@@ -255,8 +256,8 @@ fn light_layout() -> Vec<(String, u32)> {
 #[test]
 fn every_structure_has_the_same_offsets() {
     let shade = module(&kernels::SHADE);
-    let eval = module(&kernels::EVAL);
-    let visibility = module(&kernels::VISIBILITY);
+    let eval = module(&tool::kernels::EVAL);
+    let visibility = module(&tool::kernels::VISIBILITY);
     let light = light_layout();
     for (kernel, structure, expected) in [
         (&shade, "ArealightGpuLight", light.clone()),
@@ -266,30 +267,30 @@ fn every_structure_has_the_same_offsets() {
             "ShadeConstants",
             layout!(gpu::ShadeConstants, position_from_clip, camera, light_count, shape_count, quad_count),
         ),
-        (&eval, "EvalConstants", layout!(gpu::EvalConstants, case_count)),
+        (&eval, "EvalConstants", layout!(tool::gpu::EvalConstants, case_count)),
         (
             &eval,
             "ArealightGpuCase",
-            layout!(gpu::GpuCase, normal, roughness, view, f90, diffuse_albedo, light, f0,
+            layout!(tool::gpu::GpuCase, normal, roughness, view, f90, diffuse_albedo, light, f0,
                                             reserved as "reserved0"),
         ),
         (
             &visibility,
             "ArealightGpuBvhNode",
-            layout!(gpu::GpuBvhNode, min as "min_corner", first,
+            layout!(tool::gpu::GpuBvhNode, min as "min_corner", first,
                                                      max as "max_corner", count),
         ),
         (
             &visibility,
             "ArealightGpuTriangle",
-            layout!(gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
+            layout!(tool::gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
                                                       u1, n2, u2, v2, reserved as "reserved0"),
         ),
         (
             &visibility,
             "ArealightGpuMaterial",
             layout!(
-                gpu::GpuMaterial,
+                tool::gpu::GpuMaterial,
                 base_color,
                 metalness,
                 emission,
@@ -306,12 +307,16 @@ fn every_structure_has_the_same_offsets() {
                 emission_texture
             ),
         ),
-        (&visibility, "ArealightGpuTexture", layout!(gpu::GpuTexture, first_texel, width, height, flags)),
+        (
+            &visibility,
+            "ArealightGpuTexture",
+            layout!(tool::gpu::GpuTexture, first_texel, width, height, flags),
+        ),
         (
             &visibility,
             "VisibilityConstants",
             layout!(
-                gpu::VisibilityConstants,
+                tool::gpu::VisibilityConstants,
                 camera,
                 node_count,
                 right,
@@ -366,7 +371,7 @@ fn the_structures_of_tiles_have_the_same_offsets() {
 
 #[test]
 fn the_reference_s_structures_have_the_same_offsets() {
-    let reference = module(&kernels::REFERENCE);
+    let reference = module(&tool::kernels::REFERENCE);
     let light = light_layout();
     for (kernel, structure, expected) in [
         (&reference, "ArealightGpuLight", light),
@@ -374,7 +379,7 @@ fn the_reference_s_structures_have_the_same_offsets() {
             &reference,
             "ReferenceConstants",
             layout!(
-                gpu::ReferenceConstants,
+                tool::gpu::ReferenceConstants,
                 camera,
                 light_count,
                 first_sample,
@@ -387,13 +392,13 @@ fn the_reference_s_structures_have_the_same_offsets() {
         (
             &reference,
             "ArealightGpuLightSampling",
-            layout!(gpu::GpuLightSampling, normal, area, first_triangle,
+            layout!(tool::gpu::GpuLightSampling, normal, area, first_triangle,
                                                           triangle_count, reserved as "reserved0"),
         ),
         (
             &reference,
             "ArealightGpuLightTriangle",
-            layout!(gpu::GpuLightTriangle, vertices as "vertex0",
+            layout!(tool::gpu::GpuLightTriangle, vertices as "vertex0",
                                                           cumulative),
         ),
     ] {
@@ -404,11 +409,11 @@ fn the_reference_s_structures_have_the_same_offsets() {
 #[test]
 fn shapes_have_the_same_offsets() {
     let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, detail, axis_v, flags);
-    for kernel in [&kernels::SHADE, &kernels::EVAL_SHAPES, &kernels::REFERENCE] {
+    for kernel in [&kernels::SHADE, &tool::kernels::EVAL_SHAPES, &tool::kernels::REFERENCE] {
         assert_offsets(&module(kernel), "ArealightGpuShape", &shape);
     }
-    let constants = layout!(gpu::EvalConstants, case_count);
-    assert_offsets(&module(&kernels::EVAL_SHAPES), "EvalConstants", &constants);
+    let constants = layout!(tool::gpu::EvalConstants, case_count);
+    assert_offsets(&module(&tool::kernels::EVAL_SHAPES), "EvalConstants", &constants);
 }
 
 #[test]
@@ -442,16 +447,16 @@ fn assert_offsets(module: &Module, structure: &str, expected: &[(String, u32)]) 
 fn array_strides_are_the_sizes_in_rust() {
     for (kernel, buffer, size) in [
         (&kernels::SHADE, "lights", size_of::<gpu::GpuLight>()),
-        (&kernels::EVAL, "cases", size_of::<gpu::GpuCase>()),
-        (&kernels::EVAL_SHAPES, "cases", size_of::<gpu::GpuCase>()),
-        (&kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
+        (&tool::kernels::EVAL, "cases", size_of::<tool::gpu::GpuCase>()),
+        (&tool::kernels::EVAL_SHAPES, "cases", size_of::<tool::gpu::GpuCase>()),
+        (&tool::kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
         (&kernels::SHADE, "shapes", size_of::<gpu::GpuShape>()),
-        (&kernels::REFERENCE, "light_sampling", size_of::<gpu::GpuLightSampling>()),
-        (&kernels::REFERENCE, "light_triangles", size_of::<gpu::GpuLightTriangle>()),
-        (&kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
-        (&kernels::VISIBILITY, "triangles", size_of::<gpu::GpuTriangle>()),
-        (&kernels::VISIBILITY, "materials", size_of::<gpu::GpuMaterial>()),
-        (&kernels::VISIBILITY, "textures", size_of::<gpu::GpuTexture>()),
+        (&tool::kernels::REFERENCE, "light_sampling", size_of::<tool::gpu::GpuLightSampling>()),
+        (&tool::kernels::REFERENCE, "light_triangles", size_of::<tool::gpu::GpuLightTriangle>()),
+        (&tool::kernels::VISIBILITY, "nodes", size_of::<tool::gpu::GpuBvhNode>()),
+        (&tool::kernels::VISIBILITY, "triangles", size_of::<tool::gpu::GpuTriangle>()),
+        (&tool::kernels::VISIBILITY, "materials", size_of::<tool::gpu::GpuMaterial>()),
+        (&tool::kernels::VISIBILITY, "textures", size_of::<tool::gpu::GpuTexture>()),
     ] {
         let module = module(kernel);
         let number =
@@ -466,7 +471,7 @@ fn array_strides_are_the_sizes_in_rust() {
 
 #[test]
 fn push_constants_have_the_size_in_the_manifest() {
-    for kernel in kernels::ALL {
+    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
         let module = module(kernel);
         let block = module
             .types_global_values

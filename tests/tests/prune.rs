@@ -133,7 +133,7 @@ fn check_valid(module: &[u32], what: &str) {
 
 #[test]
 fn every_kernel_stays_valid_however_it_is_specialised() {
-    for kernel in kernels::ALL {
+    for kernel in kernels::ALL.into_iter().chain(arealight_tool_kernels::kernels::ALL) {
         let whole = kernel.words();
         for specialization in specializations(kernel) {
             let pruned = prune(&whole, &specialization);

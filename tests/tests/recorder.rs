@@ -1,9 +1,10 @@
 //! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
 
-use arealight::kernels::{self, EVAL, SHADE, constant};
+use arealight::kernels::{self, SHADE, constant};
 use arealight::plan::{PositionSource, ShadeOptions};
 use arealight::{Effects, LightError, PolygonLight};
 use arealight_tests::TestEngine;
+use arealight_tool_kernels::kernels::EVAL;
 use arealight_vk::{ComputePass, Error, Resource, ShadeFrame, ShadePass, TableFormat, TableImage};
 use ash::vk;
 use glam::{DVec3, Mat4, Vec3};
@@ -183,7 +184,7 @@ fn a_table_image_without_memory_is_refused() {
 #[test]
 fn every_kernel_makes_a_pipeline_with_every_constant() {
     let Some(engine) = TestEngine::new() else { return };
-    for kernel in kernels::ALL {
+    for kernel in kernels::ALL.into_iter().chain(arealight_tool_kernels::kernels::ALL) {
         for value in [0, 1] {
             let constants: Vec<_> = kernel.constants.iter().map(|&id| (id, value)).collect();
             // SAFETY: No submission uses it.

@@ -1,7 +1,7 @@
 //! A window that is resized: frames of several sizes are in flight by one pass, and nothing waits for another.
 
 use arealight_engine::Kept;
-use arealight_host::{DescriptorPool, Image, ImageDescription, Usage};
+use arealight_engine::host::{DescriptorPool, Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
 use arealight_tests::one_pixel::{self, BEFORE, lamp};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};

@@ -3,8 +3,8 @@
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightTable, Material, Quality, Shape, ShapeLight, TubeEnds};
 use arealight_benches::pictures;
+use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_engine::{Engine, SceneRenderer};
-use arealight_host::{Image, ImageDescription, Usage};
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers, SceneMaterial, Triangle};

@@ -2,10 +2,10 @@
 //! against the oracle's fitted lobes.
 
 use arealight::{FormFactor, Fresnel, Horizon, Quality, Shape, ShapeKind};
+use arealight_cases::answers::read_answers;
+use arealight_cases::cases::{CaseMaterial, ShapeCase, read_cases};
+use arealight_cases::measure::relative_error;
 use arealight_engine::ShapePoint;
-use arealight_oracle::answers::read_answers;
-use arealight_oracle::cases::{CaseMaterial, ShapeCase, read_cases};
-use arealight_oracle::measure::relative_error;
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_tests::{Comparison, TestEngine};
 use glam::{DVec3, Vec3};

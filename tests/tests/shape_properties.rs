@@ -1,6 +1,6 @@
 //! What must hold of ellipses and spheres whatever they are: invariances, inclusion, continuity, and any bits.
 
-use arealight_oracle::ellipse::hard::{FAMILIES, Family, rounded};
+use arealight_cases::hard::ellipse::{FAMILIES, Family, rounded};
 use arealight_oracle::ellipse::{Ellipse, form_factor, vector_form_factor};
 use arealight_oracle::polygon;
 use arealight_tests::shapes::{ShapeArguments, ShapeFunction, ellipse_arguments};

@@ -1,8 +1,8 @@
 //! Ellipses and spheres on the device against float64, over the families that are hard for float32.
 
-use arealight_oracle::ellipse::hard::{FAMILIES, Family};
-use arealight_oracle::ellipse::{Ellipse, form_factor, nearby};
-use arealight_oracle::hard::promise::MOVE;
+use arealight_cases::hard::ellipse::{FAMILIES, Family, nearby};
+use arealight_cases::hard::promise::MOVE;
+use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::sphere::{self, Sphere};
 use arealight_tests::shapes::{ShapeFunction, ellipse_arguments, sphere_arguments};
 use arealight_tests::{Comparison, Random, TestEngine};

@@ -5,17 +5,17 @@ use arealight_benches::kernel::FormFactorKernel;
 use arealight_benches::method::{METHODS, Method};
 use arealight_benches::shape_stability::{self, ShapeRow};
 use arealight_benches::stability::{Options, Stability, run};
-use arealight_host::testing::device_or_skip;
-use arealight_oracle::hard::HardCase;
-use arealight_oracle::hard::family::{FAMILIES, Family};
-use arealight_oracle::hard::judge::{Judged, Tally};
-use arealight_oracle::hard::promise::Promise;
+use arealight_cases::hard::HardCase;
+use arealight_cases::hard::family::{FAMILIES, Family};
+use arealight_cases::hard::judge::{Judged, Tally};
+use arealight_cases::hard::promise::Promise;
+use arealight_engine::host::testing::device_or_skip;
 use std::collections::BTreeSet;
 
 /// Cases of each family.
 const SAMPLES: u64 = 400;
 
-fn short(host: &arealight_host::Host, methods: impl Fn(&&Method) -> bool) -> Stability {
+fn short(host: &arealight_engine::host::Host, methods: impl Fn(&&Method) -> bool) -> Stability {
     let methods = METHODS.iter().filter(methods).collect();
     let options = Options { samples: SAMPLES, methods, ..Options::default() };
     run(host, &arealight_table::ggx(), &options, &|_| {}).unwrap()

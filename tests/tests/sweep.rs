@@ -1,12 +1,13 @@
 //! A light sweeps through a floor, through a point that is shaded, and past the horizon, through the whole shade pass: each
 //! frame is what float64 says, and none jumps from the one before.
 
-use arealight::gpu::{GpuCase, GpuLight};
+use arealight::gpu::GpuLight;
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, Horizon, LightTable, Material, PackedLights, PolygonLight};
-use arealight_host::{Image, ImageDescription, Usage};
+use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{Cases, Comparison, Level, Path, TestEngine};
+use arealight_tool_kernels::gpu::GpuCase;
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DQuat, DVec3, Vec3};

@@ -1,11 +1,11 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
 use arealight::Effects;
-use arealight::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use arealight_engine::SceneRenderer;
-use arealight_host::Usage;
+use arealight_engine::host::Usage;
 use arealight_scene::SceneBuffers;
 use arealight_tests::{Comparison, Random, TestEngine};
+use arealight_tool_kernels::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::DVec3;
 
 /// For each texture coordinate a triangle before the pixel of a row of pixels, with that coordinate all over.

@@ -7,7 +7,7 @@ use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
 use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality, TileClass};
-use arealight_host::null_hardware::ComputeShader;
+use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
 use ash::vk;
 

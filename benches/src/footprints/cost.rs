@@ -3,11 +3,12 @@
 use super::{EFFECTS, METHODS, untextured};
 use crate::cost::quantile;
 use crate::textures::{is_software, timed};
-use arealight::gpu::EvalConstants;
 use arealight::kernels::Kernel;
-use arealight::{Effects, PackedLights, Quality, plan};
+use arealight::{Effects, PackedLights, Quality};
+use arealight_engine::host::Buffer;
 use arealight_engine::{BoundSet, Engine, EngineError, EvalPoint, SharedPass, gpu_case};
-use arealight_host::Buffer;
+use arealight_tool_kernels::gpu::EvalConstants;
+use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use serde::Serialize;
 

@@ -4,7 +4,7 @@
 //! anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
 
 use arealight::{LightTexture, Material, PolygonLight, Surface};
-use arealight_oracle::hard::stream::Stream;
+use arealight_oracle::stream::Stream;
 use glam::{DVec2, DVec3, Vec3};
 use half::f16;
 use std::f64::consts::TAU;

@@ -71,7 +71,7 @@ impl Reference {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight_oracle::hard::stream::Stream;
+    use arealight_oracle::stream::Stream;
 
     const PIXELS: usize = 4000;
 

@@ -9,9 +9,6 @@
 //! contact at a millionth, relative to the ellipse as given; for far ellipses 1e-12 of what one that faces the origin sends. [`contour_form_factor`] 1e-12, where its subdivision
 //! suffices (rims down to 1e-6 of the size away).
 
-pub mod hard;
-pub mod nearby;
-
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 

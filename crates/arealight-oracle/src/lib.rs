@@ -8,7 +8,6 @@
 //! |---|---|
 //! | [`frame`] | the surface frame of a normal and a view |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
-//! | [`hard`] | polygons that break form factors in float32, with their truth in 106 bits |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`ellipse`] | the clamped cosine over an ellipse, which is a disk light, in closed form and by quadrature |
@@ -17,21 +16,16 @@
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
 //! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
 //! | [`texture`] | what a textured light shows, its blur, and the prefilter's pyramid |
-//! | [`cases`] | files of shading points |
-//! | [`answers`] | files of answers and of known radiance |
-//! | [`measure`] | how far answers lie from the truth |
+//! | [`stream`] | random numbers, the same on every machine |
 
-pub mod answers;
-pub mod cases;
 pub mod cubature;
 pub mod ellipse;
 pub mod frame;
 pub mod ggx;
-pub mod hard;
 pub mod ltsd;
-pub mod measure;
 pub mod polygon;
 pub mod shading;
 pub mod sphere;
+pub mod stream;
 pub mod texture;
 pub mod tube;

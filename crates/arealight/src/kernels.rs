@@ -90,47 +90,56 @@ const fn write(name: &'static str, kind: BindingKind, access: Access, content: &
     Binding { name, kind, access, content }
 }
 
-const TABLE: Binding = read(
+/// The light table, of every kernel that looks lobes up.
+pub const TABLE: Binding = read(
     "table_image",
     BindingKind::SampledImage,
     "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix; rgba16f or \
      rgba32f",
 );
-const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
-const LIGHT_VERTICES: Binding =
+/// Polygon lights.
+pub const LIGHTS: Binding = read("lights", BindingKind::StorageBuffer, "GpuLight[]");
+/// Polygon lights' vertices.
+pub const LIGHT_VERTICES: Binding =
     read("light_vertices", BindingKind::StorageBuffer, "vec4[]: position relative to the light's center, 0");
-const G_POSITION: Binding = read(
+/// Positions of a G-buffer.
+pub const G_POSITION: Binding = read(
     "g_position",
     BindingKind::SampledImage,
     "position relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f)",
 );
-const G_NORMAL: Binding = read(
+/// Normals and roughness of a G-buffer.
+pub const G_NORMAL: Binding = read(
     "g_normal",
     BindingKind::SampledImage,
     "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors); the shade kernel: by \
      GBufferLayout",
 );
-const G_BASE_COLOR: Binding = read(
+/// Base colour and metalness of a G-buffer.
+pub const G_BASE_COLOR: Binding = read(
     "g_base_color",
     BindingKind::SampledImage,
     "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves); the shade kernel: by \
      GBufferLayout",
 );
-const G_SPECULAR: Binding = read(
+/// Dielectric reflectance of a G-buffer.
+pub const G_SPECULAR: Binding = read(
     "g_specular",
     BindingKind::SampledImage,
     "dielectric F0 in rgb, dielectric F90 in a (rgba8 unorm); read only with Effects::SPECULAR_INPUT, \
      else bind any image; the shade kernel: by GBufferLayout",
 );
 
-const LIGHT_TEXTURES: Binding = read(
+/// Lights' textures.
+pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
     BindingKind::FilteredImage,
     "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only with \
      Effects::IMAGES, else bind any 2D array image",
 );
 
-const SHAPES: Binding = read(
+/// Disks, spheres and tubes.
+pub const SHAPES: Binding = read(
     "shapes",
     BindingKind::StorageBuffer,
     "GpuShape[]; the shade kernel reads it only with Effects::SHAPES, else bind any buffer",
@@ -262,82 +271,6 @@ pub static SHADE_TILES: Kernel = Kernel {
     ],
 };
 
-/// The shade kernel's functions over a list of shading points. Push constants: [`crate::gpu::EvalConstants`].
-pub static EVAL: Kernel = Kernel {
-    name: "eval",
-    spirv: include_bytes!("../spirv/eval.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: size_of::<crate::gpu::EvalConstants>() as u32,
-    bindings: &[
-        TABLE,
-        LIGHTS,
-        LIGHT_VERTICES,
-        read("cases", BindingKind::StorageBuffer, "GpuCase[]"),
-        write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
-        LIGHT_TEXTURES,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::FORM_FACTOR,
-        constant::HORIZON,
-        constant::FRESNEL,
-        constant::LOBES,
-        constant::FOOTPRINT,
-    ],
-};
-
-/// As [`EVAL`], of disks, spheres and tubes. Push constants: [`crate::gpu::EvalConstants`].
-pub static EVAL_SHAPES: Kernel = Kernel {
-    name: "eval_shapes",
-    spirv: include_bytes!("../spirv/eval_shapes.spv"),
-    local_size: [64, 1, 1],
-    push_constant_size: size_of::<crate::gpu::EvalConstants>() as u32,
-    bindings: &[
-        TABLE,
-        read("shapes", BindingKind::StorageBuffer, "GpuShape[]"),
-        read("cases", BindingKind::StorageBuffer, "GpuCase[], whose light is a shape's index"),
-        write("results", BindingKind::StorageBuffer, Access::Write, "vec4[]: radiance, 0"),
-        LIGHT_TEXTURES,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::FORM_FACTOR,
-        constant::HORIZON,
-        constant::FRESNEL,
-        constant::LOBES,
-        constant::FOOTPRINT,
-        constant::SHAPE,
-    ],
-};
-
-/// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:
-/// [`crate::gpu::ReferenceConstants`].
-pub static REFERENCE: Kernel = Kernel {
-    name: "reference",
-    spirv: include_bytes!("../spirv/reference.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ReferenceConstants>() as u32,
-    bindings: &[
-        LIGHTS,
-        LIGHT_VERTICES,
-        read("light_sampling", BindingKind::StorageBuffer, "GpuLightSampling[], one a light"),
-        read("light_triangles", BindingKind::StorageBuffer, "GpuLightTriangle[]"),
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        write(
-            "radiance_image",
-            BindingKind::StorageImage,
-            Access::ReadWrite,
-            "the dispatch's weighted mean is added (rgba32f)",
-        ),
-        LIGHT_TEXTURES,
-        SHAPES,
-    ],
-    constants: &[],
-};
-
 /// Loads a part of an image into level 0 of a layer of the light textures; an item a texel of the level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel {
     name: "texture_load",
@@ -370,50 +303,8 @@ pub static TEXTURE_BLUR: Kernel = Kernel {
     constants: &[constant::RADIUS],
 };
 
-/// Finds the surface that each pixel sees, by walking a hierarchy of triangles, and writes a G-buffer. For
-/// our own tools and tests: a host brings its own. Push constants: [`crate::gpu::VisibilityConstants`].
-pub static VISIBILITY: Kernel = Kernel {
-    name: "visibility",
-    spirv: include_bytes!("../spirv/visibility.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::VisibilityConstants>() as u32,
-    bindings: &[
-        read("nodes", BindingKind::StorageBuffer, "GpuBvhNode[]"),
-        read("triangles", BindingKind::StorageBuffer, "GpuTriangle[]"),
-        read("materials", BindingKind::StorageBuffer, "GpuMaterial[]"),
-        read("textures", BindingKind::StorageBuffer, "GpuTexture[]"),
-        read("texels", BindingKind::StorageBuffer, "uint[]: RGBA8, red in the low byte"),
-        write(
-            "out_position",
-            BindingKind::StorageImage,
-            Access::Write,
-            "g_position of the shade kernel (rgba32f)",
-        ),
-        write(
-            "out_normal",
-            BindingKind::StorageImage,
-            Access::Write,
-            "g_normal of the shade kernel (rgba32f)",
-        ),
-        write("out_base_color", BindingKind::StorageImage, Access::Write, "g_base_color (rgba16f)"),
-        write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba32f)"),
-        write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
-    ],
-    constants: &[],
-};
-
 /// Every kernel.
-pub static ALL: [&Kernel; 9] = [
-    &SHADE,
-    &CLASSIFY,
-    &SHADE_TILES,
-    &EVAL,
-    &EVAL_SHAPES,
-    &REFERENCE,
-    &TEXTURE_LOAD,
-    &TEXTURE_BLUR,
-    &VISIBILITY,
-];
+pub static ALL: [&Kernel; 5] = [&SHADE, &CLASSIFY, &SHADE_TILES, &TEXTURE_LOAD, &TEXTURE_BLUR];
 
 #[cfg(test)]
 mod tests {

@@ -24,24 +24,20 @@
 //! | [`light_texture`] | what a light shows |
 //! | [`texture_part`] | which part of an image becomes one |
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
-//! | [`light_sampling`] | what the Monte Carlo reference needs of them |
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what a scene calls for, and nothing else |
 //! | [`quality`] | the quality levels |
-//! | [`budget`] | levels picked by what was measured on a device |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
 //! | [`tiles`] | tiles of a picture, sorted by the lights that matter to them |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
-pub mod budget;
 pub mod effects;
 pub mod gpu;
 pub mod holes;
 pub mod kernels;
 pub mod light;
-pub mod light_sampling;
 pub mod light_texture;
 pub mod material;
 pub mod mesh;
@@ -54,13 +50,11 @@ pub mod table;
 pub mod texture_part;
 pub mod tiles;
 
-pub use budget::{Budget, BudgetError, FrameLoad, Limit, Profile, ProfileLevel};
 pub use effects::{Effects, UnknownEffect};
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;
 pub use holes::HoleError;
 pub use light::{LightError, PolygonLight};
-pub use light_sampling::LightSampling;
 pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
 pub use mesh::FaceError;

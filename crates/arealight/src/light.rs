@@ -254,29 +254,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn triangles_cover_a_concave_polygon_once() {
-        let light = arrow();
-        let area: DVec3 = light
-            .triangles()
-            .chunks_exact(3)
-            .map(|t| {
-                let [a, b, c] = [0, 1, 2].map(|i| light.vertices[t[i] as usize]);
-                let area = (b - a).cross(c - a) * 0.5;
-                assert!(area.z > 0.0, "every triangle faces the light's front");
-                area
-            })
-            .sum();
-        assert!((area - light.area_vector()).length() < 1e-12);
-    }
-
-    #[test]
-    fn degenerate_polygons_have_no_triangles() {
-        let mut light = arrow();
-        light.vertices = vec![DVec3::ONE; 4];
-        assert!(light.triangles().is_empty());
-    }
-
-    #[test]
     fn bad_lights_are_named_and_refused() {
         let mut light = arrow();
         light.vertices.truncate(2);

@@ -59,8 +59,7 @@ impl PolygonLight {
     pub const MAX_FACE: u32 = 1 << 24;
 
     /// A light of the triangles of a mesh, each a face: `triangles` are indices into `positions`, three a triangle, counter-clockwise from the
-    /// front. Those without an area are left out. Coplanar neighbours cost less as one face of several vertices
-    /// (`arealight-scene` merges those of a file).
+    /// front. Those without an area are left out. Coplanar neighbours cost less as one face of several vertices.
     ///
     /// ```
     /// # use arealight::PolygonLight;
@@ -327,6 +326,6 @@ mod tests {
         // No number of faces panics before it is checked
         let unchecked = PolygonLight { faces: vec![9, 9], ..squares() };
         assert_eq!(unchecked.outlines().map(<[_]>::len).collect::<Vec<_>>(), [8, 0]);
-        assert!(unchecked.center().is_finite() && unchecked.triangles().len() <= 18);
+        assert!(unchecked.center().is_finite());
     }
 }

@@ -4,7 +4,7 @@
 use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality, ShapeKind, TileClass};
+use crate::{Effects, Quality, TileClass};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -257,27 +257,6 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     ]
 }
 
-/// The eval pass: the shade kernel's functions over a list of `case_count` shading points.
-pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {
-    let mut specialization = lobe_specialization(effects, quality);
-    specialization.push((kernels::constant::FOOTPRINT, quality.footprint as u32));
-    Dispatch { kernel: &kernels::EVAL, specialization, groups: kernels::EVAL.groups_for([case_count, 1, 1]) }
-}
-
-/// As [`eval`], of shapes that are all of one kind, or of [`ShapeKind::Any`].
-pub fn eval_shapes(effects: Effects, quality: Quality, kind: ShapeKind, case_count: u32) -> Dispatch {
-    let mut specialization = lobe_specialization(effects, quality);
-    specialization.extend([
-        (kernels::constant::FOOTPRINT, quality.footprint as u32),
-        (kernels::constant::SHAPE, kind as u32),
-    ]);
-    Dispatch {
-        kernel: &kernels::EVAL_SHAPES,
-        specialization,
-        groups: kernels::EVAL_SHAPES.groups_for([case_count, 1, 1]),
-    }
-}
-
 /// The pass that loads an image into a layer of light textures of `size`, with constants that are made by
 /// [`crate::TexturePart::load_constants`].
 pub fn texture_load(size: PyramidSize, constants: &TextureLoadConstants) -> Dispatch {
@@ -366,7 +345,6 @@ mod tests {
     fn groups_cover_every_pixel() {
         let dispatch = shade(ShadeOptions::all(), 17, 8);
         assert_eq!(dispatch.groups, [3, 1, 1]);
-        assert_eq!(eval(Effects::all(), Quality::default(), 65).groups, [2, 1, 1]);
         let size = PyramidSize::new(128, 64).unwrap();
         let constants = TexturePart::default().load_constants([128, 64], size, 0, false).unwrap();
         assert_eq!(texture_load(size, &constants).groups, [4, 32, 1]);

@@ -1,10 +1,10 @@
 //! The example engines on a validated device with nothing optional enabled.
 
+use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::deferred::Deferred;
 use arealight_examples::forward::Forward;
 use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu};
 use arealight_examples::picture::Picture;
-use arealight_host::testing::instance_or_skip;
 use ash::vk;
 use std::process::Command;
 

@@ -1,9 +1,9 @@
 //! The program in a window, on a screen of its own: what is seen is what the engine draws, and the validation layer is silent.
 
+use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::command_line::FRAME_RATE;
 use arealight_examples::deferred::Deferred;
 use arealight_examples::gpu::Gpu;
-use arealight_host::testing::instance_or_skip;
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};

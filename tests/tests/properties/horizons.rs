@@ -54,7 +54,9 @@ pub fn a_light_rises_without_a_jump(engine: &TestEngine, levels: &[Level]) {
                     GpuLight { flags: GpuLight::TWO_SIDED, ..light }
                 })
                 .collect();
-            given.cases = (0..=STEPS as u32).map(|light| arealight::gpu::GpuCase { light, ..case }).collect();
+            given.cases = (0..=STEPS as u32)
+                .map(|light| arealight_tool_kernels::gpu::GpuCase { light, ..case })
+                .collect();
             let factors = engine.factors(&given, Effects::DIFFUSE, level);
             let jump = factors.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
             let rise = factors[STEPS] - factors[0];

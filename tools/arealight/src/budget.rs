@@ -1,7 +1,7 @@
 //! Levels by what was measured, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Budget, FrameLoad, Limit, ProfileLevel, Quality};
+use arealight_benches::budget::{Budget, FrameLoad, Limit, ProfileLevel};
 use arealight_benches::ladder::Ladder;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ impl BudgetArguments {
             let (path, of) = (path.display(), &profile.device);
             eprintln!("warning: {path}: was measured on '{of}', and this is '{device}': times will differ");
         }
-        let picked = Quality::within(Budget { frame, limit }, &profile);
+        let picked = profile.within(Budget { frame, limit });
         picked.map(Some).map_err(|error| Failure::Argument { argument, message: error.to_string() })
     }
 }

@@ -38,7 +38,7 @@ fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
 /// Whether there is a device; without one, the test is skipped unless one is required. Counted like the other
 /// tests that need a device.
 fn device() -> bool {
-    arealight_host::testing::device_with(arealight_host::Validation::Off).is_some()
+    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
 }
 
 #[test]

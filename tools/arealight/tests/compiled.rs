@@ -2,8 +2,8 @@
 
 mod common;
 
-use arealight_host::null_hardware::set_environment;
-use arealight_host::testing::{radv_or_skip, ran, skip};
+use arealight_engine::host::null_hardware::set_environment;
+use arealight_engine::host::testing::{radv_or_skip, ran, skip};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

@@ -26,7 +26,7 @@ fn text(bytes: &[u8]) -> String {
 
 /// Whether there is a device; without one, the test is skipped unless one is required.
 fn device() -> bool {
-    arealight_host::testing::device_with(arealight_host::Validation::Off).is_some()
+    arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_some()
 }
 
 fn json(path: impl AsRef<Path>) -> Value {

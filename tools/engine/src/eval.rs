@@ -1,9 +1,10 @@
 //! Shading points one by one, by the same GLSL as the shade pass.
 
 use crate::{Engine, EngineError};
-use arealight::gpu::{EvalConstants, GpuCase};
 use arealight::kernels::Kernel;
-use arealight::{Effects, PackedLights, PolygonLight, Quality, Surface, plan};
+use arealight::{Effects, PackedLights, PolygonLight, Quality, Surface};
+use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
+use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 
@@ -51,7 +52,7 @@ impl Engine {
     }
 
     /// As [`Engine::eval`], by a kernel of one's own that has the bindings and constants of
-    /// [`arealight::kernels::EVAL`].
+    /// [`arealight_tool_kernels::kernels::EVAL`].
     ///
     /// # Errors
     /// As [`Engine::eval`].

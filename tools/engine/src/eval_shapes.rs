@@ -2,8 +2,10 @@
 
 use crate::eval::surface_case;
 use crate::{Engine, EngineError};
-use arealight::gpu::{GpuCase, GpuShape};
-use arealight::{Effects, Quality, ShapeKind, ShapeLight, Surface, plan};
+use arealight::gpu::GpuShape;
+use arealight::{Effects, Quality, ShapeKind, ShapeLight, Surface};
+use arealight_tool_kernels::gpu::GpuCase;
+use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 

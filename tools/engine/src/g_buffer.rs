@@ -1,7 +1,7 @@
 //! The engine's own G-buffer, in the layout that the shade kernel reads.
 
+use crate::host::{Image, ImageDescription, Usage};
 use crate::{Engine, EngineError};
-use arealight_host::{Image, ImageDescription, Usage};
 use arealight_vk::Resource;
 use ash::vk;
 

@@ -1,6 +1,6 @@
 //! Things that must not be destroyed while a GPU that never finished may use them.
 
-use arealight_host::Host;
+use crate::host::Host;
 use std::mem::ManuallyDrop;
 
 /// A value that is dropped, unless its host was abandoned: then it is leaked, as all that the host made.

@@ -1,13 +1,14 @@
 //! The small engine that the tools, tests and benchmarks embed Arealight in: the first host of
 //! [`arealight_vk`], and an example of one.
 //!
-//! [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`]
+//! [`host`] finds Vulkan and owns a device, memory and submission. [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`]
 //! one under disks, spheres and tubes;
 //! [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte Carlo.
 
 mod eval;
 mod eval_shapes;
 mod g_buffer;
+pub mod host;
 mod kept;
 mod memory;
 mod passes;
@@ -17,10 +18,10 @@ mod table;
 mod texture_array;
 mod textures;
 
-pub use arealight_host::{Host, HostError, HostOptions, Validation};
 pub use eval::{EvalPoint, gpu_case};
 pub use eval_shapes::ShapePoint;
 pub use g_buffer::GBuffer;
+pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::SceneRenderer;
@@ -28,11 +29,11 @@ pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 
+use crate::host::Buffer;
 use arealight::LightTable;
 use arealight::kernels::Kernel;
 use arealight::plan::ShadeOptions;
 use arealight::table::LobeHorizon;
-use arealight_host::Buffer;
 use arealight_vk::{Context, Resource, ShadePass, TableFormat};
 use ash::vk;
 use bytemuck::Pod;

@@ -1,6 +1,6 @@
 //! Memory that the recorder's images lie in.
 
-use arealight_host::Host;
+use crate::host::Host;
 use gpu_allocator::vulkan::Allocation;
 
 /// Memory that goes back to the host's allocator.

@@ -1,8 +1,8 @@
 //! Passes on a host: pipelines, and descriptor sets for them.
 
+use crate::host::{DescriptorPool, Host};
 use crate::{EngineError, Kept};
 use arealight::kernels::Kernel;
-use arealight_host::{DescriptorPool, Host};
 use arealight_vk::{ComputePass, Context, HostDevice, Resource};
 use ash::vk;
 use bytemuck::Pod;

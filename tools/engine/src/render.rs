@@ -2,13 +2,16 @@
 
 pub(crate) mod tiled;
 
+use crate::host::{Buffer, DescriptorPool, Usage};
 use crate::{BoundPass, Engine, EngineError, GBuffer};
-use arealight::gpu::{GpuShape, ReferenceConstants, ShadeConstants, VisibilityConstants};
-use arealight::kernels::{Kernel, REFERENCE, VISIBILITY};
+use arealight::gpu::{GpuShape, ShadeConstants};
+use arealight::kernels::Kernel;
 use arealight::plan::{Output, ShadeOptions};
-use arealight::{Effects, LightSampling, PackedLights, PolygonLight, Quality, ShapeLight};
-use arealight_host::{Buffer, DescriptorPool, Usage};
+use arealight::{Effects, PackedLights, PolygonLight, Quality, ShapeLight};
 use arealight_scene::SceneBuffers;
+use arealight_tool_kernels::LightSampling;
+use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
+use arealight_tool_kernels::kernels::{REFERENCE, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};

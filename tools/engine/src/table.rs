@@ -1,10 +1,10 @@
 //! The light table on the device, with its memory.
 
 use crate::EngineError;
+use crate::host::{Host, Location};
 use crate::kept::Kept;
 use crate::memory::Memory;
 use arealight::LightTable;
-use arealight_host::{Host, Location};
 use arealight_vk::{Context, Resource, TableFormat, TableImage};
 use ash::vk;
 

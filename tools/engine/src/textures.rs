@@ -1,9 +1,9 @@
 //! The lights' textures of an engine.
 
+use crate::host::Location;
 use crate::texture_array::TextureArray;
 use crate::{Engine, EngineError};
 use arealight::{PolygonLight, PyramidSize, TexturePart};
-use arealight_host::Location;
 use arealight_vk::Resource;
 use ash::vk;
 

@@ -3,7 +3,7 @@
 //! ```text
 //! export SHADERC_LIB_DIR="$(tools/shaderc.sh)"   # where xtask is not built yet
 //! cargo run -p xtask -- shaders                  # shaders/kernels/*.comp -> crates/arealight/spirv/*.spv,
-//!                                                # and the benchmarks' and the host's tests' own
+//!                                                # and those of tools, benchmarks and tests
 //! cargo run -p xtask -- shaders --check          # are they fresh?
 //! cargo run -p xtask -- includes                 # does each library file stand alone and keep the rules?
 //! cargo run -p xtask -- header                   # crates/arealight-capi -> its include/arealight.h

@@ -2,8 +2,8 @@
 //! `arealight bench textures` judge by.
 
 use super::footprint::Filter;
-use crate::hard::stream::Stream;
 use crate::polygon::transformed_form_factor;
+use crate::stream::Stream;
 use arealight::{Footprint, LightTable, LightTexture, PolygonLight, Surface};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! Pictures to test with, each hard in its own way.
 
 use super::Texture;
-use crate::hard::stream::Stream;
+use crate::stream::Stream;
 use glam::DVec3;
 use std::f64::consts::TAU;
 

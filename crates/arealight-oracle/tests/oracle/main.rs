@@ -8,7 +8,6 @@ mod ggx;
 mod ltsd;
 mod polygon;
 mod pyramid;
-mod reference;
 mod shading;
 mod sphere;
 mod textured;

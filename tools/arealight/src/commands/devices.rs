@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::output::print;
-use arealight::kernels::{self, BindingKind};
-use arealight_host::{DeviceSummary, HostError, devices};
+use arealight::kernels::{self, BindingKind, Kernel};
+use arealight_engine::host::{DeviceSummary, HostError, devices};
 use ash::vk::PhysicalDeviceLimits;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -42,14 +42,13 @@ struct Limit {
 
 /// The limits that the kernels come near, by what the kernels' manifest says.
 fn limits(device: &PhysicalDeviceLimits) -> [Limit; 5] {
+    let all = || kernels::ALL.into_iter().chain(arealight_tool_kernels::kernels::ALL);
     let most = |kinds: &[BindingKind]| {
-        let count = |kernel: &&kernels::Kernel| {
-            kernel.bindings.iter().filter(|one| kinds.contains(&one.kind)).count()
-        };
-        kernels::ALL.iter().map(count).max().unwrap_or(0) as u32
+        let count = |kernel: &Kernel| kernel.bindings.iter().filter(|one| kinds.contains(&one.kind)).count();
+        all().map(count).max().unwrap_or(0) as u32
     };
-    let group = kernels::ALL.iter().map(|kernel| kernel.local_size.iter().product()).max();
-    let constants = kernels::ALL.iter().map(|kernel| kernel.push_constant_size).max();
+    let group = all().map(|kernel| kernel.local_size.iter().product()).max();
+    let constants = all().map(|kernel| kernel.push_constant_size).max();
     let limit = |name, needed, offered| Limit { name, needed, offered };
     [
         limit(
@@ -143,7 +142,7 @@ fn to_json(device: &DeviceSummary) -> Value {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight_host::DeviceKind;
+    use arealight_engine::host::DeviceKind;
 
     fn device(invocations: u32) -> DeviceSummary {
         DeviceSummary {

@@ -6,10 +6,10 @@ use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress};
 use arealight::{Footprint, FormFactor, Fresnel, Quality};
-use arealight_oracle::answers::{Answer, read_answers, write_answers};
-use arealight_oracle::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::answers::{Answer, read_answers, write_answers};
+use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::shading::{
     RelativeLight, Truth, ltc_on, shape_ltc_on, shape_truth, textured_ellipse, truth,
 };
@@ -357,7 +357,7 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight_oracle::measure::Family;
+    use arealight_cases::measure::Family;
     use glam::DVec3;
 
     #[test]

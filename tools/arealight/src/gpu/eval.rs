@@ -3,9 +3,9 @@
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
 use arealight::{LightTexture, PolygonLight, Quality};
+use arealight_cases::answers::Answer;
+use arealight_cases::cases::SupportedCase;
 use arealight_engine::{Engine, EngineError, EvalPoint};
-use arealight_oracle::answers::Answer;
-use arealight_oracle::cases::SupportedCase;
 use arealight_oracle::texture::Texture;
 use glam::DVec3;
 use std::path::Path;

@@ -4,9 +4,9 @@ use super::eval::Images;
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
 use arealight::{Quality, ShapeLight};
+use arealight_cases::answers::Answer;
+use arealight_cases::cases::ShapeCase;
 use arealight_engine::ShapePoint;
-use arealight_oracle::answers::Answer;
-use arealight_oracle::cases::ShapeCase;
 use glam::DVec3;
 use std::path::Path;
 

@@ -1,12 +1,12 @@
 //! Shading by tiles, on the engine's own memory.
 
 use super::SceneRenderer;
+use crate::host::{Buffer, DescriptorPool, Location, Usage};
 use crate::kept::Kept;
 use crate::{Engine, EngineError};
 use arealight::gpu::GpuTileClass;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
-use arealight_host::{Buffer, DescriptorPool, Location, Usage};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory, TileResources};
 use ash::vk;
 use std::time::Duration;

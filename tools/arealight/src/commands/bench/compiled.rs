@@ -7,7 +7,7 @@ use super::write;
 use crate::failure::Failure;
 use crate::output::print;
 use arealight_benches::compiled::{Check, Compiled, Markers, matching, replace_section, rows};
-use arealight_host::null_hardware::driver_file;
+use arealight_engine::host::null_hardware::driver_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

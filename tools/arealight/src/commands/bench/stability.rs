@@ -6,7 +6,7 @@ use crate::progress;
 use arealight_benches::method::{METHODS, Method};
 use arealight_benches::shape_stability;
 use arealight_benches::stability::{self, Options};
-use arealight_oracle::hard::family::{FAMILIES, Family};
+use arealight_cases::hard::family::{FAMILIES, Family};
 use std::process::ExitCode;
 
 /// Hold every level of the form factor to its promises, on families of hard cases.

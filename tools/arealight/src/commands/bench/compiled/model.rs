@@ -6,7 +6,7 @@ use crate::output::print;
 use arealight_benches::compiled::Compiled;
 use arealight_benches::model::{Modelled, count_scene, markdown, text};
 use arealight_engine::Engine;
-use arealight_host::{Host, HostOptions};
+use arealight_engine::host::{Host, HostOptions};
 use arealight_scene::Scene;
 use arealight_vk::TableFormat;
 use std::path::Path;

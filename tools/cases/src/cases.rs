@@ -1,0 +1,463 @@
+//! Files of shading points: what is at each, which light shines on it, and what of that is supported yet.
+//!
+//! The format is described in `tests/data/reference/README.md`. Reading is strict: what is wrong is named by
+//! case and field. A field that is not known does not fail the file, but its case counts as not supported,
+//! for an answer that ignores a field would look like an answer to it.
+
+mod fields;
+
+use arealight::{
+    LightTexture, MIN_ALPHA, PolygonLight, Shape, ShapeLight, Surface, TextureError, TextureMap, TubeEnds,
+};
+use arealight_oracle::shading::{RelativeLight, ShownImage};
+use arealight_oracle::texture::Texture;
+pub(crate) use fields::json;
+use fields::{Fields, member};
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+
+/// Why a file of cases or answers cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// The text is not JSON.
+    #[error("not JSON: {message}")]
+    NotJson {
+        /// What the parser found, and where.
+        message: String,
+    },
+    /// The outermost value is not what the format says.
+    #[error("{field}: {message}")]
+    File {
+        /// The field.
+        field: String,
+        /// What is wrong with it.
+        message: String,
+    },
+    /// A case has a field that is missing or has a wrong value.
+    #[error("case '{case}': {field}: {message}")]
+    Case {
+        /// The case's name, or its place in the file if it has none.
+        case: String,
+        /// The field, for example `light.vertices[2]`.
+        field: String,
+        /// What is wrong with it.
+        message: String,
+    },
+}
+
+/// A shading point: a surface, a viewer and a light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// The name, unique in its file.
+    pub name: String,
+    /// Position of the shading point.
+    pub position: DVec3,
+    /// Surface normal, not zero, of any length.
+    pub normal: DVec3,
+    /// Direction that `alpha_x` runs along, once projected onto the surface.
+    pub tangent: Option<DVec3>,
+    /// Direction from the point to the viewer, not zero, of any length.
+    pub view: DVec3,
+    /// What the surface is made of.
+    pub material: CaseMaterial,
+    /// The light.
+    pub light: CaseLight,
+    /// Fields of the file that the format does not know.
+    pub unknown_fields: Vec<String>,
+}
+
+/// What the surface of a case is made of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CaseMaterial {
+    /// A Lambert lobe.
+    Diffuse {
+        /// Albedo, not negative.
+        albedo: DVec3,
+    },
+    /// A GGX lobe, and perhaps a Lambert lobe added to it.
+    Ggx {
+        /// Alpha along the tangent and across it, in (0, 1]; equal for an isotropic lobe.
+        alpha: DVec2,
+        /// Schlick's reflectance at normal incidence; `None` for no Fresnel term, F = 1.
+        f0: Option<DVec3>,
+        /// Albedo of the Lambert lobe.
+        albedo: Option<DVec3>,
+    },
+}
+
+/// The light of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseLight {
+    /// Radiance, W/(m² sr), not negative.
+    pub radiance: DVec3,
+    /// Whether the back emits too.
+    pub two_sided: bool,
+    /// What shines.
+    pub shape: CaseShape,
+}
+
+/// The shape of a light.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CaseShape {
+    /// A planar polygon; the front is the right-hand side of the vertex order.
+    Polygon {
+        /// World positions, three or more.
+        vertices: Vec<DVec3>,
+        /// An image that the radiance is multiplied with.
+        texture: Option<CaseTexture>,
+    },
+    /// A disk or ellipse; the front is the side of `axis_u × axis_v`.
+    Disk {
+        /// World position.
+        center: DVec3,
+        /// Half axis.
+        axis_u: DVec3,
+        /// Half axis, perpendicular to the first.
+        axis_v: DVec3,
+        /// Path beside the file of cases of an image that the radiance is multiplied with: as
+        /// [`ShapeLight::texture`](arealight::ShapeLight::texture) says.
+        texture: Option<String>,
+    },
+    /// A sphere that emits outwards.
+    Sphere {
+        /// World position.
+        center: DVec3,
+        /// Radius, above zero.
+        radius: f64,
+    },
+    /// A cylinder that emits outwards.
+    Cylinder {
+        /// Middle of one end.
+        p0: DVec3,
+        /// Middle of the other end.
+        p1: DVec3,
+        /// Radius, above zero.
+        radius: f64,
+        /// Whether the ends emit too.
+        caps: bool,
+    },
+}
+
+impl CaseShape {
+    /// Its `type` in the file.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Polygon { .. } => "polygon",
+            Self::Disk { .. } => "disk",
+            Self::Sphere { .. } => "sphere",
+            Self::Cylinder { .. } => "cylinder",
+        }
+    }
+}
+
+/// The texture of a polygon light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CaseTexture {
+    /// Path beside the file of cases.
+    pub path: String,
+    /// Texture coordinates, one a vertex; (0, 0) is the first texel of the top row.
+    pub uv: Vec<DVec2>,
+}
+
+/// A case of a polygon light that can be answered: the inputs of [`arealight_oracle::shading`] and of the GPU's eval kernel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SupportedCase {
+    /// The case's name.
+    pub name: String,
+    /// The two lobes.
+    pub surface: Surface,
+    /// Surface normal, not zero, of any length.
+    pub normal: DVec3,
+    /// Direction to the viewer, not zero, of any length.
+    pub view: DVec3,
+    /// The light, relative to the shading point, with the image that it shows.
+    pub light: RelativeLight,
+    /// Where that image is from, and its coordinates.
+    pub texture: Option<CaseTexture>,
+}
+
+/// As [`SupportedCase`], with a light that is no polygon.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeCase {
+    /// The case's name.
+    pub name: String,
+    /// The two lobes.
+    pub surface: Surface,
+    /// Surface normal, not zero, of any length.
+    pub normal: DVec3,
+    /// Direction to the viewer, not zero, of any length.
+    pub view: DVec3,
+    /// The light, relative to the shading point; the layer of its image is 0.
+    pub light: ShapeLight,
+    /// The image that it shows.
+    pub image: Option<Arc<Texture>>,
+}
+
+/// A case is well-formed, but asks for what is not there yet.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{reason}")]
+pub struct Unsupported {
+    /// What is not supported, in words.
+    pub reason: String,
+}
+
+/// Reads a file of cases.
+///
+/// # Errors
+/// [`CaseError`] says which case and field is wrong.
+pub fn read_cases(text: &str) -> Result<Vec<Case>, CaseError> {
+    let document = json(text)?;
+    let values = member(&document, "cases", "a file of cases is {\"cases\": [...]}")?;
+    let cases: Vec<Case> =
+        values.iter().enumerate().map(|(index, value)| read_case(index, value)).collect::<Result<_, _>>()?;
+    // Answers are found by name, so no two cases may share one
+    let mut seen = std::collections::HashSet::new();
+    match cases.iter().find(|case| !seen.insert(case.name.as_str())) {
+        None => Ok(cases),
+        Some(case) => Err(CaseError::Case {
+            case: case.name.clone(),
+            field: "name".into(),
+            message: "another case has the same name".into(),
+        }),
+    }
+}
+
+fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError> {
+    let fields = Fields::of_case(index, value)?;
+    let light_fields = fields.object("light")?;
+    let case = Case {
+        name: fields.name().to_owned(),
+        position: fields.vector("position")?,
+        normal: fields.direction("normal")?,
+        tangent: fields.optional("tangent", Fields::direction)?,
+        view: fields.direction("view")?,
+        material: read_material(&fields)?,
+        light: read_light(&light_fields)?,
+        unknown_fields: [fields.unread(), light_fields.unread()].concat(),
+    };
+    Ok(case)
+}
+
+fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
+    match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
+        "diffuse" => Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)? }),
+        "ggx" => {
+            let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
+                if fields.has("alpha") {
+                    return Err(fields.error("alpha", "give either alpha, or alpha_x and alpha_y"));
+                }
+                DVec2::new(fields.alpha("alpha_x")?, fields.alpha("alpha_y")?)
+            } else {
+                DVec2::splat(fields.alpha("alpha")?)
+            };
+            if let Some(masking) = fields.optional("G", Fields::text)?
+                && masking != "correlated"
+            {
+                return Err(fields.error("G", &format!("\"{masking}\" is not known; \"correlated\" is")));
+            }
+            let f0 = fields.optional("F0", |f, field| f.color(field, 1.0))?;
+            let albedo = fields.optional("albedo", |f, field| f.color(field, f64::INFINITY))?;
+            Ok(CaseMaterial::Ggx { alpha, f0, albedo })
+        }
+        other => Err(fields.error("bsdf", &format!("\"{other}\" is not known; \"ggx\" and \"diffuse\" are"))),
+    }
+}
+
+fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
+    let radiance = fields.color("radiance", f64::INFINITY)?;
+    let two_sided = fields.optional("two_sided", Fields::boolean)?.unwrap_or(false);
+    let shape = match fields.text("type")? {
+        "polygon" => read_polygon(fields)?,
+        "disk" => CaseShape::Disk {
+            center: fields.vector("center")?,
+            axis_u: fields.direction("axis_u")?,
+            axis_v: fields.direction("axis_v")?,
+            texture: fields.optional("texture", Fields::text)?.map(str::to_owned),
+        },
+        "sphere" => CaseShape::Sphere { center: fields.vector("center")?, radius: fields.length("radius")? },
+        "cylinder" => CaseShape::Cylinder {
+            p0: fields.vector("p0")?,
+            p1: fields.vector("p1")?,
+            radius: fields.length("radius")?,
+            caps: fields.optional("caps", Fields::boolean)?.unwrap_or(false),
+        },
+        other => {
+            let message =
+                format!("\"{other}\" is not known; \"polygon\", \"disk\", \"sphere\" and \"cylinder\" are");
+            return Err(fields.error("type", &message));
+        }
+    };
+    Ok(CaseLight { radiance, two_sided, shape })
+}
+
+fn read_polygon(fields: &Fields) -> Result<CaseShape, CaseError> {
+    let vertices: Vec<DVec3> = fields.list("vertices", Fields::vector_at)?;
+    if vertices.len() < 3 {
+        let message = format!("{} given, a polygon has at least 3", vertices.len());
+        return Err(fields.error("vertices", &message));
+    }
+    if let Some((index, distance)) = vertex_off_plane(&vertices) {
+        let message = format!("{distance:.3e} off the plane of the others; a polygon light is flat");
+        return Err(fields.error(&format!("vertices[{index}]"), &message));
+    }
+    let texture = match fields.optional("texture", Fields::text)? {
+        None => None,
+        Some(path) => {
+            let uv = fields.list("uv", Fields::pair_at)?;
+            if uv.len() != vertices.len() {
+                let message = format!("{} given for {} vertices", uv.len(), vertices.len());
+                return Err(fields.error("uv", &message));
+            }
+            Some(CaseTexture { path: path.to_owned(), uv })
+        }
+    };
+    Ok(CaseShape::Polygon { vertices, texture })
+}
+
+/// The vertex that lies farthest off the polygon's plane, if that is more than a thousandth of its size: far
+/// more than the rounding of positions in float32 makes, and enough to see.
+fn vertex_off_plane(vertices: &[DVec3]) -> Option<(usize, f64)> {
+    let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+    let offsets: Vec<DVec3> = vertices.iter().map(|v| *v - center).collect();
+    let next = offsets.iter().cycle().skip(1);
+    let normal = offsets.iter().zip(next).map(|(a, b)| a.cross(*b)).sum::<DVec3>().normalize_or_zero();
+    let size = offsets.iter().map(|o| o.length()).fold(0.0, f64::max);
+    let distances = offsets.iter().map(|o| o.dot(normal).abs()).enumerate();
+    distances.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, distance)| *distance > 1e-3 * size)
+}
+
+/// Lights, lobes and fields that can be answered.
+impl Case {
+    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under polygons. See
+    /// [`Case::supported_shape`] for other lights.
+    ///
+    /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called for every
+    /// case that has one, so it should keep what it has loaded.
+    ///
+    /// # Errors
+    /// [`Unsupported`] with the reason, in words.
+    pub fn supported(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<SupportedCase, Unsupported> {
+        let unsupported = |reason: String| Err(Unsupported { reason });
+        self.check_fields()?;
+        let (vertices, texture) = match &self.light.shape {
+            CaseShape::Polygon { vertices, texture } => (vertices, texture),
+            shape => return unsupported(format!("light.type \"{}\" is no polygon", shape.name())),
+        };
+        let surface = self.surface()?;
+        let mut light = RelativeLight {
+            vertices: vertices.iter().map(|v| *v - self.position).collect(),
+            radiance: self.light.radiance,
+            two_sided: self.light.two_sided,
+            image: None,
+        };
+        if let Some(texture) = texture {
+            let image = match load(&texture.path) {
+                Ok(image) => image,
+                Err(reason) => return unsupported(format!("light.texture: {}: {reason}", texture.path)),
+            };
+            match texture.map(&light.vertices) {
+                Ok(map) => light.image = Some(ShownImage { texture: image, map }),
+                Err(reason) => return unsupported(format!("light.uv: {reason}")),
+            }
+        }
+        Ok(SupportedCase {
+            name: self.name.clone(),
+            surface,
+            normal: self.normal,
+            view: self.view,
+            light,
+            texture: texture.clone(),
+        })
+    }
+
+    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as it is there.
+    ///
+    /// # Errors
+    /// [`Unsupported`] with the reason, in words.
+    pub fn supported_shape(
+        &self,
+        mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
+    ) -> Result<ShapeCase, Unsupported> {
+        self.check_fields()?;
+        let shape = match self.light.shape {
+            CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
+            CaseShape::Disk { center, axis_u, axis_v, .. } => {
+                Shape::Ellipse { center: center - self.position, axis_u, axis_v }
+            }
+            CaseShape::Sphere { center, radius } => Shape::Sphere { center: center - self.position, radius },
+            CaseShape::Cylinder { p0, p1, radius, caps } => {
+                let (p0, p1) = (p0 - self.position, p1 - self.position);
+                // It emits outwards, whatever is said of its sides
+                let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
+                Shape::Tube { p0, p1, radius, ends }
+            }
+        };
+        let image = match &self.light.shape {
+            CaseShape::Disk { texture: Some(path), .. } => {
+                let reason = |reason| Unsupported { reason: format!("light.texture: {path}: {reason}") };
+                Some(load(path).map_err(reason)?)
+            }
+            _ => None,
+        };
+        let light = ShapeLight {
+            name: self.name.clone(),
+            radiance: self.light.radiance.as_vec3(),
+            two_sided: self.light.two_sided,
+            texture: image.as_ref().map(|_| 0),
+            shape,
+        };
+        light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
+        Ok(ShapeCase {
+            name: self.name.clone(),
+            surface: self.surface()?,
+            normal: self.normal,
+            view: self.view,
+            light,
+            image,
+        })
+    }
+
+    fn check_fields(&self) -> Result<(), Unsupported> {
+        match self.unknown_fields.first() {
+            Some(field) => Err(Unsupported { reason: format!("the field \"{field}\" is not known") }),
+            None => Ok(()),
+        }
+    }
+
+    /// The two lobes.
+    fn surface(&self) -> Result<Surface, Unsupported> {
+        let unsupported = |reason: String| Err(Unsupported { reason });
+        match &self.material {
+            CaseMaterial::Diffuse { albedo } => {
+                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 })
+            }
+            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
+                unsupported("anisotropic GGX is not supported yet".into())
+            }
+            CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
+                unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
+            }
+            CaseMaterial::Ggx { alpha, f0, albedo } => Ok(Surface {
+                diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
+                f0: f0.unwrap_or(DVec3::ONE),
+                f90: 1.0,
+                alpha: alpha.x,
+            }),
+        }
+    }
+}
+
+impl CaseTexture {
+    /// Where the image is on a polygon.
+    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, TextureError> {
+        let light = PolygonLight { vertices: vertices.to_vec(), ..PolygonLight::default() };
+        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&light)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+//! The oracle against the reference: shading points whose radiance another program found by cubature.
+
+use arealight::Shape;
+use arealight_cases::answers::read_answers;
+use arealight_cases::cases::{Case, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::measure::{Family, relative_error};
+use arealight_oracle::cubature::Settings;
+use arealight_oracle::shading::{shape_truth, truth};
+use arealight_oracle::texture::Texture;
+use glam::DVec3;
+use std::sync::{Arc, LazyLock};
+
+fn read(file: &str) -> String {
+    let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn cases() -> Vec<Case> {
+    read_cases(&read("cases.json")).unwrap()
+}
+
+fn supported() -> Vec<(Family, SupportedCase)> {
+    cases()
+        .iter()
+        .filter_map(|case| Some((Family::of(case), case.supported(|path| Ok(image(path))).ok()?)))
+        .collect()
+}
+
+/// The reference's one image.
+fn image(path: &str) -> Arc<Texture> {
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+    static IMAGE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
+        let path = format!("{}/../../tests/data/reference/light.exr", env!("CARGO_MANIFEST_DIR"));
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .rgb_channels(
+                |size, _| (size.width(), vec![DVec3::ZERO; size.area()]),
+                |(width, texels), at, (r, g, b): (f32, f32, f32)| {
+                    texels[at.y() * *width + at.x()] = DVec3::new(r.into(), g.into(), b.into());
+                },
+            )
+            .first_valid_layer()
+            .all_attributes()
+            .from_file(&path)
+            .unwrap_or_else(|error| panic!("{path}: {error}"));
+        let (width, texels) = image.layer_data.channel_data.pixels;
+        Arc::new(Texture::new(width, texels.len() / width, texels).unwrap())
+    });
+    assert_eq!(path, "light.exr");
+    Arc::clone(&IMAGE)
+}
+
+fn known(name: &str) -> [f64; 3] {
+    let answers = read_answers(&read("truth.json")).unwrap();
+    answers.into_iter().find(|answer| answer.name == name).and_then(|answer| answer.radiance).unwrap()
+}
+
+fn answer(case: &SupportedCase) -> [f64; 3] {
+    truth(&case.surface, case.normal, case.view, &case.light, &Settings::default()).radiance.to_array()
+}
+
+#[test]
+fn every_polygon_case_with_an_isotropic_lobe_is_supported() {
+    let mut counts = std::collections::BTreeMap::new();
+    for case in cases() {
+        let (yes, no) = counts.entry(Family::of(&case).to_string()).or_insert((0, 0));
+        *if case.supported(|path| Ok(image(path))).is_ok() { yes } else { no } += 1;
+    }
+    assert_eq!(counts.values().map(|(yes, no)| yes + no).sum::<i32>(), 176);
+    assert_eq!(counts["polygon, ggx"], (50, 0));
+    assert_eq!(counts["polygon, ggx + diffuse"], (10, 0));
+    assert_eq!(counts["polygon, diffuse"], (10, 0));
+    assert_eq!(counts["textured polygon, ggx"], (10, 0));
+    assert_eq!(counts.values().map(|(yes, _)| yes).sum::<i32>(), 84);
+}
+
+#[test]
+fn truth_agrees_with_the_reference() {
+    let errors = supported()
+        .into_iter()
+        .map(|(_, case)| (relative_error(answer(&case), known(&case.name)), case.name));
+    let mut errors: Vec<(f64, String)> = errors.collect();
+    errors.sort_by(|a, b| b.0.total_cmp(&a.0));
+    println!("{} cases, worst: {:.2e} in {}", errors.len(), errors[0].0, errors[0].1);
+    // Both programs integrate adaptively; the reference's own estimates reach 1e-5
+    assert!(errors[0].0 < 1e-4, "{:?}", errors[0]);
+}
+
+#[test]
+fn truth_of_shapes_agrees_with_the_reference() {
+    let cases: Vec<ShapeCase> =
+        cases().iter().filter_map(|case| case.supported_shape(|path| Ok(image(path))).ok()).collect();
+    assert_eq!(cases.len(), 70);
+    let error = |case: &ShapeCase| {
+        let truth = shape_truth(&case.surface, case.normal, case.view, &case.light, &Settings::default());
+        relative_error(truth.radiance.to_array(), known(&case.name))
+    };
+    let worst =
+        cases.iter().map(|case| (error(case), &case.name)).max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+    println!("{} cases, worst: {:.2e} in {}", cases.len(), worst.0, worst.1);
+    // As polygons: both programs integrate adaptively
+    assert!(worst.0 < 1e-4, "{worst:?}");
+    // The twin: a shape that is larger by a thousandth is noticed where it is seen whole
+    let grown = cases.into_iter().map(|mut case| {
+        case.light.shape = match case.light.shape {
+            Shape::Ellipse { center, axis_u, axis_v } => {
+                Shape::Ellipse { center, axis_u: axis_u * 1.001, axis_v: axis_v * 1.001 }
+            }
+            Shape::Sphere { center, radius } => Shape::Sphere { center, radius: radius * 1.001 },
+            Shape::Tube { p0, p1, radius, ends } => Shape::Tube { p0, p1, radius: radius * 1.001, ends },
+        };
+        case
+    });
+    let noticed = grown.filter(|case| error(case) > 1e-4).count();
+    assert!(noticed > 60, "only {noticed} of 70 cases notice");
+}
+
+#[test]
+fn a_slightly_wrong_lobe_does_not_agree() {
+    // The twin: one percent of alpha is a hundred times the bound
+    let changed =
+        supported().into_iter().filter(|(family, _)| family.material == "ggx").map(|(_, mut case)| {
+            case.surface.alpha *= 0.99;
+            relative_error(answer(&case), known(&case.name))
+        });
+    let wrong = changed.filter(|error| *error > 1e-4).count();
+    assert!(wrong > 45, "only {wrong} of 50 cases notice");
+}
+
+#[test]
+fn an_image_upside_down_does_not_agree() {
+    // The twin for textured lights
+    let turned = supported().into_iter().filter(|(family, _)| family.textured).map(|(_, mut case)| {
+        if let Some(image) = &mut case.light.image {
+            let texture = &image.texture;
+            let (width, height) = (texture.width(), texture.height());
+            let flipped = Texture::from_fn(width, height, |column, row| {
+                texture.texels()[(height - 1 - row) * width + column]
+            });
+            image.texture = Arc::new(flipped);
+        }
+        relative_error(answer(&case), known(&case.name))
+    });
+    assert!(turned.clone().count() > 12);
+    assert!(turned.min_by(f64::total_cmp).unwrap() > 1e-3, "a case does not notice");
+}

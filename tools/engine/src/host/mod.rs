@@ -1,0 +1,39 @@
+//! The Vulkan host of the tools, tests and benchmarks: it finds Vulkan, picks a device, and owns memory and
+//! submission, so that the Arealight crates themselves need not.
+//!
+//! ```no_run
+//! use arealight_engine::host::{Host, HostOptions, Validation};
+//!
+//! # fn main() -> Result<(), arealight_engine::host::HostError> {
+//! let host = Host::new(HostOptions { validation: Validation::Core, ..HostOptions::default() })?;
+//! let numbers = host.storage_buffer("numbers", &[1.0_f32, 2.0])?;
+//! host.submit(|commands| { /* record into `commands` */ })?;
+//! let back: Vec<f32> = numbers.download()?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! A device needs Vulkan 1.1 and a queue that computes; no optional feature is enabled unless asked for.
+//! Handles are plain `ash` ones. Everything made by a [`Host`] keeps it alive, so the order of drops is free;
+//! nothing may be dropped while the GPU still uses it, which [`Host::submit`] assures by waiting.
+
+mod descriptors;
+mod device;
+mod error;
+mod image;
+mod instance;
+mod listing;
+mod memory;
+pub mod null_hardware;
+mod submit;
+pub mod testing;
+mod validation;
+
+pub use descriptors::DescriptorPool;
+pub use device::{Host, HostOptions};
+pub use error::HostError;
+pub use image::{Image, ImageDescription};
+pub use listing::{DeviceKind, DeviceSummary, devices};
+pub use memory::{Buffer, Location};
+pub use submit::Usage;
+pub use validation::{Message, Severity, Validation};

@@ -1,0 +1,226 @@
+//! Data laid out as these kernels read it (std430). A test compares every offset with the SPIR-V.
+
+use bytemuck::{Pod, Zeroable};
+
+/// Push constants of the Monte Carlo reference kernel.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ReferenceConstants {
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// How many lights are shaded.
+    pub light_count: u32,
+    /// The index of this dispatch's first sample: a pixel's random numbers depend on it, the pixel and `seed`.
+    pub first_sample: u32,
+    /// Samples this dispatch adds.
+    pub sample_count: u32,
+    /// What this dispatch's mean is multiplied with before it is added: `sample_count / total`.
+    pub weight: f32,
+    /// Another seed gives independent noise.
+    pub seed: u32,
+    /// How many shapes are shaded.
+    pub shape_count: u32,
+}
+
+/// A light's triangle for the reference's light sampling: three vertex indices, and the sum of the areas of
+/// this light's triangles up to and with this one.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuLightTriangle {
+    /// Indices into the light vertex buffer.
+    pub vertices: [u32; 3],
+    /// Cumulative area, divided by the light's area: 1 in the light's last triangle.
+    pub cumulative: f32,
+}
+
+/// A light's range of triangles for the reference kernel.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuLightSampling {
+    /// Unit normal of the front; zero for a mesh.
+    pub normal: [f32; 3],
+    /// Area.
+    pub area: f32,
+    /// Index of the first triangle.
+    pub first_triangle: u32,
+    /// How many triangles the light has.
+    pub triangle_count: u32,
+    /// Zero.
+    pub reserved: [u32; 2],
+}
+
+/// One shading point of the eval kernel. Its light's center is relative to the point.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuCase {
+    /// Normal, of any length.
+    pub normal: [f32; 3],
+    /// Perceptual roughness.
+    pub roughness: f32,
+    /// Direction to the viewer, of any length.
+    pub view: [f32; 3],
+    /// Schlick's reflectance at grazing incidence.
+    pub f90: f32,
+    /// Lambert albedo.
+    pub diffuse_albedo: [f32; 3],
+    /// Index of the light.
+    pub light: u32,
+    /// Schlick's reflectance at normal incidence.
+    pub f0: [f32; 3],
+    /// Zero.
+    pub reserved: u32,
+}
+
+/// Push constants of the eval kernel, and of its twin for shapes.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub struct EvalConstants {
+    /// How many cases there are.
+    pub case_count: u32,
+}
+
+/// A node of a binary bounding volume hierarchy; the root is node 0. The children of an inner node are
+/// `first` and `first + 1`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuBvhNode {
+    /// The box's smallest corner, relative to the origin.
+    pub min: [f32; 3],
+    /// The first child, or the first triangle of a leaf.
+    pub first: u32,
+    /// The box's largest corner.
+    pub max: [f32; 3],
+    /// Triangles of a leaf; 0 for an inner node.
+    pub count: u32,
+}
+
+/// A triangle of the visibility kernel, in the order of the hierarchy's leaves.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuTriangle {
+    /// First vertex, relative to the origin.
+    pub p0: [f32; 3],
+    /// Index of the material.
+    pub material: u32,
+    /// Second vertex.
+    pub p1: [f32; 3],
+    /// Texture coordinate v of the first vertex.
+    pub v0: f32,
+    /// Third vertex.
+    pub p2: [f32; 3],
+    /// Texture coordinate v of the second vertex.
+    pub v1: f32,
+    /// Normal at the first vertex.
+    pub n0: [f32; 3],
+    /// Texture coordinate u of the first vertex.
+    pub u0: f32,
+    /// Normal at the second vertex.
+    pub n1: [f32; 3],
+    /// Texture coordinate u of the second vertex.
+    pub u1: f32,
+    /// Normal at the third vertex.
+    pub n2: [f32; 3],
+    /// Texture coordinate u of the third vertex.
+    pub u2: f32,
+    /// Texture coordinate v of the third vertex.
+    pub v2: f32,
+    /// Zero.
+    pub reserved: [u32; 3],
+}
+
+/// A material of the visibility kernel. Texture indices are [`GpuMaterial::NO_TEXTURE`] where there is none.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuMaterial {
+    /// Linear base colour factor.
+    pub base_color: [f32; 3],
+    /// Metalness factor.
+    pub metalness: f32,
+    /// Emitted radiance, as the camera sees it.
+    pub emission: [f32; 3],
+    /// Perceptual roughness factor.
+    pub roughness: f32,
+    /// Reflectance of the dielectric at normal incidence.
+    pub dielectric_f0: [f32; 3],
+    /// Reflectance of the dielectric at grazing incidence.
+    pub dielectric_f90: f32,
+    /// sRGB texture times `base_color`.
+    pub base_color_texture: u32,
+    /// Linear texture: green times `roughness`, blue times `metalness`.
+    pub metallic_roughness_texture: u32,
+    /// Tangent-space normal texture.
+    pub normal_texture: u32,
+    /// Scale of the normal texture's x and y.
+    pub normal_scale: f32,
+    /// [`GpuMaterial::DOUBLE_SIDED`], [`GpuMaterial::ALPHA_MASK`].
+    pub flags: u32,
+    /// Base colour alpha below which a masked hit is passed through.
+    pub alpha_cutoff: f32,
+    /// Base colour alpha factor.
+    pub base_alpha: f32,
+    /// sRGB texture times `emission`.
+    pub emission_texture: u32,
+}
+
+impl GpuMaterial {
+    /// No texture.
+    pub const NO_TEXTURE: u32 = u32::MAX;
+    /// Seen from both sides.
+    pub const DOUBLE_SIDED: u32 = 1;
+    /// Transparent where the base colour's alpha is below the cutoff.
+    pub const ALPHA_MASK: u32 = 2;
+}
+
+/// A texture of the visibility kernel: a range of the texel buffer, one RGBA8 texel a `u32`, red in the low
+/// byte, rows from the top.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+pub struct GpuTexture {
+    /// Index of the first texel.
+    pub first_texel: u32,
+    /// Width in texels.
+    pub width: u32,
+    /// Height in texels.
+    pub height: u32,
+    /// [`GpuTexture::SRGB`], and a wrap mode for each axis.
+    pub flags: u32,
+}
+
+impl GpuTexture {
+    /// Red, green and blue are sRGB-encoded.
+    pub const SRGB: u32 = 1;
+    /// u is clamped to the edge (else repeated).
+    pub const CLAMP_U: u32 = 2;
+    /// v is clamped to the edge (else repeated).
+    pub const CLAMP_V: u32 = 4;
+    /// u is mirrored at every repeat.
+    pub const MIRROR_U: u32 = 8;
+    /// v is mirrored at every repeat.
+    pub const MIRROR_V: u32 = 16;
+}
+
+/// Push constants of the visibility kernel: a pinhole camera.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct VisibilityConstants {
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// How many nodes the hierarchy has; 0 for a scene without triangles.
+    pub node_count: u32,
+    /// From the middle of the image to its right edge, at distance 1 along `forward`.
+    pub right: [f32; 3],
+    /// Zero.
+    pub reserved0: u32,
+    /// From the middle of the image to its top edge, at distance 1.
+    pub up: [f32; 3],
+    /// Zero.
+    pub reserved1: u32,
+    /// Unit viewing direction.
+    pub forward: [f32; 3],
+    /// Zero.
+    pub reserved2: u32,
+    /// Radiance where nothing is hit.
+    pub background: [f32; 3],
+    /// Zero.
+    pub reserved3: u32,
+}

@@ -1,0 +1,212 @@
+//! A scene as the visibility kernel reads it.
+
+use crate::bvh::Bvh;
+use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
+use arealight::Effects;
+use arealight_tool_kernels::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
+use glam::{DVec3, Vec3};
+
+pub use crate::bvh::Hit;
+
+/// The buffers of the visibility kernel, and of the shade pass's own hierarchy. Any of them may be empty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneBuffers {
+    /// What positions are relative to.
+    pub origin: DVec3,
+    /// The hierarchy; empty without triangles.
+    pub nodes: Vec<GpuBvhNode>,
+    /// In the order of the hierarchy's leaves.
+    pub triangles: Vec<GpuTriangle>,
+    /// In the order of [`Scene::materials`].
+    pub materials: Vec<GpuMaterial>,
+    /// In the order of [`Scene::textures`].
+    pub textures: Vec<GpuTexture>,
+    /// The images' texels, one after the other.
+    pub texels: Vec<u32>,
+    /// What no surface calls for, of [`Effects::SURFACES`].
+    pub unused: Effects,
+    /// Nodes from the root to the deepest leaf, at most [`crate::bvh::MAX_DEPTH`].
+    pub max_depth: u32,
+}
+
+/// Why a scene cannot be packed. Scenes that were loaded can, about any origin that is finite and no farther
+/// out than [`crate::MAX_COORDINATE`].
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BufferError {
+    /// A vertex is NaN or too far from the origin.
+    #[error("triangles[{triangle}]: {position} relative to the origin is not within 1e16")]
+    NotInRange {
+        /// The triangle.
+        triangle: usize,
+        /// The vertex's position relative to the origin.
+        position: DVec3,
+    },
+    /// An index points at nothing.
+    #[error("{field}: index {index}, but there are {count}")]
+    BadIndex {
+        /// Where the index is.
+        field: String,
+        /// Its value.
+        index: u32,
+        /// How many there are.
+        count: usize,
+    },
+    /// More texels than a 32-bit index reaches.
+    #[error("{count} texels: at most {} fit one buffer", u32::MAX)]
+    TooManyTexels {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl SceneBuffers {
+    /// Packs `scene` relative to `origin`; the subtraction is made in float64. Use the same origin for the
+    /// lights ([`arealight::PackedLights::new`]).
+    ///
+    /// # Errors
+    /// [`BufferError`] names the triangle or index.
+    pub fn new(scene: &Scene, origin: DVec3) -> Result<Self, BufferError> {
+        check_indices(scene)?;
+        // Round the triangles once, and build the hierarchy of what the GPU will see
+        let unordered: Vec<GpuTriangle> = scene.triangles.iter().map(|t| pack(t, origin)).collect();
+        let mut boxes = Vec::with_capacity(unordered.len());
+        for (triangle, source) in scene.triangles.iter().enumerate() {
+            let far = |p: &DVec3| p.is_nan() || p.abs().max_element() > 1e16;
+            if let Some(position) = source.positions.map(|p| p - origin).into_iter().find(far) {
+                return Err(BufferError::NotInRange { triangle, position });
+            }
+            let GpuTriangle { p0, p1, p2, .. } = unordered[triangle];
+            let [a, b, c] = [p0, p1, p2].map(Vec3::from_array);
+            boxes.push([a.min(b).min(c), a.max(b).max(c)]);
+        }
+        let bvh = Bvh::build(&boxes);
+        // Append the images to each other
+        let mut texels = Vec::new();
+        let mut first_texels = Vec::with_capacity(scene.images.len());
+        for image in &scene.images {
+            first_texels.push(texels.len() as u32);
+            texels.extend_from_slice(&image.texels);
+        }
+        let count = texels.len();
+        if u32::try_from(count).is_err() {
+            return Err(BufferError::TooManyTexels { count });
+        }
+        let texture = |texture: &Texture| {
+            let image = &scene.images[texture.image as usize];
+            GpuTexture {
+                first_texel: first_texels[texture.image as usize],
+                width: image.width,
+                height: image.height,
+                flags: texture_flags(*texture),
+            }
+        };
+        Ok(Self {
+            origin,
+            triangles: bvh.order.iter().map(|&i| unordered[i as usize]).collect(),
+            nodes: bvh.nodes,
+            materials: scene.materials.iter().map(pack_material).collect(),
+            textures: scene.textures.iter().map(texture).collect(),
+            texels,
+            unused: Effects::SURFACES - scene.effects(),
+            max_depth: bvh.max_depth,
+        })
+    }
+
+    /// Push constants of the visibility kernel for `camera`, in an image of `size` pixels; `background` is
+    /// the radiance where nothing is hit.
+    pub fn constants(&self, camera: &Camera, size: [u32; 2], background: Vec3) -> VisibilityConstants {
+        camera.constants(size, self.origin, self.nodes.len() as u32, background)
+    }
+
+    /// What a ray meets first, from a world position: [`crate::bvh::closest_hit`].
+    pub fn closest_hit(&self, position: DVec3, direction: DVec3) -> Option<Hit> {
+        let position = position - self.origin;
+        crate::bvh::closest_hit(&self.nodes, &self.triangles, &self.materials, position, direction)
+    }
+}
+
+fn check_indices(scene: &Scene) -> Result<(), BufferError> {
+    let check = |field: &dyn Fn() -> String, index: u32, count: usize| {
+        let good = (index as usize) < count;
+        if good { Ok(()) } else { Err(BufferError::BadIndex { field: field(), index, count }) }
+    };
+    for (i, triangle) in scene.triangles.iter().enumerate() {
+        check(&|| format!("triangles[{i}].material"), triangle.material, scene.materials.len())?;
+    }
+    for (i, material) in scene.materials.iter().enumerate() {
+        let textures = [
+            ("base_color_texture", material.base_color_texture),
+            ("metallic_roughness_texture", material.metallic_roughness_texture),
+            ("normal_texture", material.normal_texture),
+            ("emission_texture", material.emission_texture),
+        ];
+        for (name, texture) in textures {
+            let Some(texture) = texture else { continue };
+            check(&|| format!("materials[{i}].{name}"), texture, scene.textures.len())?;
+        }
+    }
+    for (i, texture) in scene.textures.iter().enumerate() {
+        check(&|| format!("textures[{i}].image"), texture.image, scene.images.len())?;
+    }
+    for (i, image) in scene.images.iter().enumerate() {
+        let (size, count) = (u64::from(image.width) * u64::from(image.height), image.texels.len());
+        check(&|| format!("images[{i}].texels"), size.saturating_sub(1) as u32, count)?;
+    }
+    Ok(())
+}
+
+fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
+    let [p0, p1, p2] = triangle.positions.map(|p| (p - origin).as_vec3().to_array());
+    let [n0, n1, n2] = triangle.normals.map(|n| n.to_array());
+    let [uv0, uv1, uv2] = triangle.uvs;
+    GpuTriangle {
+        p0,
+        material: triangle.material,
+        p1,
+        v0: uv0.y,
+        p2,
+        v1: uv1.y,
+        n0,
+        u0: uv0.x,
+        n1,
+        u1: uv1.x,
+        n2,
+        u2: uv2.x,
+        v2: uv2.y,
+        reserved: [0; 3],
+    }
+}
+
+fn pack_material(material: &SceneMaterial) -> GpuMaterial {
+    let texture = |index: Option<u32>| index.unwrap_or(GpuMaterial::NO_TEXTURE);
+    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+    GpuMaterial {
+        base_color: material.material.base_color.to_array(),
+        metalness: material.material.metalness,
+        emission: material.emission.to_array(),
+        roughness: material.material.roughness,
+        dielectric_f0: material.material.dielectric_f0.to_array(),
+        dielectric_f90: material.material.dielectric_f90,
+        base_color_texture: texture(material.base_color_texture),
+        metallic_roughness_texture: texture(material.metallic_roughness_texture),
+        normal_texture: texture(material.normal_texture),
+        normal_scale: material.normal_scale,
+        flags: flag(material.double_sided, GpuMaterial::DOUBLE_SIDED)
+            | flag(material.alpha_cutoff.is_some(), GpuMaterial::ALPHA_MASK),
+        alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
+        base_alpha: material.base_alpha,
+        emission_texture: texture(material.emission_texture),
+    }
+}
+
+fn texture_flags(texture: Texture) -> u32 {
+    let wrap = |wrap: Wrap, clamp: u32, mirror: u32| match wrap {
+        Wrap::Repeat => 0,
+        Wrap::Clamp => clamp,
+        Wrap::Mirror => mirror,
+    };
+    let srgb = if texture.srgb { GpuTexture::SRGB } else { 0 };
+    srgb | wrap(texture.wrap_u, GpuTexture::CLAMP_U, GpuTexture::MIRROR_U)
+        | wrap(texture.wrap_v, GpuTexture::CLAMP_V, GpuTexture::MIRROR_V)
+}

@@ -1,0 +1,212 @@
+//! Materials, textures, and the effects that they call for.
+
+use crate::shapes::panel;
+use crate::writer::Writer;
+use crate::{load, panel_with, warnings};
+use arealight::{Effects, Material};
+use arealight_scene::{Scene, SceneBuffers, Wrap, required_effects};
+use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
+use glam::{DVec3, Vec3};
+use serde_json::{Value, json};
+
+fn material(value: Value) -> Material {
+    load(panel_with(value)).materials[0].material
+}
+
+#[test]
+fn factors_and_defaults() {
+    // glTF's defaults are those of a white, rough metal
+    let default = material(json!({}));
+    let expected = Material { metalness: 1.0, ..Material::default() };
+    assert_eq!(default, expected);
+    // No material at all is the same
+    let mut writer = panel_with(json!({}));
+    writer.root["meshes"][0]["primitives"][0].as_object_mut().unwrap().remove("material");
+    let scene = load(writer);
+    assert_eq!((scene.materials[0].material, scene.materials[0].name.as_str()), (expected, "default"));
+
+    let read = material(json!({ "pbrMetallicRoughness": {
+        "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.25, "roughnessFactor": 0.5 } }));
+    assert_eq!((read.base_color, read.metalness, read.roughness), (Vec3::new(0.1, 0.2, 0.3), 0.25, 0.5));
+}
+
+#[test]
+fn index_and_specular_make_the_dielectric() {
+    let with = |extensions: Value| {
+        let read = material(json!({ "extensions": extensions }));
+        (read.dielectric_f0, read.dielectric_f90)
+    };
+    let close = |(f0, f90): (Vec3, f32), expected: Vec3, grazing: f32| {
+        assert!((f0 - expected).length() < 1e-6 && f90 == grazing, "{f0} {f90}");
+    };
+    close(with(json!({ "KHR_materials_ior": { "ior": 1.5 } })), Vec3::splat(0.04), 1.0);
+    close(with(json!({ "KHR_materials_ior": { "ior": 2.0 } })), Vec3::splat(1.0 / 9.0), 1.0);
+    close(with(json!({ "KHR_materials_ior": { "ior": 0.0 } })), Vec3::ONE, 1.0);
+    let specular = json!({ "specularFactor": 0.5, "specularColorFactor": [1.0, 0.5, 30.0] });
+    close(with(json!({ "KHR_materials_specular": specular })), Vec3::new(0.02, 0.01, 0.5), 0.5);
+    // Both: the colour multiplies the index's reflectance
+    let both = json!({ "KHR_materials_ior": { "ior": 2.0 },
+                       "KHR_materials_specular": { "specularColorFactor": [0.9, 0.9, 0.9] } });
+    close(with(both), Vec3::splat(0.1), 1.0);
+}
+
+#[test]
+fn what_is_out_of_range_or_unknown_is_said() {
+    for (value, text) in [
+        (
+            json!({ "pbrMetallicRoughness": { "roughnessFactor": 1.5 } }),
+            "roughnessFactor [1.5] is not in [0, 1]: clamped",
+        ),
+        (
+            json!({ "emissiveFactor": [0, 0, -1] }),
+            "emissiveFactor [0.0, 0.0, -1.0] is not in [0, 1]: clamped",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_ior": { "ior": 0.5 } } }),
+            "KHR_materials_ior: 0.5 is below 1: 1.5 is used",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": -1 } } }),
+            "emissiveStrength -1 must be finite and not negative: 0 is used",
+        ),
+        (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
+        (
+            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1 } } }),
+            "KHR_materials_clearcoat is not supported: ignored",
+        ),
+    ] {
+        let scene = load(panel_with(value));
+        assert_eq!(warnings(&scene), [format!("material '#0': {text}")]);
+        assert!((0.0..=1.0).contains(&scene.materials[0].material.roughness));
+    }
+}
+
+/// A writer with a panel and a texture of 2 by 1 texels (half red with alpha 128, white).
+fn textured(material: Value) -> Writer {
+    let mut writer = panel_with(material);
+    let image = image::RgbaImage::from_raw(2, 1, vec![128, 0, 0, 128, 255, 255, 255, 255]).unwrap();
+    let mut png = std::io::Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    writer.texture("texture", png.get_ref());
+    writer
+}
+
+#[test]
+fn textures_are_decoded_and_shared() {
+    let scene = load(textured(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 },
+                                  "metallicRoughnessTexture": { "index": 0 } },
+        "normalTexture": { "index": 0, "scale": 0.5 }, "emissiveTexture": { "index": 0 } })));
+    let read = &scene.materials[0];
+    assert_eq!((read.base_color_texture, read.emission_texture), (Some(0), Some(0)));
+    assert_eq!((read.metallic_roughness_texture, read.normal_texture), (Some(1), Some(1)));
+    assert_eq!(read.normal_scale, 0.5);
+    assert_eq!((scene.textures[0].srgb, scene.textures[1].srgb), (true, false));
+    assert_eq!(scene.images.len(), 1);
+    assert_eq!((scene.images[0].width, scene.images[0].height), (2, 1));
+    assert_eq!(scene.images[0].texels, [0x8000_0080, 0xFFFF_FFFF]);
+    assert_eq!(warnings(&scene), [""; 0]);
+    // On the GPU both textures read the same texels
+    let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+    assert_eq!(buffers.texels.len(), 2);
+    assert_eq!(
+        buffers.textures[0],
+        GpuTexture { first_texel: 0, width: 2, height: 1, flags: GpuTexture::SRGB }
+    );
+    assert_eq!(buffers.textures[1].flags, 0);
+    assert_eq!((buffers.materials[0].normal_texture, buffers.materials[0].normal_scale), (1, 0.5));
+}
+
+#[test]
+fn wrap_modes_become_flags() {
+    let wrapped = |sampler: Value| {
+        let mut writer = textured(json!({ "normalTexture": { "index": 0 } }));
+        writer.push("samplers", sampler);
+        writer.root["textures"][0]["sampler"] = json!(0);
+        let scene = load(writer);
+        let flags = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().textures[0].flags;
+        ([scene.textures[0].wrap_u, scene.textures[0].wrap_v], flags)
+    };
+    let (clamp, mirror) = (33071, 33648);
+    let (modes, flags) = wrapped(json!({}));
+    assert_eq!((modes, flags), ([Wrap::Repeat; 2], 0));
+    let (modes, flags) = wrapped(json!({ "wrapS": clamp, "wrapT": mirror }));
+    assert_eq!((modes, flags), ([Wrap::Clamp, Wrap::Mirror], GpuTexture::CLAMP_U | GpuTexture::MIRROR_V));
+    let (_, flags) = wrapped(json!({ "wrapS": mirror, "wrapT": clamp }));
+    assert_eq!(flags, GpuTexture::MIRROR_U | GpuTexture::CLAMP_V);
+}
+
+#[test]
+fn texture_features_that_are_missing_are_said() {
+    let specular = json!({ "specularTexture": { "index": 0 } });
+    let mut writer = textured(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 1 } },
+        "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": {} } },
+        "emissiveTexture": { "index": 0, "extensions": { "KHR_texture_transform": {} } },
+        "extensions": { "KHR_materials_specular": specular } }));
+    let attributes = &mut writer.root["meshes"][0]["primitives"][0]["attributes"];
+    attributes.as_object_mut().unwrap().remove("TEXCOORD_0");
+    let expected = [
+        "material '#0': KHR_materials_specular: its textures are not supported: ignored",
+        "material '#0': baseColorTexture.texCoord 1 is not supported: TEXCOORD_0 is used",
+        "material '#0': emissiveTexture: KHR_texture_transform is not supported: ignored",
+        "material '#0': normalTexture: KHR_texture_transform is not supported: ignored",
+        "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_0: its textures are read at (0, 0)",
+    ];
+    assert_eq!(warnings(&load(writer)), expected);
+}
+
+#[test]
+fn masks_and_sides_become_flags() {
+    let scene = load(panel_with(json!({ "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+        "pbrMetallicRoughness": { "baseColorFactor": [1, 1, 1, 0.75] } })));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!(gpu.flags, GpuMaterial::ALPHA_MASK | GpuMaterial::DOUBLE_SIDED);
+    assert_eq!((gpu.alpha_cutoff, gpu.base_alpha), (0.25, 0.75));
+    assert_eq!(gpu.base_color_texture, GpuMaterial::NO_TEXTURE);
+    let scene = load(panel_with(json!({ "alphaMode": "MASK" })));
+    assert_eq!(scene.materials[0].alpha_cutoff, Some(0.5), "glTF's default");
+    assert_eq!(load(panel_with(json!({}))).materials[0].alpha_cutoff, None);
+}
+
+#[test]
+fn effects_are_what_the_scene_calls_for() {
+    let calls = |scene: &Scene| -> Vec<String> {
+        let calls = required_effects(scene);
+        let union: Effects = calls.iter().map(|call| call.effect).collect();
+        assert_eq!(union, scene.effects());
+        calls.iter().map(ToString::to_string).collect()
+    };
+    let metal = json!({ "name": "metal" });
+    assert_eq!(calls(&load(panel_with(metal))), ["glossy: material 'metal'"]);
+    // A metal whose texture can make it a dielectric
+    let maybe = json!({ "pbrMetallicRoughness": { "metallicRoughnessTexture": { "index": 0 } } });
+    assert_eq!(calls(&load(textured(maybe))), ["diffuse: material '#0'", "glossy: material '#0'"]);
+    let matte = json!({ "name": "matte", "pbrMetallicRoughness": { "metallicFactor": 0 },
+                        "extensions": { "KHR_materials_specular": { "specularFactor": 0 } } });
+    let matte = load(panel_with(matte));
+    assert_eq!(calls(&matte), ["diffuse: material 'matte'", "specular_input: material 'matte'"]);
+    assert_eq!(SceneBuffers::new(&matte, DVec3::ZERO).unwrap().unused, Effects::GLOSSY);
+    let black = json!({ "name": "black", "pbrMetallicRoughness": {
+        "metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1] } });
+    assert_eq!(calls(&load(panel_with(black.clone()))), ["glossy: material 'black'"]);
+    // An index of 1.5 is the usual one; a metal's index does not matter
+    let mut usual = black.clone();
+    usual["extensions"] = json!({ "KHR_materials_ior": { "ior": 1.5 } });
+    assert_eq!(calls(&load(panel_with(usual))), ["glossy: material 'black'"]);
+    let metal = json!({ "name": "metal", "extensions": { "KHR_materials_ior": { "ior": 3 } } });
+    assert_eq!(calls(&load(panel_with(metal))), ["glossy: material 'metal'"]);
+    // Lights
+    let mut writer = panel_with(black);
+    let sign = writer.emitter("sign", [1.0; 3], true);
+    writer.object("sign", &panel(1.0, 1.0), sign, json!({}));
+    assert_eq!(calls(&load(writer)), ["glossy: material 'black'", "two_sided: light 'sign'"]);
+}
+
+#[test]
+fn materials_that_nothing_is_made_of_do_not_count() {
+    let mut writer = panel_with(json!({ "name": "used" }));
+    writer.push("materials", json!({ "name": "unused", "alphaMode": "BLEND" }));
+    let scene = load(writer);
+    assert_eq!((scene.materials.len(), warnings(&scene).len()), (1, 0));
+}
