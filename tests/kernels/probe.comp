@@ -13,9 +13,11 @@ const int FUNCTION_COMMON = 1;
 const int FUNCTION_TABLE = 2;
 const int FUNCTION_GGX = 3;
 const int FUNCTION_ARC = 4;
+const int FUNCTION_RAY_ORIGIN = 5;
 
 #include "arealight/form_factor/arc.glsl"
 #include "arealight/ggx.glsl"
+#include "arealight/shadows/ray_origin.glsl"
 #include "table_image.glsl"
 
 struct ProbeArguments {
@@ -94,8 +96,11 @@ void main() {
         result = table_of(given.a.xyz, given.b.xyz, given.a.w);
     } else if (FUNCTION == FUNCTION_GGX) {
         result = ggx_of(given.a.xyz, given.b.xyz, given.a.w, given.c.xy);
-    } else {
+    } else if (FUNCTION == FUNCTION_ARC) {
         result = arc_of(given.a.xyz, given.b.xyz);
+    } else {
+        vec3 origin = arealight_ray_origin(given.a.xyz, given.b.xyz, given.b.w);
+        result = ProbeResults(vec4(origin, 0.0), vec4(0.0), vec4(0.0), vec4(0.0));
     }
     results[index] = result;
 }

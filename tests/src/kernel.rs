@@ -47,6 +47,19 @@ pub static BRANCHES: Kernel = Kernel {
     constants: &[0, 1, 2],
 };
 
+/// Directions drawn over polygons.
+pub static POLYGON_SAMPLING: Kernel = Kernel {
+    name: "polygon_sampling",
+    spirv: include_bytes!("../spirv/polygon_sampling.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        Binding::storage_buffer("arguments", Access::Read, "vec4[6] a polygon"),
+        Binding::storage_buffer("results", Access::Write, "vec4 a draw: direction, area"),
+    ],
+    constants: &[0],
+};
+
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
@@ -63,6 +76,8 @@ pub enum Function {
     Ggx = 3,
     /// `arealight_arc` of vertices a and b by a form a.w: their directions, with the arc, and where it crosses the horizon.
     Arc = 4,
+    /// `arealight_ray_origin` of a position a, a normal b and a step b.w.
+    RayOrigin = 5,
 }
 
 impl TestEngine {
