@@ -16,6 +16,7 @@
 //! | [`cubature`] | any integrand over a polygon, adaptively: the independent method |
 //! | [`shading`] | a polygon light on a surface: the truth by cubature, and the LTC answer |
 //! | [`texture`] | what a textured light shows, its blur, and the prefilter's pyramid |
+//! | [`visibility`] | what is visible of a flat light behind triangles |
 //! | [`stream`] | random numbers, the same on every machine |
 
 pub mod cubature;
@@ -29,3 +30,4 @@ pub mod sphere;
 pub mod stream;
 pub mod texture;
 pub mod tube;
+pub mod visibility;
