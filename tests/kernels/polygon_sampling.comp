@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint DRAWS = 1u;
 
 struct SamplingArguments {
-    vec4 vertices[AREALIGHT_SAMPLING_VERTICES]; // in w of the first: their count
+    vec4 vertices[AREALIGHT_SAMPLING_VERTICES];
 };
 
 layout(set = 0, binding = 0, std430) readonly buffer Arguments {
@@ -35,7 +35,6 @@ void main() {
     for (int i = 0; i < AREALIGHT_SAMPLING_VERTICES; i++) {
         polygon.vertices[i] = given.vertices[i].xyz;
     }
-    polygon.count = int(given.vertices[0].w);
     vec2 random = fract(0.5 + float(index % DRAWS) * vec2(0.7548776662, 0.5698402910));
     ArealightDraw draw = arealight_draw(polygon, random);
     results[index] = vec4(draw.direction, draw.area);

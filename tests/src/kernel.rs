@@ -54,7 +54,7 @@ pub static POLYGON_SAMPLING: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        Binding::storage_buffer("arguments", Access::Read, "vec4[6] a polygon"),
+        Binding::storage_buffer("arguments", Access::Read, "vec4[5] a polygon"),
         Binding::storage_buffer("results", Access::Write, "vec4 a draw: direction, area"),
     ],
     constants: &[0],

@@ -33,14 +33,11 @@ fn polygons(count: usize, size: f64) -> Vec<Polygon> {
 
 /// The draws of each polygon: directions, with the area in w.
 fn draws(engine: &TestEngine, polygons: &[Polygon]) -> Vec<Vec<(DVec3, f64)>> {
-    let arguments: Vec<[[f32; 4]; 6]> = polygons
+    let arguments: Vec<[[f32; 4]; 5]> = polygons
         .iter()
         .map(|polygon| {
-            let vertex = |i: usize| polygon.get(i).map_or([0.0; 3], |v| v.as_vec3().to_array());
-            [0, 1, 2, 3, 4, 5].map(|i| {
-                let [x, y, z] = vertex(i);
-                [x, y, z, if i == 0 { polygon.len() as f32 } else { 0.0 }]
-            })
+            // The last vertex again for those that are not there
+            [0, 1, 2, 3, 4].map(|i: usize| polygon[i.min(polygon.len() - 1)].as_vec3().extend(0.0).to_array())
         })
         .collect();
     let given = engine.host().storage_buffer("arguments", &arguments).unwrap();

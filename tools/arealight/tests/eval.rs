@@ -84,6 +84,40 @@ fn each_method_meets_its_measure() {
     }
 }
 
+/// Shadows by exact visibility, of each family as RMSE over mean: the truth by both programs' cubatures; the fitted lobes, in float64 and by
+/// the GPU, within what the reference's own lobes of a fitted table give.
+#[test]
+fn what_is_visible_of_lights_behind_triangles_shines() {
+    let device = device();
+    for (method, bounds) in
+        [("truth", [1e-9, 1e-8, 1e-8]), ("oracle", [1e-14, 1.4e-2, 0.12]), ("gpu", [1e-6, 1.4e-2, 0.12])]
+    {
+        if method == "gpu" && !device {
+            continue;
+        }
+        let measures = |cases: &str| -> Vec<f64> {
+            let output =
+                eval(&[cases, "--on", method, "--against", &reference("shadows-truth.json"), "--json"]);
+            assert!(output.status.success(), "{}", text(&output.stderr));
+            let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+            let families = summary["families"].as_array().unwrap().iter();
+            families.map(|family| family["rmse_over_mean"].as_f64().unwrap()).collect()
+        };
+        let found = measures(&reference("shadows.json"));
+        assert!(
+            found.len() == 3 && found.iter().zip(bounds).all(|(f, bound)| *f <= bound),
+            "{method}: {found:?}"
+        );
+        // The twin: without what blocks them
+        let mut cases = json(reference("shadows.json"));
+        for case in cases["cases"].as_array_mut().unwrap() {
+            case.as_object_mut().unwrap().remove("occluders");
+        }
+        let found = measures(&write(&format!("unshadowed-{method}.json"), &cases.to_string()));
+        assert!(found.iter().all(|f| *f > 0.3), "{method}: {found:?}");
+    }
+}
+
 #[test]
 fn failures_say_what_and_where_and_have_their_exit_codes() {
     let cases = reference("cases.json");

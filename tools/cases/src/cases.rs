@@ -11,6 +11,7 @@ use arealight::{
 };
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
+use arealight_oracle::visibility::Blocker;
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
@@ -63,6 +64,8 @@ pub struct Case {
     pub material: CaseMaterial,
     /// The light.
     pub light: CaseLight,
+    /// Triangles in the world that block light from both sides and reflect nothing.
+    pub blockers: Vec<Blocker>,
     /// Fields of the file that the format does not know.
     pub unknown_fields: Vec<String>,
 }
@@ -175,6 +178,8 @@ pub struct SupportedCase {
     pub light: RelativeLight,
     /// Where that image is from, and its coordinates.
     pub texture: Option<CaseTexture>,
+    /// What blocks the light, relative to the shading point.
+    pub blockers: Vec<Blocker>,
 }
 
 /// As [`SupportedCase`], with a light that is no polygon.
@@ -234,6 +239,9 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
         view: fields.direction("view")?,
         material: read_material(&fields)?,
         light: read_light(&light_fields)?,
+        blockers: fields
+            .optional("occluders", |f, field| f.list(field, Fields::triangle_at))?
+            .unwrap_or_default(),
         unknown_fields: [fields.unread(), light_fields.unread()].concat(),
     };
     Ok(case)
@@ -371,6 +379,7 @@ impl Case {
             view: self.view,
             light,
             texture: texture.clone(),
+            blockers: self.blockers.iter().map(|blocker| blocker.map(|v| v - self.position)).collect(),
         })
     }
 
@@ -383,6 +392,10 @@ impl Case {
         mut load: impl FnMut(&str) -> Result<Arc<Texture>, String>,
     ) -> Result<ShapeCase, Unsupported> {
         self.check_fields()?;
+        if !self.blockers.is_empty() {
+            let reason = "occluders: before a light that is no polygon".into();
+            return Err(Unsupported { reason });
+        }
         let shape = match self.light.shape {
             CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
             CaseShape::Disk { center, axis_u, axis_v, .. } => {

@@ -20,13 +20,13 @@
 // any plane through the point is right to 1e-3. Of the area of a polygon smaller than a hundredth of its distance rounding takes a part
 // of 5e-4 and more: the areas of two circles cancel.
 
-// The most vertices: a quad, cut at two horizons.
-const int AREALIGHT_SAMPLING_VERTICES = 6;
+// The most vertices: a quad, cut at the horizon.
+const int AREALIGHT_SAMPLING_VERTICES = 5;
 
-// A convex polygon in a lobe's cosine space, at or above its horizon.
+// A convex polygon in a lobe's cosine space, at or above its horizon: from the shading point, in order, of either orientation. One of fewer
+// vertices has some of them twice, next to each other.
 struct ArealightSamplingPolygon {
-    vec3 vertices[AREALIGHT_SAMPLING_VERTICES]; // from the shading point, in order, of either orientation
-    int count;                                  // of them; the form factor of less than 3 is 0
+    vec3 vertices[AREALIGHT_SAMPLING_VERTICES];
 };
 
 // A drawn direction.
@@ -164,12 +164,10 @@ struct ArealightSamplingEdges {
 };
 
 ArealightSamplingEdges arealight_sampling_edges(ArealightSamplingPolygon polygon) {
-    // Vertices that are not there count as the last one, and have edges without length
-    int last = polygon.count - 1;
     vec3 middle = vec3(0.0);
     vec3 units[AREALIGHT_SAMPLING_VERTICES];
     for (int i = 0; i < AREALIGHT_SAMPLING_VERTICES; i++) {
-        vec3 vertex = polygon.vertices[min(i, last)];
+        vec3 vertex = polygon.vertices[i];
         units[i] = vertex * inversesqrt(max(dot(vertex, vertex), 1e-37));
         middle += units[i];
     }
@@ -224,13 +222,13 @@ void arealight_order(inout vec3 a, inout vec3 b) {
     a = lower;
 }
 
-// The azimuths with their keys in z, in order. (A network of 12 comparisons; Knuth 1998, 5.3.4.)
+// The azimuths with their keys in z, in order. (A network of 9 comparisons; Knuth 1998, 5.3.4.)
 void arealight_sort(inout vec3 v[AREALIGHT_SAMPLING_VERTICES]) {
-    arealight_order(v[0], v[5]); arealight_order(v[1], v[3]); arealight_order(v[2], v[4]);
+    arealight_order(v[0], v[3]); arealight_order(v[1], v[4]);
+    arealight_order(v[0], v[2]); arealight_order(v[1], v[3]);
+    arealight_order(v[0], v[1]); arealight_order(v[2], v[4]);
     arealight_order(v[1], v[2]); arealight_order(v[3], v[4]);
-    arealight_order(v[0], v[3]); arealight_order(v[2], v[5]);
-    arealight_order(v[0], v[1]); arealight_order(v[2], v[3]); arealight_order(v[4], v[5]);
-    arealight_order(v[1], v[2]); arealight_order(v[3], v[4]);
+    arealight_order(v[2], v[3]);
 }
 
 // The sector between neighbours in azimuth of a polygon that the zenith is outside of: of the two edges that span it the lower one in the middle is

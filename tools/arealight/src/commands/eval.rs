@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::images::Images;
 use crate::output::print;
 use crate::quality::QualityArguments;
-use crate::{gpu, progress};
+use crate::{gpu, progress, visible};
 use arealight::{Footprint, FormFactor, Fresnel, Quality};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
 use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
@@ -187,7 +187,11 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let sorted: Vec<Result<Supported, String>> =
         cases.iter().map(|case| supported(case, |path| images.load(path))).collect();
     let known = || sorted.iter().flatten();
-    let polygons: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
+    let whole: Vec<SupportedCase> = known().filter_map(Supported::polygon).cloned().collect();
+    // Of lights behind blockers only what is visible shines
+    let parts: Vec<Vec<SupportedCase>> = whole.iter().map(visible::parts).collect();
+    let counts: Vec<usize> = parts.iter().map(Vec::len).collect();
+    let polygons: Vec<SupportedCase> = parts.into_iter().flatten().collect();
     let shapes: Vec<ShapeCase> = known().filter_map(Supported::shape).cloned().collect();
     // The most precise levels, unless others are to be seen
     let precise = Quality {
@@ -237,6 +241,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
             (polygons, shapes)
         }
     };
+    let of_polygons = visible::sums(&whole, &counts, of_polygons);
     // Put the reasons in between
     let (mut of_polygons, mut of_shapes) = (of_polygons.into_iter(), of_shapes.into_iter());
     let answer = |(case, sorted): (&Case, &Result<Supported, String>)| {

@@ -167,6 +167,17 @@ impl<'a> Fields<'a> {
         self.numbers_at(field, value).map(DVec3::from_array)
     }
 
+    /// Three corners in `value`.
+    pub fn triangle_at(&self, field: &str, value: &Value) -> Result<[DVec3; 3], CaseError> {
+        let corners = value.as_array().filter(|corners| corners.len() == 3);
+        let corners = corners.ok_or_else(|| self.error(field, &describe("3 corners", value)))?;
+        let mut triangle = [DVec3::ZERO; 3];
+        for (i, corner) in corners.iter().enumerate() {
+            triangle[i] = self.vector_at(&format!("{field}[{i}]"), corner)?;
+        }
+        Ok(triangle)
+    }
+
     /// Two numbers in `value`.
     pub fn pair_at(&self, field: &str, value: &Value) -> Result<DVec2, CaseError> {
         self.numbers_at(field, value).map(DVec2::from_array)
