@@ -60,6 +60,21 @@ pub static POLYGON_SAMPLING: Kernel = Kernel {
     constants: &[0],
 };
 
+/// Shadow rays for shading points under lights of triangles.
+pub static SHADOW_RAYS: Kernel = Kernel {
+    name: "shadow_rays",
+    spirv: include_bytes!("../spirv/shadow_rays.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        arealight::kernels::TABLE,
+        Binding::storage_buffer("points", Access::Read, "20 words a point"),
+        Binding::storage_buffer("corners", Access::Read, "vec4[3] a triangle"),
+        Binding::storage_buffer("rays", Access::Write, "vec4[2] a ray: direction and sum, colour"),
+    ],
+    constants: &[0],
+};
+
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]
