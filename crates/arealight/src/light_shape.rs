@@ -307,8 +307,8 @@ mod tests {
         light(LightShape::Tube { p0, p1, radius, ends: TubeEnds::Round })
     }
 
-    fn layer(layer: u32) -> Option<LightTexture> {
-        Some(LightTexture { layer, uvs: vec![] })
+    fn layer(layer: u32) -> LightTexture {
+        LightTexture { layer, uvs: vec![] }
     }
 
     #[test]
@@ -386,7 +386,7 @@ mod tests {
         let (nan, huge) = (DVec3::new(0.0, f64::NAN, 0.0), DVec3::new(0.0, 0.0, 1e39));
         let (x, y, zero) = (DVec3::X, DVec3::Y, DVec3::ZERO);
         let sphere = |radius: f64| light(LightShape::Sphere { center: x, radius });
-        let shown = Light { texture: layer(0), ..sphere(1.0) };
+        let shown = Light { texture: Some(layer(0)), ..sphere(1.0) };
         let dark = Light { radiance: Vec3::new(0.0, -1.0, 0.0), ..sphere(1.0) };
         for (light, expected) in [
             (disk(nan, x, y), "center: [0, NaN, 0] is not a finite"),
@@ -413,7 +413,7 @@ mod tests {
             assert!(message.starts_with(expected), "{message}\nnot {expected}");
         }
         // The twins: the same, as they should be
-        let shown = Light { texture: layer(0), ..disk(x, x, y) };
+        let shown = Light { texture: Some(layer(0)), ..disk(x, x, y) };
         for light in [disk(x, x, y), shown, sphere(1.0), tube(x, y, 1.0)] {
             light.validate().unwrap();
         }
@@ -422,7 +422,7 @@ mod tests {
     #[test]
     fn a_textured_disk_has_its_layer() {
         let plain = disk(DVec3::ZERO, DVec3::X, DVec3::Y);
-        let shown = Light { texture: layer(7), ..plain.clone() };
+        let shown = Light { texture: Some(layer(7)), ..plain.clone() };
         assert_eq!(shown.pack_shape(DVec3::ZERO).unwrap().detail, 7);
         assert_eq!(shown.effects(), Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
         assert_eq!(plain.effects(), Effects::ELLIPSE);

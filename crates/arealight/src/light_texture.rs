@@ -103,9 +103,8 @@ impl LightTexture {
     /// [`TextureError`] says what is wrong with them.
     pub fn map(&self, shape: &LightShape) -> Result<TextureMap, TextureError> {
         match *shape {
-            LightShape::Polygon(_) => {}
             LightShape::Mesh { .. } if shape.is_mesh() => return Err(TextureError::Mesh),
-            LightShape::Mesh { .. } => {}
+            LightShape::Polygon(_) | LightShape::Mesh { .. } => {}
             LightShape::Disk { center, axis_u, axis_v } => {
                 return Ok(TextureMap {
                     corner: center - axis_u + axis_v,

@@ -295,7 +295,7 @@ mod tests {
         let disk = of(LightShape::Disk { center: DVec3::ZERO, axis_u: DVec3::X, axis_v: DVec3::Y });
         let shown = Light { texture: Some(LightTexture { layer: 0, uvs: vec![] }), ..disk };
         let needs = |lights: &[Light]| PackedLights::new(lights, DVec3::ZERO).unwrap().summary().effects;
-        assert_eq!(needs(&[triangle.clone()]), Effects::empty());
+        assert_eq!(needs(std::slice::from_ref(&triangle)), Effects::empty());
         assert_eq!(needs(&[triangle.clone(), textured]), Effects::TEXTURED);
         let both = Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
         assert_eq!(needs(&[triangle, shown]), both);

@@ -49,7 +49,7 @@ pub struct Arguments {
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
-    /// What surfaces are shaded with: `required` (what the scene's need), or a list of diffuse, glossy and specular_input, such as
+    /// What surfaces are shaded with: `required` (what the scene's need), or a list of `diffuse`, `glossy` and `specular_input`, such as
     /// diffuse
     #[arg(long, value_name = "SET", default_value = "required")]
     surfaces: SurfaceChoice,

@@ -169,7 +169,7 @@ fn the_lamps_are_of_every_shape() {
     let scene = load("shapes.glb");
     let kinds = |kind| scene.lights.iter().filter(|light| light.effects().contains(kind)).count();
     assert_eq!([Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE].map(kinds), [3, 2, 3]);
-    assert!(scene.lights.is_empty(), "no lamp is shaded as its mesh");
+    assert!(scene.lights.iter().all(|light| !light.shape.is_polygonal()), "no lamp is shaded as its mesh");
     let ends = |light: &arealight::Light| match light.shape {
         arealight::LightShape::Tube { ends, .. } => Some(ends),
         _ => None,
