@@ -158,4 +158,18 @@ mod tests {
         sets.write(set, &TEXTURE_BLUR, &written(5), &[]);
         assert_eq!(sets.check(set), Ok(()));
     }
+
+    #[test]
+    fn a_set_is_refused_by_frames_that_need_what_it_was_written_without() {
+        let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
+        assert_eq!(sets.check_present(set, &["shapes"]), Ok(()), "nobody knows of it");
+        sets.write(set, &TEXTURE_BLUR, &written(5), &["shapes"]);
+        assert_eq!(sets.check_present(set, &["light_textures"]), Ok(()));
+        let refused = sets.check_present(set, &["light_textures", "shapes"]);
+        let is_named = matches!(refused, Err(Error::InvalidArgument { field: "shapes", .. }));
+        assert_eq!(is_named, cfg!(debug_assertions), "{refused:?}");
+        // The twin: written with them
+        sets.write(set, &TEXTURE_BLUR, &written(5), &[]);
+        assert_eq!(sets.check_present(set, &["light_textures", "shapes"]), Ok(()));
+    }
 }
