@@ -3,7 +3,7 @@
 //! `-- shapes` these alone. Prints Markdown tables.
 
 use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{Footprint, Quality};
+use arealight::{Footprint, LightTexture, Quality};
 use arealight_benches::pictures;
 use arealight_benches::start::start;
 use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure, round_lamps};
@@ -85,10 +85,8 @@ fn frame(
     let buffers = SceneBuffers::new(scene, camera.position)?;
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
-    renderer = renderer.with_shapes(&scene.shapes)?;
-    let options = ShadeOptions { effects: scene.effects(), quality, ..ShadeOptions::all() };
-    let what = (options, scene.lights.len() + scene.shapes.len());
-    Ok(measure(engine.host(), name, &mut renderer, what, against, rounds)?)
+    let options = ShadeOptions { surfaces: scene.effects(), quality, ..ShadeOptions::default() };
+    Ok(measure(engine.host(), name, &mut renderer, options, against, rounds)?)
 }
 
 /// Frames of the floor under disks, and under spheres.
@@ -98,7 +96,7 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
         for cull_threshold in THRESHOLDS {
             for count in ROUND_LAMPS {
                 let mut scene = floor(FLOORS[0].1)?;
-                scene.shapes = round_lamps(count, FLOOR, are_spheres);
+                scene.lights = round_lamps(count, FLOOR, are_spheres);
                 let against = (TileOptions { cull_threshold, ..TileOptions::default() }, Baseline::Exact);
                 let name = format!("{count} {kind}, threshold {cull_threshold}");
                 frames.push(frame(engine, (&name, &scene), SIZE, Quality::default(), against, rounds)?);
@@ -108,12 +106,13 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
     Ok(frames)
 }
 
-/// Frames of disks that show an image, by one fetch and by four.
+/// Frames of textured disks, by one fetch and by four.
 fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let mut frames = vec![];
     let mut scene = floor(FLOORS[0].1)?;
-    scene.shapes = disks(DISKS, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
-    scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(0));
+    scene.lights = disks(DISKS, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
+    let texture = Some(LightTexture { layer: 0, uvs: vec![] });
+    scene.lights.iter_mut().for_each(|disk| disk.texture.clone_from(&texture));
     for footprint in [Footprint::Round, Footprint::Ellipse] {
         let quality = Quality { footprint, ..Quality::default() };
         let against = (TileOptions::default(), Baseline::Plain);

@@ -6,7 +6,7 @@ mod report;
 
 use crate::textures::{self, TextureCost};
 use arealight::kernels::Kernel;
-use arealight::{Effects, Footprint, FormFactor, LightTable, PolygonLight, Quality, Surface};
+use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality, Surface};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, EvalPoint};
 use arealight_oracle::shading::footprint::Filter;
@@ -77,7 +77,7 @@ impl Method {
     }
 }
 
-/// What the poses call for.
+/// What the poses need.
 const EFFECTS: Effects = Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::TEXTURED);
 
 /// Texels of the pictures, and of the pyramid, to a side.
@@ -324,5 +324,5 @@ fn far(engine: &Engine, truth: &dyn Fn(Quality, &EvalPoint) -> DVec3) -> Result<
 
 /// The point's light without its texture.
 fn untextured(point: &EvalPoint) -> EvalPoint {
-    EvalPoint { light: PolygonLight { texture: None, ..point.light.clone() }, ..point.clone() }
+    EvalPoint { light: Light { texture: None, ..point.light.clone() }, ..point.clone() }
 }

@@ -9,7 +9,6 @@ mod text;
 pub use costs::{Costs, LobeCosts, MethodCosts, rows};
 pub use text::{Modelled, markdown, text};
 
-use arealight::Effects;
 use arealight::kernels::{Kernel, SHADE};
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
@@ -271,9 +270,8 @@ pub fn count_scene(engine: &Engine, scene: &Scene, size: [u32; 2]) -> Result<[Co
     let buffers =
         SceneBuffers::new(scene, camera.position).map_err(|error| ModelError::Scene(error.to_string()))?;
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    let quads =
-        scene.lights.iter().filter(|light| !light.effects().intersects(Effects::BEYOND_QUADS)).count();
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
+    let quads = renderer.lights().quad_count as usize;
     count(&mut renderer, quads, size)
 }
 

@@ -10,7 +10,7 @@ use crate::table::Table;
 use crate::textures::{clocked, is_software};
 use arealight::kernels::{Kernel, SHADE};
 use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
-use arealight::{Effects, PolygonLight, Shape, ShapeLight, TileClass};
+use arealight::{Effects, Light, LightShape, LightSummary, TileClass};
 use arealight_engine::host::Host;
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
 use glam::{DVec3, Vec3, Vec4};
@@ -22,11 +22,11 @@ const METHODS: usize = 3;
 /// What a frame is held against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Baseline {
-    /// Polygons without images as [`School::Clipless`] shades them, with our table and light reads.
+    /// Polygons without textures as [`School::Clipless`] shades them, with our table and light reads.
     Clipless,
     /// The shade kernel over all lights of the frame.
     Exact,
-    /// The shade kernel over the same shapes without the images that they show.
+    /// The shade kernel over the same lights without their textures.
     Plain,
 }
 
@@ -41,17 +41,17 @@ impl Baseline {
     }
 
     /// Its kernel, and that kernel's specialisation.
-    fn kernel(self, options: ShadeOptions) -> (&'static Kernel, Vec<(u32, u32)>) {
+    fn kernel(self, options: ShadeOptions, lights: LightSummary) -> (&'static Kernel, Vec<(u32, u32)>) {
         let shade = &SHADE;
         match self {
             Self::Clipless => {
                 let school = School::Clipless as u32;
-                (&SHADE_YARDSTICK, vec![(0, (options.effects | LOBES).bits()), (1, school)])
+                (&SHADE_YARDSTICK, vec![(0, (options.effects(lights) | LOBES).bits()), (1, school)])
             }
-            Self::Exact => (shade, shade_specialization(options)),
+            Self::Exact => (shade, shade_specialization(options, lights)),
             Self::Plain => {
-                let effects = options.effects - Effects::TEXTURED_ELLIPSE;
-                (shade, shade_specialization(ShadeOptions { effects, ..options }))
+                let effects = lights.effects - Effects::TEXTURED_ELLIPSE;
+                (shade, shade_specialization(options, LightSummary { effects, ..lights }))
             }
         }
     }
@@ -85,13 +85,14 @@ pub fn measure(
     host: &Host,
     name: &str,
     renderer: &mut SceneRenderer<'_>,
-    (options, lights): (ShadeOptions, usize),
+    options: ShadeOptions,
     (tiles, baseline): (TileOptions, Baseline),
     rounds: usize,
 ) -> Result<TiledFrame, EngineError> {
     let view = renderer.tiled(options, tiles)?;
-    let (kernel, specialization) = baseline.kernel(options);
-    let exact = shade_specialization(options);
+    let lights = (renderer.lights().light_count + renderer.lights().shape_count) as usize;
+    let (kernel, specialization) = baseline.kernel(options, renderer.lights());
+    let exact = shade_specialization(options, renderer.lights());
     let mut seconds: [Vec<f64>; METHODS] = Default::default();
     for round in 0..=rounds {
         let took = [
@@ -146,56 +147,54 @@ fn grid(count: usize, side: f64) -> (f64, impl Iterator<Item = DVec3>) {
 
 /// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so high as half of what
 /// is between them.
-pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<PolygonLight> {
+pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<Light> {
     let (step, places) = grid(count, side);
     let lamp = |(index, place): (usize, DVec3)| {
         let at = center + place.with_y(0.5 * step);
         let half = 0.1 * step;
         // Its front is down
         let corner = |x: f64, z: f64| at + DVec3::new(x * half, 0.0, z * half);
-        PolygonLight {
+        Light {
             name: format!("lamp {index}"),
-            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
             radiance: Vec3::splat(10.0),
-            ..PolygonLight::default()
+            shape: LightShape::Polygon(vec![
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(1.0, 1.0),
+                corner(-1.0, 1.0),
+            ]),
+            ..Light::default()
         }
     };
     places.enumerate().map(lamp).collect()
 }
 
 /// As [`lamps`], of disks that face down, or of spheres.
-pub fn round_lamps(count: usize, side: f64, are_spheres: bool) -> Vec<ShapeLight> {
+pub fn round_lamps(count: usize, side: f64, are_spheres: bool) -> Vec<Light> {
     let (step, places) = grid(count, side);
     let lamp = |(index, place): (usize, DVec3)| {
         let (center, radius) = (place.with_y(0.5 * step), 0.1 * step);
         // x cross z is down
-        let disk = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
-        ShapeLight {
+        let disk = LightShape::Disk { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
+        Light {
             name: format!("lamp {index}"),
             radiance: Vec3::splat(10.0),
-            two_sided: false,
-            texture: None,
-            shape: if are_spheres { Shape::Sphere { center, radius } } else { disk },
+            shape: if are_spheres { LightShape::Sphere { center, radius } } else { disk },
+            ..Light::default()
         }
     };
     places.enumerate().map(lamp).collect()
 }
 
 /// Disks that face down to `center` from `height` above it, side by side as many as a square of `side` holds.
-pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<ShapeLight> {
+pub fn disks(count: usize, side: f64, height: f64, center: DVec3) -> Vec<Light> {
     let (step, places) = grid(count, side);
     let disk = |(index, place): (usize, DVec3)| {
         let center = center + place.with_y(height);
         let radius = 0.4 * step;
         // x cross z is down
-        let shape = Shape::Ellipse { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
-        ShapeLight {
-            name: format!("disk {index}"),
-            radiance: Vec3::splat(10.0),
-            two_sided: false,
-            texture: None,
-            shape,
-        }
+        let shape = LightShape::Disk { center, axis_u: DVec3::X * radius, axis_v: DVec3::Z * radius };
+        Light { name: format!("disk {index}"), radiance: Vec3::splat(10.0), shape, ..Light::default() }
     };
     places.enumerate().map(disk).collect()
 }

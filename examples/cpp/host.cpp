@@ -9,6 +9,8 @@
 
 #include <arealight.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 
 namespace {
@@ -63,6 +65,30 @@ void write_picture(const char *path, const float *radiance) {
     }
 }
 
+// doc: light_kinds
+// A light of a few corners, counter-clockwise from its front
+ArealightLight polygon(const char *name, const double *vertices, uint32_t count, const std::array<float, 3> &radiance) {
+    ArealightLight light = {};
+    light.name = name;
+    light.kind = AREALIGHT_LIGHT_POLYGON;
+    light.vertices = vertices;
+    light.vertex_count = count;
+    std::copy(radiance.begin(), radiance.end(), light.radiance);
+    return light;
+}
+
+ArealightLight sphere(const char *name, const std::array<double, 3> &center, double radius,
+                      const std::array<float, 3> &radiance) {
+    ArealightLight light = {};
+    light.name = name;
+    light.kind = AREALIGHT_LIGHT_SPHERE;
+    light.radius = radius;
+    std::copy(center.begin(), center.end(), light.center);
+    std::copy(radiance.begin(), radiance.end(), light.radiance);
+    return light;
+}
+// doc end
+
 int render(const char *path, const std::string &validation, bool tiles, bool mistake) {
     Engine engine(validation);
     VkDevice device = engine.device;
@@ -86,10 +112,8 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     VkDeviceMemory table_memory = engine.allocate(needed.size, needed.memory_type_bits, 0);
     Buffer table_staging = engine.buffer(needed.staging_size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
 
-    // A pass for the effects that your scene calls for
+    // A pass: of zeros it is exact, for both lobes and every light
     ArealightPassOptions options = {};
-    options.effects = AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_GLOSSY | AREALIGHT_EFFECT_TWO_SIDED |
-                      AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_SPHERE;
     options.tile_capacity = tiles ? 128 : 0; // for many lights: lists of up to so many for each tile of 8 x 8 pixels
     ArealightPass *pass = nullptr;
     check(arealight_pass_create(arealight, &options, &pass));
@@ -102,32 +126,20 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     const double sign[] = {1003.0, 0.1, -2010.0, 1006.0, 0.1, -2008.0, 1004.5, 2.1, -2009.0};
     const double arrow[] = {999.0, 0.5, -2009.0, 1002.0, 0.5, -2009.0, 1002.0, 2.0, -2009.0,
                             1000.5, 1.0, -2009.0, 999.0, 2.0, -2009.0};
-    ArealightLight lights[3] = {};
-    lights[0] = {"window", window, nullptr, 4, 0, {3.0f, 3.5f, 4.0f}, 0};
-    lights[1] = {"sign", sign, nullptr, 3, 0, {6.0f, 1.0f, 0.5f}, 1};
-    lights[2] = {"arrow", arrow, nullptr, 5, 0, {0.5f, 5.0f, 1.0f}, 0};
+    ArealightLight lights[4] = {polygon("window", window, 4, {3.0f, 3.5f, 4.0f}),
+                                polygon("sign", sign, 3, {6.0f, 1.0f, 0.5f}),
+                                polygon("arrow", arrow, 5, {0.5f, 5.0f, 1.0f}),
+                                sphere("lamp", {996.0, 0.5, -2007.0}, 0.3, {8.0f, 6.0f, 2.0f})};
+    lights[1].two_sided = 1;
     ArealightPackedLights packed = {};
-    check(arealight_pass_pack_lights(pass, lights, 3, camera, &packed)); // the sizes
+    check(arealight_pack_lights(lights, 4, camera, &packed)); // the sizes
     Buffer light_buffer = engine.buffer(packed.lights_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     Buffer vertex_buffer = engine.buffer(packed.vertices_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+    Buffer shape_buffer = engine.buffer(packed.shapes_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
     packed.lights = light_buffer.mapped;
     packed.vertices = vertex_buffer.mapped;
-    check(arealight_pass_pack_lights(pass, lights, 3, camera, &packed));
-
-    // Disks, spheres and tubes are a list of their own
-    ArealightShape lamp = {};
-    lamp.name = "lamp";
-    lamp.kind = AREALIGHT_SHAPE_SPHERE;
-    const double center[3] = {996.0, 0.5, -2007.0};
-    std::memcpy(lamp.center, center, sizeof center);
-    lamp.radius = 0.3;
-    lamp.radiance[0] = 8.0f;
-    lamp.radiance[1] = 6.0f;
-    lamp.radiance[2] = 2.0f;
-    uint64_t shape_size = 0;
-    check(arealight_pass_pack_shapes(pass, &lamp, 1, camera, nullptr, &shape_size));
-    Buffer shape_buffer = engine.buffer(shape_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    check(arealight_pass_pack_shapes(pass, &lamp, 1, camera, shape_buffer.mapped, &shape_size));
+    packed.shapes = shape_buffer.mapped;
+    check(arealight_pack_lights(lights, 4, camera, &packed));
     // doc end
 
     // doc: tiles
@@ -239,10 +251,7 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     ArealightFrame frame = {};
     frame.width = WIDTH;
     frame.height = HEIGHT;
-    frame.light_count = 3;
-    frame.quad_count = packed.quad_count;
-    frame.unused = packed.unused;
-    frame.shape_count = 1; // frame.camera stays zero: the origin is the camera's position
+    frame.lights = packed.summary; // frame.camera stays zero: the origin is the camera's position
     frame.tile_lists = resources.tile_lists;
     check(arealight_pass_record(pass, commands, number(set), &frame));
     barrier(commands, radiance.handle, compute, VK_ACCESS_SHADER_WRITE_BIT, VK_IMAGE_LAYOUT_GENERAL, copy,

@@ -2,15 +2,15 @@
 
 use crate::TestEngine;
 use crate::one_pixel::{self, OnePixel};
-use arealight::PolygonLight;
+use arealight::Light;
 use arealight::plan::RadianceFormat;
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer, ArealightFrame,
-    ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightMemory, ArealightPackedLights,
-    ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult, ArealightSetLayout,
-    ArealightUpload, arealight_create, arealight_destroy, arealight_last_error, arealight_pass_create,
-    arealight_pass_pack_lights, arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set,
-    arealight_table_memory, arealight_table_upload,
+    AREALIGHT_ABI_VERSION, AREALIGHT_LIGHT_POLYGON, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer,
+    ArealightFrame, ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightLightSummary,
+    ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
+    ArealightResult, ArealightSetLayout, ArealightUpload, arealight_create, arealight_destroy,
+    arealight_last_error, arealight_pack_lights, arealight_pass_create, arealight_pass_record,
+    arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory, arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use ash::vk::{self, Handle as _};
@@ -62,23 +62,31 @@ pub fn no_host() -> ArealightHost {
 /// A light without vertices.
 pub const NO_LIGHT: ArealightLight = ArealightLight {
     name: null(),
+    kind: AREALIGHT_LIGHT_POLYGON,
+    two_sided: 0,
+    radiance: [1.0; 3],
+    textured: 0,
+    texture_layer: 0,
+    vertex_count: 0,
     vertices: null(),
     texture_coordinates: null(),
-    vertex_count: 0,
-    texture_layer: 0,
-    radiance: [1.0; 3],
-    two_sided: 0,
     hole_vertex_counts: null(),
     face_vertex_counts: null(),
     hole_count: 0,
     face_count: 0,
+    center: [0.0; 3],
+    axis_u: [0.0; 3],
+    axis_v: [0.0; 3],
+    radius: 0.0,
+    ends: 0,
+    reserved: 0,
 };
 
 /// A light of constant radiance, whose vertices it points to.
-pub fn c_lamp(light: &PolygonLight) -> ArealightLight {
+pub fn c_lamp(light: &Light) -> ArealightLight {
     ArealightLight {
-        vertices: light.vertices.as_ptr().cast(),
-        vertex_count: light.vertices.len() as u32,
+        vertices: light.shape.vertices().as_ptr().cast(),
+        vertex_count: light.shape.vertices().len() as u32,
         radiance: light.radiance.to_array(),
         ..NO_LIGHT
     }
@@ -88,10 +96,11 @@ pub fn c_lamp(light: &PolygonLight) -> ArealightLight {
 pub const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
     lights: null_mut(),
     vertices: null_mut(),
+    shapes: null_mut(),
     lights_size: 0,
     vertices_size: 0,
-    quad_count: 0,
-    unused: 0,
+    shapes_size: 0,
+    summary: ArealightLightSummary { light_count: 0, quad_count: 0, shape_count: 0, effects: 0 },
 };
 
 /// The library on a device of the tests.
@@ -137,12 +146,12 @@ impl<'a> CLibrary<'a> {
         Self { engine, _entry: entry, arealight }
     }
 
-    /// A pass for effects.
+    /// A pass for surfaces.
     ///
     /// # Panics
     /// Where the library refuses.
-    pub fn pass(&self, effects: u32) -> *mut ArealightPass {
-        let options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
+    pub fn pass(&self, surfaces: u32) -> *mut ArealightPass {
+        let options = ArealightPassOptions { surfaces, ..ArealightPassOptions::default() };
         let mut pass = null_mut();
         // SAFETY: the pointers are valid.
         good(unsafe { arealight_pass_create(self.arealight, &raw const options, &raw mut pass) });
@@ -247,17 +256,16 @@ impl<'a> CLibrary<'a> {
         let pack = |packed: &mut ArealightPackedLights| {
             let (count, origin) = (lights.len() as u32, [0.0_f64; 3]);
             // SAFETY: the lights and the arrays are as they say.
-            good(unsafe {
-                arealight_pass_pack_lights(pass, lights.as_ptr(), count, origin.as_ptr(), packed)
-            });
+            good(unsafe { arealight_pack_lights(lights.as_ptr(), count, origin.as_ptr(), packed) });
         };
         pack(&mut packed);
-        let mut arrays =
-            [packed.lights_size, packed.vertices_size].map(|size| vec![0_u32; size as usize / 4]);
-        [packed.lights, packed.vertices] = arrays.each_mut().map(|array| array.as_mut_ptr().cast());
+        let mut arrays = [packed.lights_size, packed.vertices_size, packed.shapes_size]
+            .map(|size| vec![0_u32; size as usize / 4]);
+        [packed.lights, packed.vertices, packed.shapes] =
+            arrays.each_mut().map(|array| array.as_mut_ptr().cast());
         pack(&mut packed);
         let host = self.engine.host();
-        let [lights_buffer, vertices] =
+        let [lights_buffer, vertices, shapes] =
             arrays.map(|array| host.storage_buffer("lights", &array).expect("memory"));
 
         // Point a set at them, and shade
@@ -276,6 +284,7 @@ impl<'a> CLibrary<'a> {
         let resources = ArealightResources {
             lights: whole(&lights_buffer),
             light_vertices: whole(&vertices),
+            shapes: if packed.shapes_size > 0 { whole(&shapes) } else { ArealightBuffer::default() },
             position: image(&pixel.position, Usage::COMPUTE_READ),
             normal: image(&pixel.normal, Usage::COMPUTE_READ),
             base_color: image(&pixel.base_color, Usage::COMPUTE_READ),
@@ -288,10 +297,7 @@ impl<'a> CLibrary<'a> {
             width: 1,
             height: 1,
             camera: camera.to_array(),
-            light_count: lights.len() as u32,
-            shape_count: 0,
-            quad_count: packed.quad_count,
-            unused: packed.unused,
+            lights: packed.summary,
             reserved: 0,
             position_from_clip: null(),
             tile_lists: ArealightBuffer::default(),

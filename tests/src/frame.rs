@@ -1,6 +1,6 @@
 //! Our own scenes, and frames of them.
 
-use arealight::PolygonLight;
+use arealight::Light;
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use glam::{Vec3, Vec4};
@@ -15,22 +15,21 @@ pub fn scene(name: &str) -> Scene {
     Scene::load(path).expect("our own scenes load")
 }
 
-/// Hands on the view of a scene from its first camera, under `lights` and the scene's shapes.
+/// Hands on the view of a scene from its first camera, under `lights`.
 ///
 /// # Panics
 /// Where the scene has no camera, or the device fails.
 pub fn with_renderer<T>(
     engine: &Engine,
     scene: &Scene,
-    lights: &[PolygonLight],
+    lights: &[Light],
     size: [u32; 2],
     act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
 ) -> T {
     let camera = scene.camera(None, f64::from(size[0]) / f64::from(size[1])).expect("a camera");
     let buffers = SceneBuffers::new(scene, camera.position).expect("our own scenes fit");
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    let renderer = SceneRenderer::new(engine, &buffers, lights, constants, size).expect("a renderer");
-    act(&mut renderer.with_shapes(&scene.shapes).expect("the shapes fit"))
+    act(&mut SceneRenderer::new(engine, &buffers, lights, constants, size).expect("a renderer"))
 }
 
 /// The bits of the picture that was shaded.

@@ -2,7 +2,7 @@
 
 use crate::TestEngine;
 use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
-use arealight::{Effects, PolygonLight};
+use arealight::{Light, LightShape, PackedLights};
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
@@ -51,14 +51,8 @@ impl<'a> OnePixel<'a> {
     ///
     /// # Panics
     /// Where the options say that there are two, or the device fails.
-    pub fn shade(
-        &self,
-        options: ShadeOptions,
-        lights: &[PolygonLight],
-        camera: Vec3,
-        matrix: Option<Mat4>,
-    ) -> Vec4 {
-        assert_eq!(options.images, RadianceImages::One);
+    pub fn shade(&self, options: ShadeOptions, lights: &[Light], camera: Vec3, matrix: Option<Mat4>) -> Vec4 {
+        assert_eq!(options.images, RadianceImages::Combined);
         self.shade_images(options, lights, camera, matrix)[0]
     }
 
@@ -69,7 +63,7 @@ impl<'a> OnePixel<'a> {
     pub fn shade_images(
         &self,
         options: ShadeOptions,
-        lights: &[PolygonLight],
+        lights: &[Light],
         camera: Vec3,
         matrix: Option<Mat4>,
     ) -> [Vec4; 2] {
@@ -86,7 +80,7 @@ impl<'a> OnePixel<'a> {
         };
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
-            let packed = pass.pack_lights(lights, DVec3::ZERO).unwrap();
+            let packed = PackedLights::new(lights, DVec3::ZERO).unwrap();
             let light_buffer = host.storage_buffer("lights", &packed.lights).unwrap();
             let vertex_buffer = host.storage_buffer("vertices", &packed.vertices).unwrap();
             let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
@@ -103,11 +97,11 @@ impl<'a> OnePixel<'a> {
                 position: sampled(if from_depth { &self.depth } else { &self.position }),
                 normal: sampled(&self.normal),
                 base_color: sampled(&self.base_color),
-                specular: sampled(&self.specular),
+                specular: Some(sampled(&self.specular)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
-                light_textures: self.engine.light_textures(),
-                shapes: Resource::buffer(light_buffer.handle()),
+                light_textures: Some(self.engine.light_textures()),
+                shapes: None,
                 tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
@@ -115,10 +109,7 @@ impl<'a> OnePixel<'a> {
                 size: [1, 1],
                 camera,
                 position_from_clip: matrix,
-                light_count: lights.len() as u32,
-                quad_count: packed.quad_count,
-                unused: packed.unused,
-                shape_count: 0,
+                lights: packed.summary(),
                 tile_lists: None,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
@@ -182,17 +173,12 @@ pub fn read(image: &Image, format: RadianceFormat) -> Vec4 {
 }
 
 /// A square over the pixel's point.
-pub fn lamp() -> PolygonLight {
+pub fn lamp() -> Light {
     let square = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
-    PolygonLight {
+    Light {
         name: "lamp".into(),
-        vertices: square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect(),
         radiance: Vec3::new(1.0, 2.0, 3.0),
-        ..PolygonLight::default()
+        shape: LightShape::Polygon(square.iter().map(|&(x, y)| DVec3::new(x, y, 2.0)).collect()),
+        ..Light::default()
     }
-}
-
-/// Both lobes.
-pub fn options() -> ShadeOptions {
-    ShadeOptions { effects: Effects::DIFFUSE | Effects::GLOSSY, ..ShadeOptions::all() }
 }

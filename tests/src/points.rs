@@ -1,6 +1,6 @@
 //! Random shading points, the same in every run.
 
-use arealight::{PolygonLight, Surface};
+use arealight::{Light, LightShape, Surface};
 use arealight_engine::EvalPoint;
 use arealight_oracle::stream::Stream;
 use glam::{DVec3, Vec3};
@@ -77,12 +77,12 @@ pub fn point(surface: Surface, view: DVec3, vertices: Vec<DVec3>, two_sided: boo
         position: DVec3::ZERO,
         normal: DVec3::Z,
         view,
-        light: PolygonLight {
+        light: Light {
             name: "test".into(),
-            vertices,
+            shape: LightShape::Polygon(vertices),
             radiance: Vec3::ONE,
             two_sided,
-            ..PolygonLight::default()
+            ..Light::default()
         },
     }
 }

@@ -1,14 +1,13 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON,
-    AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TEXTURED, AREALIGHT_EFFECT_TUBE, AREALIGHT_EFFECT_TWO_SIDED,
-    AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost,
-    ArealightLight, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
-    ArealightResult, ArealightShape, ArealightTable, ArealightTileMemory, ArealightUpload,
-    arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
-    arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy,
-    arealight_pass_pack_lights, arealight_pass_pack_shapes, arealight_pass_prepare, arealight_pass_record,
+    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED,
+    AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH, AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, Arealight,
+    ArealightBuffer, ArealightFrame, ArealightHost, ArealightLight, ArealightLightSummary,
+    ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
+    ArealightTable, ArealightTileMemory, ArealightUpload, arealight_abi_version, arealight_create,
+    arealight_destroy, arealight_lobe_horizons, arealight_pack_lights, arealight_pass_create,
+    arealight_pass_create_with_module, arealight_pass_destroy, arealight_pass_prepare, arealight_pass_record,
     arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set, arealight_table_memory,
     arealight_table_upload,
 };
@@ -78,11 +77,6 @@ fn null_objects_are_refused_and_destroying_nothing_is_fine() {
         refused(arealight_table_memory(arealight, null_mut()), ErrorArgument, "arealight: is null");
         refused(arealight_table_upload(arealight, null()), ErrorArgument, "arealight: is null");
         refused(arealight_pass_set_layout(pass, null_mut()), ErrorArgument, "pass: is null");
-        refused(
-            arealight_pass_pack_lights(pass, null(), 0, null(), null_mut()),
-            ErrorArgument,
-            "pass: is null",
-        );
         refused(arealight_pass_write_set(pass, arealight, 0, null()), ErrorArgument, "pass: is null");
         refused(arealight_pass_record(pass, null_mut(), 0, null()), ErrorArgument, "pass: is null");
         refused(arealight_pass_create(arealight, null(), null_mut()), ErrorArgument, "out: is null");
@@ -99,215 +93,141 @@ fn light() -> ArealightLight {
     ArealightLight { name: c"lamp".as_ptr(), vertices: TRIANGLE.as_ptr(), vertex_count: 3, ..NO_LIGHT }
 }
 
-/// Packs one light about the origin.
-fn pack(
-    pass: *mut ArealightPass,
-    light: &ArealightLight,
-    arrays: &mut ArealightPackedLights,
-) -> ArealightResult {
-    // SAFETY: the light and the arrays are as they say; a pass that is none is what is tested.
-    unsafe { arealight_pass_pack_lights(pass, light, 1, [0.0; 3].as_ptr(), arrays) }
+/// Packs lights about the origin.
+fn pack(lights: &[ArealightLight], arrays: &mut ArealightPackedLights) -> ArealightResult {
+    let (count, origin) = (lights.len() as u32, [0.0_f64; 3]);
+    // SAFETY: the lights and the arrays are as they say.
+    unsafe { arealight_pack_lights(lights.as_ptr(), count, origin.as_ptr(), arrays) }
 }
 
 /// A sphere.
-fn moon() -> ArealightShape {
-    ArealightShape {
-        name: c"moon".as_ptr(),
-        kind: AREALIGHT_SHAPE_SPHERE,
-        ends: 0,
-        center: [0.0; 3],
-        axis_u: [0.0; 3],
-        axis_v: [0.0; 3],
-        radius: 1.0,
-        radiance: [1.0; 3],
-        two_sided: 0,
-        textured: 0,
-        texture_layer: 0,
-    }
+fn moon() -> ArealightLight {
+    ArealightLight { name: c"moon".as_ptr(), kind: AREALIGHT_LIGHT_SPHERE, radius: 1.0, ..NO_LIGHT }
 }
 
 #[test]
 fn lights_that_cannot_be_shaded_are_named() {
-    use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight, ErrorTooSmall};
-    let Some(engine) = TestEngine::new() else { return };
-    let library = CLibrary::new(&engine);
-    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    use ArealightResult::{ErrorArgument, ErrorLight};
     let mut arrays = NO_ARRAYS;
     let nan = [f64::NAN, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let textured = ArealightLight { textured: 1, texture_coordinates: CORNERS.as_ptr(), ..light() };
+    let tube = ArealightLight { kind: AREALIGHT_LIGHT_TUBE, ..moon() };
     for (wrong, result, words) in [
-        (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "light 'lamp': vertices: 2 given"),
-        (ArealightLight { vertices: nan.as_ptr(), ..light() }, ErrorLight, "light 'lamp': vertices[0]"),
-        (ArealightLight { radiance: [f32::NAN; 3], ..light() }, ErrorLight, "light 'lamp': radiance"),
+        (ArealightLight { kind: 5, ..light() }, ErrorArgument, "lights[1].kind: 5"),
+        (ArealightLight { vertex_count: 2, ..light() }, ErrorLight, "lights[1] 'lamp': vertices: 2 given"),
+        (ArealightLight { vertices: nan.as_ptr(), ..light() }, ErrorLight, "lights[1] 'lamp': vertices[0]"),
+        (ArealightLight { radiance: [f32::NAN; 3], ..light() }, ErrorLight, "lights[1] 'lamp': radiance"),
+        (ArealightLight { radiance: [-1.0; 3], name: null(), ..light() }, ErrorLight, "lights[1]: radiance"),
+        (ArealightLight { vertices: null(), ..light() }, ErrorArgument, "lights[1].vertices: is null"),
+        (ArealightLight { two_sided: 7, ..light() }, ErrorArgument, "lights[1].two_sided: 7"),
+        (ArealightLight { textured: 2, ..textured }, ErrorArgument, "lights[1].textured: 2"),
         (
-            ArealightLight { radiance: [-1.0; 3], name: null(), ..light() },
-            ErrorLight,
-            "light 'lights[0]': radiance",
+            ArealightLight { texture_coordinates: null(), ..textured },
+            ErrorArgument,
+            "lights[1].texture_coordinates: is null",
         ),
-        (ArealightLight { vertices: null(), ..light() }, ErrorArgument, "lights[0].vertices: is null"),
-        (ArealightLight { two_sided: 7, ..light() }, ErrorArgument, "lights[0].two_sided: 7"),
-        (
-            ArealightLight { two_sided: 1, ..light() },
-            ErrorEffects,
-            "light 'lamp' calls for the effects: two_sided",
-        ),
-        (ArealightLight { texture_coordinates: CORNERS.as_ptr(), ..light() }, ErrorEffects, "textured"),
+        (ArealightLight { ends: 3, ..tube }, ErrorArgument, "lights[1].ends: 3"),
+        (tube, ErrorLight, "lights[1] 'moon': p0 and p1"),
+        (ArealightLight { radius: -1.0, name: null(), ..moon() }, ErrorLight, "lights[1]: radius: -1"),
+        (ArealightLight { kind: AREALIGHT_LIGHT_DISK, ..moon() }, ErrorLight, "'moon': axis_u and axis_v"),
+        (ArealightLight { textured: 1, ..moon() }, ErrorLight, "'moon': texture: only polygons and disks"),
     ] {
-        refused(pack(pass, &wrong, &mut arrays), result, words);
+        refused(pack(&[light(), wrong], &mut arrays), result, words);
     }
+    // The twins
+    good(pack(&[light(), textured, moon(), ArealightLight { axis_u: [1.0; 3], ..tube }], &mut arrays));
     // SAFETY: the pointers are null or valid.
     unsafe {
         let infinite = [f64::INFINITY, 0.0, 0.0];
-        let packed = arealight_pass_pack_lights(pass, null(), 0, infinite.as_ptr(), &raw mut arrays);
+        let packed = arealight_pack_lights(null(), 0, infinite.as_ptr(), &raw mut arrays);
         refused(packed, ErrorArgument, "origin");
-        refused(
-            arealight_pass_pack_lights(pass, null(), 0, null(), &raw mut arrays),
-            ErrorArgument,
-            "origin: is null",
-        );
+        let packed = arealight_pack_lights(null(), 0, null(), &raw mut arrays);
+        refused(packed, ErrorArgument, "origin: is null");
+        let packed = arealight_pack_lights(null(), 0, [0.0; 3].as_ptr(), null_mut());
+        refused(packed, ErrorArgument, "packed: is null");
     }
+}
 
-    // Sizes first; then arrays, which may be too small
-    good(pack(pass, &light(), &mut arrays));
-    assert_eq!((arrays.lights_size, arrays.vertices_size), (64, 48));
-    let unused = AREALIGHT_EFFECT_TWO_SIDED
-        | AREALIGHT_EFFECT_POLYGON
-        | AREALIGHT_EFFECT_TEXTURED
-        | AREALIGHT_EFFECT_MESH;
-    assert_eq!((arrays.quad_count, arrays.unused), (1, unused), "a triangle is a quad");
-    let (mut lights, mut vertices) = ([0u32; 16], [0.0f32; 12]);
-    let (to_lights, to_vertices) = (lights.as_mut_ptr().cast(), vertices.as_mut_ptr().cast());
-    arrays = ArealightPackedLights {
-        lights: to_lights,
-        vertices: to_vertices,
-        lights_size: 64,
-        vertices_size: 47,
+#[test]
+fn arrays_of_the_host_are_filled_where_they_are_large_enough() {
+    use ArealightResult::ErrorTooSmall;
+    let given = [moon(), ArealightLight { two_sided: 1, ..light() }];
+    let mut arrays = NO_ARRAYS;
+    good(pack(&given, &mut arrays));
+    assert_eq!((arrays.lights_size, arrays.vertices_size, arrays.shapes_size), (64, 48, 64));
+    let effects = AREALIGHT_EFFECT_TWO_SIDED | AREALIGHT_EFFECT_SPHERE;
+    let expected = ArealightLightSummary { light_count: 1, quad_count: 1, shape_count: 1, effects };
+    assert_eq!(arrays.summary, expected, "a triangle is a quad");
+    let (mut lights, mut vertices, mut shapes) = ([0u32; 16], [0.0f32; 12], [0u32; 16]);
+    let all = ArealightPackedLights {
+        lights: lights.as_mut_ptr().cast(),
+        vertices: vertices.as_mut_ptr().cast(),
+        shapes: shapes.as_mut_ptr().cast(),
         ..arrays
     };
-    refused(pack(pass, &light(), &mut arrays), ErrorTooSmall, "packed.vertices_size: 47, but 48 are needed");
-    good(pack(pass, &light(), &mut arrays));
-    assert_eq!((lights[0], lights[12]), (1f32.to_bits(), 3), "its radiance and its number of vertices");
-
-    // Shapes likewise
-    let mut size = 0;
-    let sphere = moon();
-    let round = library.pass(AREALIGHT_EFFECT_DIFFUSE | AREALIGHT_EFFECT_SPHERE | AREALIGHT_EFFECT_TUBE);
-    let mut pack_shape = |pass, shape: &ArealightShape, size: &mut u64| {
-        let to = if *size > 0 { lights.as_mut_ptr().cast() } else { null_mut() };
-        // SAFETY: `lights` has 128 bytes; no more are said.
-        unsafe { arealight_pass_pack_shapes(pass, shape, 1, [0.0; 3].as_ptr(), to, size) }
-    };
-    for (wrong, result, words) in [
-        (ArealightShape { kind: 3, ..sphere }, ErrorArgument, "shapes[0].kind: 3"),
-        (
-            ArealightShape { kind: AREALIGHT_SHAPE_TUBE, ends: 3, ..sphere },
-            ErrorArgument,
-            "shapes[0].ends: 3",
-        ),
-        (ArealightShape { kind: AREALIGHT_SHAPE_TUBE, ..sphere }, ErrorLight, "light 'moon': p0 and p1"),
-        (
-            ArealightShape { radius: -1.0, name: null(), ..sphere },
-            ErrorLight,
-            "light 'shapes[0]': radius: -1",
-        ),
-        (ArealightShape { two_sided: 2, ..sphere }, ErrorArgument, "shapes[0].two_sided: 2"),
-        (ArealightShape { textured: 2, ..sphere }, ErrorArgument, "shapes[0].textured: 2"),
-        (ArealightShape { textured: 1, ..sphere }, ErrorLight, "light 'moon': texture: only ellipses"),
+    for (mut small, words) in [
+        (ArealightPackedLights { vertices_size: 47, ..all }, "packed.vertices_size: 47, but 48 are needed"),
+        (ArealightPackedLights { shapes_size: 63, ..all }, "packed.shapes_size: 63, but 64 are needed"),
     ] {
-        refused(pack_shape(round, &wrong, &mut size), result, words);
+        refused(pack(&given, &mut small), ErrorTooSmall, words);
+        assert_eq!((small.vertices_size, small.shapes_size), (48, 64), "what is needed");
     }
-    refused(pack_shape(pass, &sphere, &mut size), ErrorEffects, "light 'moon' calls for the effects: sphere");
-    good(pack_shape(round, &sphere, &mut size));
-    assert_eq!(size, 64);
-    size = 63;
-    refused(pack_shape(round, &sphere, &mut size), ErrorTooSmall, "size: 63, but 64 are needed");
-    good(pack_shape(round, &sphere, &mut size));
-    // SAFETY: the passes are this thread's.
-    unsafe {
-        good(arealight_pass_destroy(round));
-        good(arealight_pass_destroy(pass));
-    }
-    refused(pack(pass, &light(), &mut arrays), ErrorArgument, "pass: is no ArealightPass that is alive");
+    let mut whole = all;
+    good(pack(&given, &mut whole));
+    assert_eq!((lights[0], lights[12]), (1f32.to_bits(), 3), "its radiance and its number of vertices");
+    assert_eq!((shapes[3], shapes[7]), (1, 1f32.to_bits()), "its kind and its radius");
 }
 
 #[test]
 fn holes_and_faces_that_cannot_be_are_named() {
-    use ArealightResult::{ErrorArgument, ErrorEffects, ErrorLight};
-    let Some(engine) = TestEngine::new() else { return };
-    let library = CLibrary::new(&engine);
-    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    use ArealightResult::{ErrorArgument, ErrorLight};
     let mut arrays = NO_ARRAYS;
     let (three, both) = (3_u32, [TRIANGLE, TRIANGLE.map(|number| number + 2.0)].concat());
     let outside = ArealightLight { vertices: both.as_ptr(), ..light() };
-    let (threes, coordinates, nine) = ([3, 3], [CORNERS; 2].concat(), [TRIANGLE; 3].concat());
+    let threes = [3, 3];
     let mesh = |counts| ArealightLight {
+        kind: AREALIGHT_LIGHT_MESH,
         vertices: both.as_ptr(),
         vertex_count: 6,
         face_vertex_counts: counts,
         face_count: 2,
         ..light()
     };
-    let inside = [TRIANGLE, [0.1, 0.1, 0.0, 0.4, 0.1, 0.0, 0.1, 0.4, 0.0]].concat();
+    let hole = &raw const three;
     for (wrong, result, words) in [
         (ArealightLight { hole_count: 1, ..light() }, ErrorArgument, "lights[0].hole_vertex_counts: is null"),
         (
-            ArealightLight { hole_vertex_counts: &raw const three, hole_count: 1, ..outside },
+            ArealightLight { hole_vertex_counts: hole, hole_count: 1, ..outside },
             ErrorLight,
-            "light 'lamp': holes[0]: vertices[0]",
+            "lights[0] 'lamp': holes[0]: vertices[0]",
         ),
+        (mesh(null()), ErrorArgument, "lights[0].face_vertex_counts: is null"),
+        (mesh([4, 2].as_ptr()), ErrorLight, "lights[0] 'lamp': faces[1]: 2 vertices, a face has at least 3"),
         (
-            ArealightLight {
-                vertices: inside.as_ptr(),
-                hole_vertex_counts: &raw const three,
-                hole_count: 1,
-                ..light()
-            },
-            ErrorEffects,
-            "light 'lamp' calls for the effects: polygon",
-        ),
-        // With an image too, whose coordinates are the outline's alone
-        (
-            ArealightLight {
-                vertices: inside.as_ptr(),
-                texture_coordinates: CORNERS.as_ptr(),
-                hole_vertex_counts: &raw const three,
-                hole_count: 1,
-                ..light()
-            },
-            ErrorEffects,
-            "light 'lamp' calls for the effects: polygon, textured",
-        ),
-        (ArealightLight { face_count: 2, ..light() }, ErrorArgument, "lights[0].face_vertex_counts: is null"),
-        (
-            ArealightLight { face_count: 2, ..mesh([4, 2].as_ptr()) },
+            ArealightLight { face_count: 1, ..mesh(hole) },
             ErrorLight,
-            "light 'lamp': faces[1]: 2 vertices, a face has at least 3",
+            "lights[0] 'lamp': faces: 3 vertices in all, but the light has 6",
         ),
         (
-            ArealightLight { face_count: 1, ..mesh(&raw const three) },
+            ArealightLight { textured: 1, ..mesh(threes.as_ptr()) },
             ErrorLight,
-            "light 'lamp': faces: 3 vertices in all, but the light has 6",
+            "lights[0] 'lamp': texture: a mesh is not textured",
         ),
-        (
-            ArealightLight { texture_coordinates: coordinates.as_ptr(), ..mesh(threes.as_ptr()) },
-            ErrorLight,
-            "light 'lamp': texture: a mesh shows no image",
-        ),
-        (
-            ArealightLight {
-                vertices: nine.as_ptr(),
-                hole_vertex_counts: &raw const three,
-                hole_count: 1,
-                ..mesh(threes.as_ptr())
-            },
-            ErrorLight,
-            "light 'lamp': holes[0]: the light has several faces",
-        ),
-        (mesh(threes.as_ptr()), ErrorEffects, "light 'lamp' calls for the effects: polygon, mesh"),
     ] {
-        refused(pack(pass, &wrong, &mut arrays), result, words);
+        refused(pack(&[wrong], &mut arrays), result, words);
     }
-    // SAFETY: the pass is this thread's.
-    good(unsafe { arealight_pass_destroy(pass) });
+    // The twins: a hole inside, with a texture whose coordinates are the outline's alone; and a mesh
+    let inside = [TRIANGLE, [0.1, 0.1, 0.0, 0.4, 0.1, 0.0, 0.1, 0.4, 0.0]].concat();
+    let cut = ArealightLight {
+        vertices: inside.as_ptr(),
+        textured: 1,
+        texture_coordinates: CORNERS.as_ptr(),
+        hole_vertex_counts: hole,
+        hole_count: 1,
+        ..light()
+    };
+    good(pack(&[cut, mesh(threes.as_ptr())], &mut arrays));
+    assert_eq!((arrays.summary.light_count, arrays.summary.quad_count), (2, 0));
 }
 
 /// A frame of this width, of eight rows and no light.
@@ -316,10 +236,7 @@ fn dark_frame(width: u32) -> ArealightFrame {
         width,
         height: 8,
         camera: [0.0; 3],
-        light_count: 0,
-        shape_count: 0,
-        quad_count: 0,
-        unused: 0,
+        lights: ArealightLightSummary::default(),
         reserved: 0,
         position_from_clip: null(),
         tile_lists: ArealightBuffer::default(),
@@ -357,8 +274,12 @@ fn calls_out_of_order_are_refused() {
         refused(record(commands, 8, &dark_frame(0)), ErrorArgument, "size");
         let blind = ArealightFrame { camera: [f32::NAN; 3], ..dark_frame(8) };
         refused(record(commands, 8, &blind), ErrorArgument, "camera");
-        let too_many = ArealightFrame { quad_count: 1, ..dark_frame(8) };
-        refused(record(commands, 8, &too_many), ErrorArgument, "quad_count");
+        let lights = ArealightLightSummary { quad_count: 1, ..ArealightLightSummary::default() };
+        let too_many = ArealightFrame { lights, ..dark_frame(8) };
+        refused(record(commands, 8, &too_many), ErrorArgument, "lights: has 1 quads of 0");
+        let lights = ArealightLightSummary { effects: 1 << 30, ..ArealightLightSummary::default() };
+        let unknown = ArealightFrame { lights, ..dark_frame(8) };
+        refused(record(commands, 8, &unknown), ErrorArgument, "frame.lights.effects: 0x40000000");
         // A pipeline ahead
         refused(arealight_pass_prepare(pass, &raw const blind), ErrorArgument, "camera");
         let right = dark_frame(8);
@@ -420,7 +341,7 @@ fn passes_with_tiles_ask_for_their_buffers() {
     let Some(engine) = TestEngine::new() else { return };
     let library = CLibrary::new(&engine);
     let tiles = ArealightPassOptions {
-        effects: AREALIGHT_EFFECT_DIFFUSE,
+        surfaces: AREALIGHT_EFFECT_DIFFUSE,
         tile_capacity: 64,
         ..ArealightPassOptions::default()
     };

@@ -2,21 +2,20 @@
 //! the host's own, with a table whose first upload was never run.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightTexture, PolygonLight, TexturePart, Wrap};
+use arealight::{Effects, Light, LightFault, LightShape, LightTexture, TexturePart, Wrap};
 use arealight_capi::{
-    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_MESH, AREALIGHT_EFFECT_POLYGON, AREALIGHT_EFFECT_TEXTURED,
-    AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight, ArealightMemory, ArealightResult,
-    ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
-    ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights,
-    arealight_textures_create, arealight_textures_destroy, arealight_textures_image,
-    arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
+    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight,
+    ArealightMemory, ArealightResult, ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions,
+    ArealightTextureSetup, ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy,
+    arealight_textures_check_lights, arealight_textures_create, arealight_textures_destroy,
+    arealight_textures_image, arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
     arealight_textures_write_source_set,
 };
 use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_LIGHT, good, refused};
-use arealight_tests::one_pixel::{self, OnePixel, lamp};
+use arealight_tests::one_pixel::{OnePixel, lamp};
 use ash::vk::{self, Handle as _};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::ffi::c_void;
@@ -57,21 +56,21 @@ fn strip() -> [Vec<DVec3>; 2] {
 }
 
 /// A window, a screen that shows a layer around a hole, a frame around another, and a strip.
-fn lights([frame_hole, screen_hole]: [f64; 2]) -> Result<Vec<PolygonLight>, arealight::LightError> {
-    let window = PolygonLight { name: "window".into(), ..lamp() };
-    let mut screen = PolygonLight {
+fn lights([frame_hole, screen_hole]: [f64; 2]) -> Result<Vec<Light>, LightFault> {
+    let window = Light { name: "window".into(), ..lamp() };
+    let mut screen = Light {
         name: "screen".into(),
-        vertices: corners([0.5, -0.5], 1.0, 1.0),
+        shape: LightShape::Polygon(corners([0.5, -0.5], 1.0, 1.0)),
         texture: Some(LightTexture { layer: 1, uvs: SCREEN.map(DVec2::from_array).to_vec() }),
         ..lamp()
     };
     screen.cut_holes(&[corners([0.75, -0.25], screen_hole, 1.0)])?;
-    let mut frame =
-        PolygonLight { name: "frame".into(), vertices: corners([-2.0, -2.0], 1.5, 1.5), ..lamp() };
+    let outline = LightShape::Polygon(corners([-2.0, -2.0], 1.5, 1.5));
+    let mut frame = Light { name: "frame".into(), shape: outline, ..lamp() };
     frame.cut_holes(&[corners([-1.75, -1.75], frame_hole, 1.5)])?;
-    let mut bent = PolygonLight { name: "strip".into(), vertices: vec![], ..lamp() };
+    let mut bent = Light { name: "strip".into(), shape: LightShape::default(), ..lamp() };
     for face in strip() {
-        bent.add_face(&face);
+        bent.shape.add_face(&face);
     }
     Ok(vec![window, screen, frame, bent])
 }
@@ -87,7 +86,7 @@ struct CLights {
 impl CLights {
     fn new([frame_hole, screen_hole]: [f64; 2]) -> Self {
         let vertices = [
-            lamp().vertices,
+            lamp().shape.vertices().to_vec(),
             [corners([0.5, -0.5], 1.0, 1.0), corners([0.75, -0.25], screen_hole, 1.0)].concat(),
             [corners([-2.0, -2.0], 1.5, 1.5), corners([-1.75, -1.75], frame_hole, 1.5)].concat(),
             strip().concat(),
@@ -100,12 +99,13 @@ impl CLights {
             ..NO_LIGHT
         });
         lights[1].texture_coordinates = SCREEN.as_ptr().cast();
-        lights[1].texture_layer = 1;
+        (lights[1].textured, lights[1].texture_layer) = (1, 1);
         for light in &mut lights[1..3] {
             light.hole_vertex_counts = &raw const *hole;
             light.hole_count = 1;
         }
         (lights[3].vertex_count, lights[3].face_count) = (7, 2);
+        lights[3].kind = AREALIGHT_LIGHT_MESH;
         lights[3].face_vertex_counts = faces.as_ptr();
         Self { _vertices: vertices, _hole: hole, faces, lights }
     }
@@ -276,8 +276,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     };
     engine.load_textures(size, &[black, shown]).unwrap();
     let engine = engine;
-    let effects = Effects::DIFFUSE | Effects::TEXTURED | Effects::POLYGON | Effects::MESH;
-    let options = ShadeOptions { effects, ..one_pixel::options() };
+    let options = ShadeOptions { surfaces: Effects::DIFFUSE, ..ShadeOptions::default() };
     let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
     let rust = pixel.shade(options, &lights(HOLES).unwrap(), CAMERA, None);
 
@@ -296,8 +295,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     refused(refusal, ArealightResult::ErrorArgument, words);
     library.upload(&memory);
 
-    let called_for = AREALIGHT_EFFECT_TEXTURED | AREALIGHT_EFFECT_POLYGON | AREALIGHT_EFFECT_MESH;
-    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE | called_for);
+    let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
     let textures = CTextures::new(&engine, &library);
     let shade_all = |lights: &CLights| library.shade(pass, &pixel, &lights.lights, textures.image(), CAMERA);
     let shade = |holes| shade_all(&CLights::new(holes));
@@ -325,7 +323,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     beyond.lights[1].texture_layer = 2;
     // SAFETY: as above.
     let result = unsafe { arealight_textures_check_lights(textures.raw, beyond.lights.as_ptr(), 2) };
-    refused(result, ArealightResult::ErrorLight, "light 'lights[1]'");
+    refused(result, ArealightResult::ErrorLight, "lights[1]: texture: layer 2");
     // SAFETY: nothing is pending.
     good(unsafe { arealight_pass_destroy(pass) });
 }

@@ -3,9 +3,7 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{
-    Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, ShapeKind, TileClass, TubeEnds, tiles,
-};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -166,15 +164,15 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(G_BUFFER_GLSL, "G_BUFFER_", &layouts);
     let output = [
         ("ADD", number(Output::Add as u32)),
-        ("APART", number(RadianceImages::Apart as u32)),
+        ("APART", number(RadianceImages::Separate as u32)),
         ("HALF", number(RadianceFormat::Rgba16Float as u32)),
     ];
     assert_constants(OUTPUT_GLSL, "OUTPUT_", &output);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
     let shapes = [
-        ("DISK", number(ShapeKind::Ellipse as u32)),
-        ("SPHERE", number(ShapeKind::Sphere as u32)),
-        ("TUBE", number(ShapeKind::Tube as u32)),
+        ("DISK", number(gpu::GpuShape::DISK)),
+        ("SPHERE", number(gpu::GpuShape::SPHERE)),
+        ("TUBE", number(gpu::GpuShape::TUBE)),
         ("TWO_SIDED", number(gpu::GpuShape::TWO_SIDED)),
     ];
     assert_constants(LIGHT_RECORDS_GLSL, "SHAPE_", &shapes);

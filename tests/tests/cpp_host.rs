@@ -2,7 +2,7 @@
 //! last bit.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, PolygonLight, Shape, ShapeLight};
+use arealight::{Light, LightShape, PackedLights};
 use arealight_capi::AREALIGHT_ABI_VERSION;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
@@ -73,13 +73,13 @@ fn read_picture(path: &Path) -> Vec<[f32; 3]> {
 }
 
 /// The lights of the host.
-fn lights() -> [PolygonLight; 3] {
-    let light = |name: &str, vertices: &[[f64; 3]], radiance, two_sided| PolygonLight {
+fn lights() -> [Light; 4] {
+    let light = |name: &str, vertices: &[[f64; 3]], radiance, two_sided| Light {
         name: name.into(),
-        vertices: vertices.iter().map(|vertex| DVec3::from_array(*vertex)).collect(),
         radiance: Vec3::from_array(radiance),
         two_sided,
-        ..PolygonLight::default()
+        shape: LightShape::Polygon(vertices.iter().map(|vertex| DVec3::from_array(*vertex)).collect()),
+        ..Light::default()
     };
     let window = [[994.0, 0.2, -2011.0], [998.0, 0.2, -2012.0], [998.0, 3.2, -2012.0], [994.0, 3.2, -2011.0]];
     let sign = [[1003.0, 0.1, -2010.0], [1006.0, 0.1, -2008.0], [1004.5, 2.1, -2009.0]];
@@ -94,18 +94,13 @@ fn lights() -> [PolygonLight; 3] {
         light("window", &window, [3.0, 3.5, 4.0], false),
         light("sign", &sign, [6.0, 1.0, 0.5], true),
         light("arrow", &arrow, [0.5, 5.0, 1.0], false),
+        Light {
+            name: "lamp".into(),
+            radiance: Vec3::new(8.0, 6.0, 2.0),
+            shape: LightShape::Sphere { center: DVec3::new(996.0, 0.5, -2007.0), radius: 0.3 },
+            ..Light::default()
+        },
     ]
-}
-
-/// Its lamp.
-fn lamp() -> ShapeLight {
-    ShapeLight {
-        name: "lamp".into(),
-        radiance: Vec3::new(8.0, 6.0, 2.0),
-        two_sided: false,
-        texture: None,
-        shape: Shape::Sphere { center: DVec3::new(996.0, 0.5, -2007.0), radius: 0.3 },
-    }
 }
 
 /// The host's G-buffer.
@@ -146,7 +141,7 @@ fn filled<T: Pod>(image: Image, texels: &[T]) -> Image {
 }
 
 /// The same picture by the recorder's Rust interface.
-fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
+fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
     let image = |name, format, usage| {
         let description = ImageDescription { name, extent: SIZE, layers: 1, format, usage };
         engine.host().image(&description).unwrap()
@@ -158,14 +153,10 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
     let base_color = filled(image("base colour", vk::Format::R8G8B8A8_UNORM, sampled), &surfaces.base_color);
     let radiance = image("radiance", float, vk::ImageUsageFlags::STORAGE);
 
-    let effects =
-        Effects::DIFFUSE | Effects::GLOSSY | Effects::TWO_SIDED | Effects::POLYGON | Effects::SPHERE;
     // SAFETY: submissions are waited for before the pass is dropped.
-    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions { effects, ..ShadeOptions::all() }) };
-    let pass = pass.unwrap();
-    let packed = pass.pack_lights(lights, CAMERA).unwrap();
-    let shapes = pass.pack_shapes(&[lamp()], CAMERA).unwrap();
-    let shape_buffer = engine.host().storage_buffer("shapes", &shapes).unwrap();
+    let pass = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    let packed = PackedLights::new(lights, CAMERA).unwrap();
+    let shape_buffer = engine.host().storage_buffer("shapes", &packed.shapes).unwrap();
     let light_buffer = engine.host().storage_buffer("lights", &packed.lights).unwrap();
     let vertex_buffer = engine.host().storage_buffer("light vertices", &packed.vertices).unwrap();
     let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
@@ -178,21 +169,18 @@ fn draw(engine: &TestEngine, lights: &[PolygonLight]) -> Vec<[f32; 3]> {
         position: of(&position),
         normal: of(&normal),
         base_color: of(&base_color),
-        specular: of(&position),
+        specular: None,
         radiance: Resource::StorageImage { view: radiance.view() },
         glossy: None,
-        light_textures: engine.light_textures(),
-        shapes: Resource::buffer(shape_buffer.handle()),
+        light_textures: None,
+        shapes: Some(Resource::buffer(shape_buffer.handle())),
         tiles: None,
     };
     let frame = ShadeFrame {
         size: SIZE,
         camera: Vec3::ZERO,
         position_from_clip: None,
-        light_count: packed.lights.len() as u32,
-        quad_count: packed.quad_count,
-        unused: packed.unused,
-        shape_count: 1,
+        lights: packed.summary(),
         tile_lists: None,
     };
     // SAFETY: the set is new, and what it points to lives until the submission was waited for.

@@ -3,7 +3,7 @@
 
 use arealight::kernels::SHADE;
 use arealight::plan::{Output, ShadeOptions, shade_specialization};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Quality};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, LightSummary, Quality};
 use arealight_engine::SceneRenderer;
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::TestEngine;
@@ -32,18 +32,20 @@ impl<'a> View<'a> {
         SceneRenderer::new(self.engine, &self.buffers, &self.scene.lights, constants, SIZE).unwrap()
     }
 
-    /// The picture's bits, by the shade pass, which drops what no light calls for.
-    fn shade(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
+    /// The picture's bits, by the shade pass for these surfaces.
+    fn shade(&self, surfaces: Effects, quality: Quality) -> Vec<[u32; 4]> {
         let mut renderer = self.renderer();
-        renderer.shade(effects, quality).unwrap();
+        renderer.shade(surfaces, quality).unwrap();
         bits(&mut renderer)
     }
 
     /// The same by the kernel with the code of every one of the effects.
     fn shade_by_all_of(&self, effects: Effects, quality: Quality) -> Vec<[u32; 4]> {
         let mut renderer = self.renderer();
-        let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
-        renderer.shade_by(&SHADE, &shade_specialization(options)).unwrap();
+        let options =
+            ShadeOptions { surfaces: effects, quality, output: Output::Add, ..ShadeOptions::default() };
+        let lights = LightSummary { effects, ..renderer.lights() };
+        renderer.shade_by(&SHADE, &shade_specialization(options, lights)).unwrap();
         bits(&mut renderer)
     }
 }
@@ -58,14 +60,14 @@ fn difference(a: &[[u32; 4]], b: &[[u32; 4]]) -> (usize, f32) {
 }
 
 #[test]
-fn an_effect_that_no_light_calls_for_changes_no_bit() {
+fn an_effect_that_no_surface_needs_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
     let view = View::new(&engine, &scene);
     let required = scene.effects();
     let plain = Quality::default();
     let expected = view.shade(required, plain);
-    let (pixels, largest) = difference(&expected, &view.shade(Effects::all(), plain));
+    let (pixels, largest) = difference(&expected, &view.shade(Effects::SURFACES, plain));
     assert_eq!(pixels, 0, "{largest:e} at most");
     // The twin: one that pixels use changes most of them
     let (pixels, _) = difference(
@@ -76,7 +78,7 @@ fn an_effect_that_no_light_calls_for_changes_no_bit() {
 }
 
 #[test]
-fn code_that_no_light_calls_for_changes_no_bit() {
+fn code_that_no_light_needs_changes_no_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
     let view = View::new(&engine, &scene);
@@ -104,7 +106,7 @@ fn code_that_no_light_calls_for_changes_no_bit() {
 }
 
 #[test]
-fn the_set_of_every_polygon_effect_shows_what_the_required_one_does() {
+fn code_of_every_polygon_effect_shows_what_the_required_one_does() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("room.glb");
     let view = View::new(&engine, &scene);
@@ -113,6 +115,6 @@ fn the_set_of_every_polygon_effect_shows_what_the_required_one_does() {
     let all = Effects::all() - Effects::SHAPES;
     assert!(required != all && required.contains(Effects::POLYGON | Effects::TWO_SIDED), "{required}");
     let quality = Quality::default();
-    let (pixels, largest) = difference(&view.shade(required, quality), &view.shade(all, quality));
+    let (pixels, largest) = difference(&view.shade(required, quality), &view.shade_by_all_of(all, quality));
     assert_eq!(pixels, 0, "{largest:e}");
 }

@@ -1,14 +1,14 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
 use arealight::plan::{PositionSource, ShadeOptions};
-use arealight::{Effects, PolygonLight, Quality};
+use arealight::{Effects, Light, Quality};
 use arealight_engine::host::{Image, Usage};
 use arealight_engine::{EvalPoint, SceneRenderer};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::frame::scene;
-use arealight_tests::one_pixel::{OnePixel, lamp, options};
+use arealight_tests::one_pixel::{OnePixel, lamp};
 use arealight_tests::{Comparison, TestEngine, rounding};
 use glam::camera::rh::proj::vulkan;
 use glam::{DVec3, Vec3, Vec4};
@@ -46,7 +46,7 @@ fn half_texels(image: &Image) -> Vec<Vec4> {
 }
 
 /// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.
-fn points(view: &View<'_>, light: &PolygonLight) -> Vec<Option<EvalPoint>> {
+fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let g_buffer = view.renderer.g_buffer();
     let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
     let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
@@ -219,17 +219,19 @@ fn every_effect_is_the_sum_of_its_parts_and_absent_ones_change_nothing() {
     let camera = Vec3::new(0.0, -1.0, 1.0);
     let shade = |effects| {
         let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
-        pixel.shade(ShadeOptions { effects, ..options() }, &[lamp()], camera, None).truncate()
+        pixel
+            .shade(ShadeOptions { surfaces: effects, ..ShadeOptions::default() }, &[lamp()], camera, None)
+            .truncate()
     };
     let (diffuse, glossy) = (shade(Effects::DIFFUSE), shade(Effects::GLOSSY));
     let both = shade(Effects::DIFFUSE | Effects::GLOSSY);
     assert!(diffuse.min_element() > 0.0 && glossy.min_element() > 0.0);
     // Radiance times a sum, against a sum of products: one rounding each
     assert!((diffuse + glossy - both).abs().max_element() < 1e-6, "{diffuse} + {glossy} = {both}");
-    // No light has two sides, so the effect changes no bit
+    // What lights need is theirs to say
     assert_eq!(shade(Effects::DIFFUSE | Effects::GLOSSY | Effects::TWO_SIDED), both);
     assert_eq!(shade(Effects::empty()), Vec3::ZERO);
-    // The fourth image is read only when it is called for
+    // The fourth image is read only when surfaces need it
     assert_ne!(shade(Effects::all()), both);
 }
 
@@ -245,8 +247,8 @@ fn depth_gives_the_same_as_positions() {
     {
         let clip = projection * view * target.extend(1.0);
         let pixel = OnePixel::new(&engine, target.extend(1.0), clip.z / clip.w);
-        let by_position = pixel.shade(options(), &[lamp()], camera, None);
-        let from_depth = ShadeOptions { position: PositionSource::Depth, ..options() };
+        let by_position = pixel.shade(ShadeOptions::default(), &[lamp()], camera, None);
+        let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
         let matrix = (projection * view).inverse();
         let by_depth = pixel.shade(from_depth, &[lamp()], camera, Some(matrix));
         // Depth in float32, unprojected: 1e-5 of the distance
@@ -262,5 +264,5 @@ fn depth_gives_the_same_as_positions() {
 fn an_image_without_lights_is_black() {
     let Some(engine) = TestEngine::new() else { return };
     let pixel = OnePixel::new(&engine, Vec4::new(0.0, 0.0, 0.0, 1.0), 0.5);
-    assert_eq!(pixel.shade(options(), &[], Vec3::Z, None), Vec4::new(0.0, 0.0, 0.0, 1.0));
+    assert_eq!(pixel.shade(ShadeOptions::default(), &[], Vec3::Z, None), Vec4::new(0.0, 0.0, 0.0, 1.0));
 }

@@ -9,7 +9,7 @@ use arealight_capi::{
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, c_lamp, good, refused};
 use arealight_tests::kernel::shade_with_bridge;
-use arealight_tests::one_pixel::{self, OnePixel, lamp, sampled};
+use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
 use arealight_vk::{Error, ShadePass};
 use ash::vk::Format;
 use glam::{Vec3, Vec4};
@@ -24,7 +24,7 @@ fn pixel(engine: &TestEngine) -> OnePixel<'_> {
 
 fn options(g_buffer: GBufferLayout) -> ShadeOptions {
     let effects = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT;
-    ShadeOptions { effects, g_buffer, ..one_pixel::options() }
+    ShadeOptions { surfaces: effects, g_buffer, ..ShadeOptions::default() }
 }
 
 /// A surface as our own layout has it.
@@ -183,8 +183,8 @@ fn a_bridge_of_the_host_reads_its_own_g_buffer(engine: &TestEngine) {
     let (library, light) = (CLibrary::new(engine), lamp());
     let memory = DeviceMemory::new(engine, &library.table_memory());
     library.upload(&memory);
-    let effects = options(GBufferLayout::Arealight).effects.bits();
-    let c_options = ArealightPassOptions { effects, ..ArealightPassOptions::default() };
+    let surfaces = options(GBufferLayout::Arealight).surfaces.bits();
+    let c_options = ArealightPassOptions { surfaces, ..ArealightPassOptions::default() };
     let module = shade_with_bridge();
     let make = |words: &[u32], size| {
         let mut pass = null_mut();

@@ -1,9 +1,9 @@
 //! Devices that lack something, images that are gone, and names for debuggers: on devices that lie about themselves, so
 //! that every answer can be had on any.
 
-use arealight::Effects;
 use arealight::kernels::SHADE;
 use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightSummary};
 use arealight_engine::host::Location;
 use arealight_tests::TestEngine;
 use arealight_tool_kernels::kernels::VISIBILITY;
@@ -202,17 +202,14 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         let staging = engine.host().buffer("staging", bytes.len() as u64, usage, Location::Upload).unwrap();
         staging.upload(&bytes).unwrap();
         engine.host().submit(|commands| image.record_upload(commands, staging.handle(), 0)).unwrap();
-        let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
+        let options = ShadeOptions { surfaces: Effects::DIFFUSE, ..ShadeOptions::default() };
         let pass = ShadePass::new(&context, options).unwrap();
         // What is not recorded has no label either
         let frame = ShadeFrame {
             size: [u32::MAX, 8],
             camera: Vec3::ZERO,
             position_from_clip: None,
-            light_count: 0,
-            quad_count: 0,
-            unused: Effects::empty(),
-            shape_count: 0,
+            lights: LightSummary::default(),
             tile_lists: None,
         };
         let none = vk::DescriptorSet::null();

@@ -1,9 +1,9 @@
 //! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
 
 use arealight::plan::{Output, RadianceFormat, RadianceImages, ShadeOptions};
-use arealight::{Effects, PolygonLight};
+use arealight::{Effects, Light};
 use arealight_tests::TestEngine;
-use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp, options};
+use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp};
 use arealight_vk::{Error, Resource, ShadePass, ShadeResources};
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
@@ -29,28 +29,28 @@ fn radiance_is_stored_as_was_asked_for() {
 }
 
 fn output_overwrites_or_adds(engine: &TestEngine) {
-    let add = ShadeOptions { output: Output::Add, ..options() };
-    let over = surface(engine).shade(options(), &[lamp()], CAMERA, None);
+    let add = ShadeOptions { output: Output::Add, ..ShadeOptions::default() };
+    let over = surface(engine).shade(ShadeOptions::default(), &[lamp()], CAMERA, None);
     assert!(over.min_element() > 0.05 && over.w == 1.0, "{over}");
     let added = surface(engine).shade(add, &[lamp()], CAMERA, None);
     assert_eq!(added.truncate(), over.truncate() + BEFORE.truncate());
 
     // Without a surface: overwriting clears, adding leaves alone
-    assert_eq!(no_surface(engine).shade(options(), &[lamp()], CAMERA, None), Vec4::ZERO);
+    assert_eq!(no_surface(engine).shade(ShadeOptions::default(), &[lamp()], CAMERA, None), Vec4::ZERO);
     assert_eq!(no_surface(engine).shade(add, &[lamp()], CAMERA, None), BEFORE);
 }
 
 fn lobes_apart_are_those_of_one_image(engine: &TestEngine) {
-    let lights = [lamp(), PolygonLight { radiance: Vec3::new(0.5, 0.25, 7.0), ..lamp() }];
+    let lights = [lamp(), Light { radiance: Vec3::new(0.5, 0.25, 7.0), ..lamp() }];
     let shade = |options| surface(engine).shade_images(options, &lights, CAMERA, None);
-    let only = |effects| shade(ShadeOptions { effects, ..options() })[0];
-    let apart = ShadeOptions { images: RadianceImages::Apart, ..options() };
+    let only = |effects| shade(ShadeOptions { surfaces: effects, ..ShadeOptions::default() })[0];
+    let apart = ShadeOptions { images: RadianceImages::Separate, ..ShadeOptions::default() };
 
     // Each is to the bit what a pass of that lobe alone gives
     let [diffuse, glossy] = shade(apart);
     assert_eq!([diffuse, glossy], [only(Effects::DIFFUSE), only(Effects::GLOSSY)]);
     assert!(diffuse.min_element() > 0.0 && glossy.min_element() > 0.0 && diffuse != glossy);
-    let [both, untouched] = shade(options());
+    let [both, untouched] = shade(ShadeOptions::default());
     assert_eq!(untouched, BEFORE);
     // Three sums of two lights or lobes, each rounded by 2^-24 of up to the whole
     let error = ((diffuse + glossy - both).truncate() / both.truncate()).abs().max_element();
@@ -63,18 +63,20 @@ fn lobes_apart_are_those_of_one_image(engine: &TestEngine) {
     let nothing = |options| no_surface(engine).shade_images(options, &lights, CAMERA, None);
     assert_eq!(nothing(add), [BEFORE; 2]);
     // A lobe that the pass was made without reflects nothing
-    let without = shade(ShadeOptions { effects: Effects::DIFFUSE, ..apart });
+    let without = shade(ShadeOptions { surfaces: Effects::DIFFUSE, ..apart });
     assert_eq!(without, [diffuse, Vec4::W]);
 }
 
 fn sixteen_bits_are_the_nearest_to_thirty_two_and_saturate(engine: &TestEngine) {
     let nearest = |value: Vec4| Vec4::from_array(value.to_array().map(|v| f16::from_f32(v).to_f32()));
     // The one is beyond the largest number of sixteen bits in two channels, and near the smallest in the third
-    let bright = PolygonLight { radiance: Vec3::new(1e7, 2e38, 1e-4), ..lamp() };
-    for (output, images) in [(Output::Overwrite, RadianceImages::One), (Output::Add, RadianceImages::Apart)] {
-        let single = ShadeOptions { output, images, ..options() };
+    let bright = Light { radiance: Vec3::new(1e7, 2e38, 1e-4), ..lamp() };
+    for (output, images) in
+        [(Output::Overwrite, RadianceImages::Combined), (Output::Add, RadianceImages::Separate)]
+    {
+        let single = ShadeOptions { output, images, ..ShadeOptions::default() };
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..single };
-        let shade = |options, light: &PolygonLight| {
+        let shade = |options, light: &Light| {
             surface(engine).shade_images(options, std::slice::from_ref(light), CAMERA, None)
         };
         let exact = shade(single, &lamp());
@@ -107,14 +109,14 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         position: image,
         normal: image,
         base_color: image,
-        specular: image,
+        specular: None,
         radiance: view(7),
         glossy: None,
-        light_textures: engine.light_textures(),
-        shapes: buffer,
+        light_textures: None,
+        shapes: None,
         tiles: None,
     };
-    let apart = ShadeOptions { images: RadianceImages::Apart, ..options() };
+    let apart = ShadeOptions { images: RadianceImages::Separate, ..ShadeOptions::default() };
     // SAFETY: no submission uses the pass, and nothing is written where an error is returned.
     let pass = unsafe { ShadePass::new(engine.context(), apart) }.unwrap();
     for (glossy, words) in [

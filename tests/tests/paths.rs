@@ -1,6 +1,6 @@
 //! The paths through a quad's code that a device counts, in a scene where they are known.
 
-use arealight::PolygonLight;
+use arealight::{Light, LightShape};
 use arealight_benches::model::{Counts, LobePaths, ModelError, Paths, count_scene};
 use arealight_scene::{Camera, Scene};
 use arealight_tests::TestEngine;
@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [64, 40];
 const HALF: f64 = 4.0;
 
 /// A floor at the height 0 alone, seen from above under `lights`.
-fn floor(lights: Vec<PolygonLight>) -> Scene {
+fn floor(lights: Vec<Light>) -> Scene {
     let mut scene = scene("sweep.glb");
     let floor = scene.materials.iter().position(|material| material.name == "floor").expect("a floor");
     scene.triangles.retain(|triangle| triangle.material as usize == floor);
@@ -24,17 +24,17 @@ fn floor(lights: Vec<PolygonLight>) -> Scene {
     scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
     let down = DVec3::new(0.0, -1.0, -1.0);
     scene.cameras = vec![Camera::framing("from above", scene.bounds, down, DVec3::Y, 1.6)];
-    (scene.lights, scene.shapes) = (lights, vec![]);
+    scene.lights = lights;
     scene
 }
 
 /// A light with the corners center ± u ± v, whose front is to the side of u x v.
-fn light(center: DVec3, u: DVec3, v: DVec3) -> PolygonLight {
+fn light(center: DVec3, u: DVec3, v: DVec3) -> Light {
     let vertices = vec![center - u - v, center + u - v, center + u + v, center - u + v];
-    PolygonLight { vertices, radiance: Vec3::ONE, ..PolygonLight::default() }
+    Light { shape: LightShape::Polygon(vertices), radiance: Vec3::ONE, ..Light::default() }
 }
 
-fn counted(engine: &TestEngine, lights: Vec<PolygonLight>) -> Counts {
+fn counted(engine: &TestEngine, lights: Vec<Light>) -> Counts {
     let [counts, _] = count_scene(engine, &floor(lights), SIZE).expect("the paths are counted");
     assert!(counts.waves > 20, "{} waves see the floor", counts.waves);
     counts
@@ -59,7 +59,7 @@ fn paths_are_those_of_the_lights() {
         ("with a corner above", light(wall - 0.8 * y, (x + y) * 0.5, (y - x) * 0.5), LobePaths::CROSSING[0]),
         ("with a corner below", light(wall + 0.8 * y, (x + y) * 0.5, (y - x) * 0.5), LobePaths::CROSSING[2]),
     ];
-    let lights: Vec<PolygonLight> = cases.iter().map(|(_, light, _)| light.clone()).collect();
+    let lights: Vec<Light> = cases.iter().map(|(_, light, _)| light.clone()).collect();
     let counts = counted(&engine, lights.clone());
     for (place, (name, _, path)) in cases.into_iter().enumerate() {
         let found: Vec<Paths> = paths_of(&counts, place);
@@ -68,7 +68,7 @@ fn paths_are_those_of_the_lights() {
     }
     // The twin: turned over, every wave is behind all of them
     let turned = lights.into_iter().map(|mut light| {
-        light.vertices.reverse();
+        light.shape.vertices_mut().reverse();
         light
     });
     let counts = counted(&engine, turned.collect());

@@ -47,7 +47,7 @@ fn on_a_circle(polygon: &[DVec3], center: DVec3) -> Vec<DVec3> {
 
 fn with_outline(given: &EvalPoint, vertices: Vec<DVec3>) -> EvalPoint {
     let mut other = given.clone();
-    other.light.vertices = vertices;
+    other.light.shape = arealight::LightShape::Polygon(vertices);
     other
 }
 
@@ -144,7 +144,7 @@ fn scaling_by_a_power_of_two_changes_no_bit(
             .collect();
         let scaled = |scale: f64| {
             let mut points = points.clone();
-            for vertex in points.iter_mut().flat_map(|point| &mut point.light.vertices) {
+            for vertex in points.iter_mut().flat_map(|point| point.light.shape.vertices_mut()) {
                 *vertex *= scale;
             }
             engine.run(&Cases::new(&points), level.effects(lobes), level.quality)

@@ -1,9 +1,8 @@
 //! Modules without what specialisation constants rule out, held against whole ones.
 
-use arealight::gpu::ShadeConstants;
 use arealight::kernels::{self, Kernel, constant};
-use arealight::plan::{ShadeOptions, ShadeVariant, shade_specialization, shade_variant_specialization};
-use arealight::{Effects, Footprint, Fresnel, Horizon, Lobes, Quality, TileClass};
+use arealight::plan::{ShadeOptions, shade_specialization};
+use arealight::{Effects, Footprint, Fresnel, Horizon, LightSummary, Lobes, Quality, TileClass};
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{bits, scene, with_renderer};
 use arealight_tests::kernel::BRANCHES;
@@ -88,12 +87,14 @@ fn branches_that_stay_are_those_that_are_taken() {
     assert!(different.len() >= 28, "{}", different.len());
 }
 
+/// The shade kernel's, for surfaces and lights that need `effects`, with quads among them.
+fn shade(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
+    let options = ShadeOptions { surfaces: effects, quality, ..ShadeOptions::default() };
+    shade_specialization(options, LightSummary { quad_count: 1, effects, ..LightSummary::default() })
+}
+
 /// The specialisations that are looked at: each effect by itself and all, each level, and each class of tiles.
 fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
-    let shade = |effects: Effects, quality: Quality| {
-        let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
-        shade_specialization(options)
-    };
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
     let plain = Quality::default();
     let mut all = vec![shade(Effects::empty(), plain), shade(lobes, plain), shade(Effects::all(), plain)];
@@ -162,10 +163,7 @@ fn a_fragment_shader_that_includes_the_library_is_pruned_too() {
 #[test]
 fn what_is_not_in_use_is_left_out() {
     let words = kernels::SHADE.words();
-    let left = |effects: Effects| {
-        let options = ShadeOptions { effects, ..ShadeOptions::all() };
-        prune(&words, &shade_specialization(options)).len()
-    };
+    let left = |effects: Effects| prune(&words, &shade(effects, Quality::default())).len();
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
     // A third of the module is left where all lights are quads (names and constants stay), and each effect adds to that
     assert!(left(lobes) * 3 < words.len(), "{} of {}", left(lobes), words.len());
@@ -214,8 +212,7 @@ fn each_set_of_lights_has_a_module_of_its_own() {
     for set in 0..1_u32 << kinds.len() {
         let chosen = || kinds.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, kind)| kind);
         let effects = chosen().fold(Effects::DIFFUSE | Effects::GLOSSY, |all, (effect, _)| all | *effect);
-        let options = ShadeOptions { effects, ..ShadeOptions::all() };
-        let module = prune(&whole, &shade_specialization(options));
+        let module = prune(&whole, &shade(effects, Quality::default()));
         let functions = function_names(&module);
         for (effect, function) in kinds {
             let is_there = functions.iter().any(|name| name.contains(function));
@@ -225,34 +222,13 @@ fn each_set_of_lights_has_a_module_of_its_own() {
     }
 }
 
-#[test]
-fn what_no_light_of_a_frame_needs_leaves_the_pass_its_module_word_for_word() {
-    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
-    let words = kernels::SHADE.words();
-    let quads =
-        ShadeConstants { light_count: 4, quad_count: 4, shape_count: 0, ..bytemuck::Zeroable::zeroed() };
-    let module = |pass: Effects, unused: Effects, constants: &ShadeConstants| {
-        let variant = ShadeVariant::new(pass, unused, constants);
-        let options = ShadeOptions { effects: pass, ..ShadeOptions::all() };
-        let specialization = shade_variant_specialization(options, variant);
-        (prune(&words, &specialization), specialization)
-    };
-    let bare = module(lobes, Effects::empty(), &quads);
-    for effect in Effects::all() - lobes {
-        assert!(module(lobes | effect, effect, &quads) == bare, "{effect:?}");
-        // The twin: a frame that calls for it has another
-        let all = ShadeConstants { light_count: 5, shape_count: 1, ..quads };
-        assert!(module(lobes | effect, Effects::empty(), &all) != bare, "{effect:?}");
-    }
-    assert!(module(Effects::all(), Effects::all() - lobes, &quads) == bare);
-}
-
 /// The bits of a picture of one of our scenes.
 fn picture(engine: &TestEngine, name: &str, quality: Quality) -> Vec<[u32; 4]> {
     let scene = scene(name);
-    let options = ShadeOptions { effects: scene.effects(), quality, ..ShadeOptions::all() };
+    let options = ShadeOptions { surfaces: scene.effects(), quality, ..ShadeOptions::default() };
     with_renderer(engine, &scene, &scene.lights, [61, 37], |renderer| {
-        renderer.shade_by(&kernels::SHADE, &shade_specialization(options)).unwrap();
+        let specialization = shade_specialization(options, renderer.lights());
+        renderer.shade_by(&kernels::SHADE, &specialization).unwrap();
         bits(renderer)
     })
 }

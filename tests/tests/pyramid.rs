@@ -1,7 +1,7 @@
 //! The prefilter on the GPU, every level of it, against float64: images of any size, repeated and in part; what is
 //! black, blinding or not a number; and layers that are left alone.
 
-use arealight::{LightTexture, PolygonLight, PyramidSize, TexturePart, Wrap};
+use arealight::{Light, LightShape, LightTexture, PyramidSize, TexturePart, Wrap};
 use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
 use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine};
@@ -334,16 +334,16 @@ fn updating_a_layer_leaves_the_others_alone() {
 #[test]
 fn what_is_not_there_is_named() {
     let Some(mut engine) = TestEngine::new() else { return };
-    let screen = PolygonLight {
+    let screen = Light {
         name: "screen".into(),
-        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
         radiance: Vec3::ONE,
+        shape: LightShape::Polygon(vec![DVec3::ZERO, DVec3::X, DVec3::Y]),
         texture: Some(LightTexture { layer: 1, uvs: vec![DVec2::ZERO, DVec2::X, DVec2::Y] }),
-        ..PolygonLight::default()
+        ..Light::default()
     };
-    let lights = [PolygonLight { texture: None, ..screen.clone() }, screen];
+    let lights = [Light { texture: None, ..screen.clone() }, screen];
     let error = engine.check_layers(&lights).unwrap_err();
-    assert_eq!(error.to_string(), "light 'screen': texture: layer 1 is not there: there are 0");
+    assert_eq!(error.to_string(), "lights[1] 'screen': texture: layer 1 is not there: there are 0");
     engine.check_layers(&lights[..1]).unwrap();
 
     let size = PyramidSize::new(64, 64).unwrap();

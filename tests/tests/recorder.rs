@@ -2,12 +2,12 @@
 
 use arealight::kernels::{self, SHADE, constant};
 use arealight::plan::{PositionSource, ShadeOptions};
-use arealight::{Effects, LightError, PolygonLight};
+use arealight::{Effects, LightSummary};
 use arealight_tests::TestEngine;
 use arealight_tool_kernels::kernels::EVAL;
 use arealight_vk::{ComputePass, Error, Resource, ShadeFrame, ShadePass, TableFormat, TableImage};
 use ash::vk;
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 
 fn field(error: &Error) -> &'static str {
     match error {
@@ -21,12 +21,13 @@ fn frame() -> ShadeFrame {
         size: [8, 8],
         camera: Vec3::ZERO,
         position_from_clip: None,
-        light_count: 0,
-        quad_count: 0,
-        unused: Effects::empty(),
-        shape_count: 0,
+        lights: LightSummary::default(),
         tile_lists: None,
     }
+}
+
+fn lights(light_count: u32, quad_count: u32, shape_count: u32, effects: Effects) -> ShadeFrame {
+    ShadeFrame { lights: LightSummary { light_count, quad_count, shape_count, effects }, ..frame() }
 }
 
 /// Runs `check` with a pass and a command buffer that is being recorded.
@@ -46,10 +47,12 @@ fn recording(
 #[test]
 fn frames_that_cannot_be_shaded_are_refused_by_field() {
     let Some(engine) = TestEngine::new() else { return };
-    recording(&engine, ShadeOptions::all(), |pass, commands, set| {
+    recording(&engine, ShadeOptions::default(), |pass, commands, set| {
         for (wrong, expected) in [
             (ShadeFrame { size: [8, 0], ..frame() }, "size"),
-            (ShadeFrame { light_count: 2, quad_count: 3, ..frame() }, "quad_count"),
+            (lights(2, 3, 0, Effects::empty()), "lights"),
+            (lights(3, 2, 0, Effects::SPHERE), "lights"),
+            (lights(2, 2, 1, Effects::POLYGON), "lights"),
             (ShadeFrame { camera: Vec3::new(0.0, f32::NAN, 0.0), ..frame() }, "camera"),
             (
                 ShadeFrame { position_from_clip: Some(Mat4::IDENTITY * f32::INFINITY), ..frame() },
@@ -62,13 +65,12 @@ fn frames_that_cannot_be_shaded_are_refused_by_field() {
             assert_eq!(field(&error), expected, "{error}");
         }
     });
-    let without_shapes = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
-    recording(&engine, without_shapes, |pass, commands, set| {
-        // SAFETY: As above.
-        let error = unsafe { pass.record(commands, set, &ShadeFrame { shape_count: 1, ..frame() }) };
-        assert_eq!(field(&error.unwrap_err()), "shape_count");
+    // The twins of the lights
+    recording(&engine, ShadeOptions::default(), |pass, _, _| {
+        pass.prepare(&lights(3, 2, 0, Effects::POLYGON)).unwrap();
+        pass.prepare(&lights(2, 2, 1, Effects::SPHERE)).unwrap();
     });
-    let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::all() };
+    let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
     recording(&engine, from_depth, |pass, commands, set| {
         // SAFETY: As above.
         let error = unsafe { pass.record(commands, set, &frame()) }.unwrap_err();
@@ -121,30 +123,9 @@ fn constants_are_checked_against_the_manifest() {
 }
 
 #[test]
-fn a_light_that_calls_for_more_is_named() {
-    let Some(engine) = TestEngine::new() else { return };
-    let sign = PolygonLight {
-        name: "sign".into(),
-        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
-        radiance: Vec3::ONE,
-        two_sided: true,
-        ..PolygonLight::default()
-    };
-    let options = ShadeOptions { effects: Effects::DIFFUSE, ..ShadeOptions::all() };
-    recording(&engine, options, |pass, _, _| {
-        let error = pass.pack_lights(std::slice::from_ref(&sign), DVec3::ZERO).unwrap_err();
-        let Error::EffectsTooSmall { light, missing } = &error else { panic!("{error}") };
-        assert_eq!((light.as_str(), *missing), ("sign", Effects::TWO_SIDED));
-        let line = PolygonLight { vertices: vec![DVec3::ZERO, DVec3::X], two_sided: false, ..sign.clone() };
-        let error = pass.pack_lights(&[line], DVec3::ZERO).unwrap_err();
-        assert!(matches!(error, Error::Light(LightError::TooFewVertices { count: 2, .. })), "{error}");
-    });
-}
-
-#[test]
 fn accesses_and_pool_sizes_say_what_the_manifest_says() {
     let Some(engine) = TestEngine::new() else { return };
-    recording(&engine, ShadeOptions::all(), |pass, _, _| {
+    recording(&engine, ShadeOptions::default(), |pass, _, _| {
         let accesses = pass.accesses();
         assert_eq!(accesses.len(), SHADE.bindings.len());
         for access in &accesses {

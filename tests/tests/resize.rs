@@ -1,9 +1,11 @@
 //! A window that is resized: frames of several sizes are in flight by one pass, and nothing waits for another.
 
+use arealight::PackedLights;
+use arealight::plan::ShadeOptions;
 use arealight_engine::Kept;
 use arealight_engine::host::{DescriptorPool, Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
-use arealight_tests::one_pixel::{self, BEFORE, lamp};
+use arealight_tests::one_pixel::{BEFORE, lamp};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3};
@@ -48,11 +50,11 @@ impl Images {
             position: of(&position),
             normal: of(&normal),
             base_color: of(&base_color),
-            specular: of(&base_color),
+            specular: None,
             radiance: Resource::StorageImage { view: radiance.view() },
             glossy: None,
-            light_textures: engine.light_textures(),
-            shapes: Resource::buffer(buffers[0]),
+            light_textures: None,
+            shapes: None,
             tiles: None,
         };
         // SAFETY: the set is new; tests wait before the images go.
@@ -129,8 +131,8 @@ impl Drop for InFlight<'_> {
 fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
     let Some(engine) = TestEngine::new() else { return };
     let (host, device) = (engine.host(), engine.host().device());
-    let pass: &Kept<ShadePass> = &engine.shade_pass(one_pixel::options()).unwrap();
-    let packed = pass.pack_lights(&[lamp()], DVec3::ZERO).unwrap();
+    let pass: &Kept<ShadePass> = &engine.shade_pass(ShadeOptions::default()).unwrap();
+    let packed = PackedLights::new(&[lamp()], DVec3::ZERO).unwrap();
     let lights = host.storage_buffer("lights", &packed.lights).unwrap();
     let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
     let images = |size| Images::new(&engine, pass, [lights.handle(), vertices.handle()], size);
@@ -139,10 +141,7 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
             size,
             camera: Vec3::new(0.0, -1.0, 1.0),
             position_from_clip: None,
-            light_count: 1,
-            quad_count: packed.quad_count,
-            unused: packed.unused,
-            shape_count: 0,
+            lights: packed.summary(),
             tile_lists: None,
         };
         // SAFETY: the commands are being recorded, with a set of images of at least this size.

@@ -38,7 +38,7 @@ fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight::Surface) -> Vec
             let frame = arealight_oracle::frame::SurfaceFrame::new(given.normal, random.direction());
             given.view = frame.from_surface(given.view);
             given.position = random.direction() * 1000.0;
-            for vertex in &mut given.light.vertices {
+            for vertex in given.light.shape.vertices_mut() {
                 *vertex = frame.from_surface(*vertex) + given.position;
             }
             given
@@ -183,7 +183,7 @@ fn a_mirror_sees_a_ceiling_of_any_size() {
         let quality = Quality { form_factor, ..Quality::default() };
         // Beyond a size of 1e4 / alpha the ceiling's own edges are in the rounding of its height
         let bound = |point: &EvalPoint| {
-            let size = point.light.vertices[2].x - point.position.x;
+            let size = point.light.shape.vertices()[2].x - point.position.x;
             rounding(1.0) + 4e-7 * size.sqrt()
         };
         let Some(comparison) = compare("ceilings", &points, quality, bound) else { return };
@@ -275,8 +275,8 @@ fn a_light_that_cannot_be_shaded_is_named() {
     let Some(engine) = TestEngine::new() else { return };
     let mut points = lights(6, |_| lambert_surface());
     points.truncate(3);
-    points[2].light.vertices[1].y = f64::NAN;
+    points[2].light.shape.vertices_mut()[1].y = f64::NAN;
     let error = engine.eval(&points, Quality::default()).unwrap_err();
-    assert!(error.to_string().starts_with("light 'test': vertices[1]"), "{error}");
+    assert!(error.to_string().starts_with("lights[0] 'test': vertices[1]"), "{error}");
     assert!(engine.eval(&[], Quality::default()).unwrap().is_empty());
 }

@@ -1,7 +1,10 @@
 //! Disks, spheres and tubes in the shade pass: pixels of a G-buffer against the float64 oracle.
 
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightTable, Material, Quality, Shape, ShapeLight, TubeEnds};
+use arealight::{
+    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, Material, PackedLights, Quality,
+    TubeEnds,
+};
 use arealight_benches::pictures;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_engine::{Engine, SceneRenderer};
@@ -9,7 +12,7 @@ use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers, SceneMaterial, Triangle};
 use arealight_tests::{Comparison, Random, TestEngine, rounding};
-use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use std::sync::{Arc, LazyLock};
@@ -43,28 +46,32 @@ fn pixels() -> Vec<Pixel> {
 }
 
 /// Two of each kind: about the pixels' horizons, and one of them with two sides.
-fn shapes() -> Vec<ShapeLight> {
-    let light = |name: &str, radiance: Vec3, two_sided, shape| ShapeLight {
+fn shapes() -> Vec<Light> {
+    let light = |name: &str, radiance: Vec3, two_sided, shape| Light {
         name: name.into(),
         radiance,
         two_sided,
         texture: None,
         shape,
     };
-    let tube =
-        |p0: [f64; 3], p1: [f64; 3], radius, ends| Shape::Tube { p0: p0.into(), p1: p1.into(), radius, ends };
+    let tube = |p0: [f64; 3], p1: [f64; 3], radius, ends| LightShape::Tube {
+        p0: p0.into(),
+        p1: p1.into(),
+        radius,
+        ends,
+    };
     vec![
         light(
             "disk",
             Vec3::new(1.0, 2.0, 3.0),
             false,
-            Shape::Ellipse { center: DVec3::Z * 2.0, axis_u: DVec3::Y * 0.5, axis_v: DVec3::X * 0.5 },
+            LightShape::Disk { center: DVec3::Z * 2.0, axis_u: DVec3::Y * 0.5, axis_v: DVec3::X * 0.5 },
         ),
         light(
             "plate",
             Vec3::new(3.0, 1.0, 0.5),
             true,
-            Shape::Ellipse {
+            LightShape::Disk {
                 center: DVec3::new(0.5, 1.0, 0.25),
                 axis_u: DVec3::new(0.5, 0.0, 0.5),
                 axis_v: DVec3::new(0.0, 0.25, 0.125),
@@ -74,13 +81,13 @@ fn shapes() -> Vec<ShapeLight> {
             "sun",
             Vec3::new(2.0, 1.0, 1.0),
             false,
-            Shape::Sphere { center: DVec3::new(-1.0, 0.0, 1.0), radius: 0.5 },
+            LightShape::Sphere { center: DVec3::new(-1.0, 0.0, 1.0), radius: 0.5 },
         ),
         light(
             "ball",
             Vec3::new(0.0, 2.0, 1.0),
             false,
-            Shape::Sphere { center: DVec3::new(1.0, -1.0, 0.0), radius: 0.25 },
+            LightShape::Sphere { center: DVec3::new(1.0, -1.0, 0.0), radius: 0.25 },
         ),
         light(
             "lamp",
@@ -97,34 +104,39 @@ fn shapes() -> Vec<ShapeLight> {
     ]
 }
 
-fn of_kinds(effects: Effects) -> Vec<ShapeLight> {
-    let kind = |shape: &ShapeLight| shape.effects() - Effects::TWO_SIDED;
+fn of_kinds(effects: Effects) -> Vec<Light> {
+    let kind = |shape: &Light| shape.effects() - Effects::TWO_SIDED;
     shapes().into_iter().filter(|shape| effects.contains(kind(shape))).collect()
 }
 
 /// The shape as it is seen from a point.
-fn seen_from(light: &ShapeLight, point: DVec3) -> ShapeLight {
+fn seen_from(light: &Light, point: DVec3) -> Light {
     let moved = |p: DVec3| p - point;
-    let shape = match light.shape {
-        Shape::Ellipse { center, axis_u, axis_v } => Shape::Ellipse { center: moved(center), axis_u, axis_v },
-        Shape::Sphere { center, radius } => Shape::Sphere { center: moved(center), radius },
-        Shape::Tube { p0, p1, radius, ends } => Shape::Tube { p0: moved(p0), p1: moved(p1), radius, ends },
+    let shape = match light.shape.clone() {
+        LightShape::Disk { center, axis_u, axis_v } => {
+            LightShape::Disk { center: moved(center), axis_u, axis_v }
+        }
+        LightShape::Sphere { center, radius } => LightShape::Sphere { center: moved(center), radius },
+        LightShape::Tube { p0, p1, radius, ends } => {
+            LightShape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
+        }
+        polygonal => polygonal,
     };
-    ShapeLight { shape, ..light.clone() }
+    Light { shape, ..light.clone() }
 }
 
 /// What float64 says that every pixel shows.
-fn expected(shapes: &[ShapeLight]) -> Vec<DVec3> {
-    let of_one = |pixel: &Pixel, shape: &ShapeLight| {
+fn expected(shapes: &[Light]) -> Vec<DVec3> {
+    let of_one = |pixel: &Pixel, shape: &Light| {
         let (surface, view) = (pixel.material.surface(), CAMERA - pixel.position);
         let shape = seen_from(shape, pixel.position);
-        shape_ltc_on(Quality::default(), &TABLE, &surface, pixel.normal, view, &shape)
+        shape_ltc_on(Quality::default(), &TABLE, &surface, pixel.normal, view, &shape).expect("a shape")
     };
     pixels().iter().map(|pixel| shapes.iter().map(|shape| of_one(pixel, shape)).sum()).collect()
 }
 
-/// What the shade pass makes of all pixels.
-fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> {
+/// What the shade pass makes of all pixels, with the code of `effects` beside what is needed.
+fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
     let host = engine.host();
     let image = |name, usage, texels: Vec<[f32; 4]>, ready| {
         let (format, extent) = (vk::Format::R32G32B32A32_SFLOAT, [PIXELS as u32, 1]);
@@ -147,10 +159,10 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
         |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
     // SAFETY: Host::submit waits, and everything here is dropped before the engine.
     unsafe {
-        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        let options = ShadeOptions { surfaces: effects, ..ShadeOptions::default() };
         let pass = ShadePass::new(engine.context(), options).expect("a pipeline");
-        let packed = pass.pack_shapes(shapes, DVec3::ZERO).expect("shapes");
-        let buffer = host.storage_buffer("shapes", &packed).expect("a buffer");
+        let packed = PackedLights::new(lights, DVec3::ZERO).expect("shapes");
+        let buffer = host.storage_buffer("shapes", &packed.shapes).expect("a buffer");
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).expect("a pool");
         let set = pool.allocate(pass.set_layout()).expect("a set");
         let resources = ShadeResources {
@@ -160,11 +172,11 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             position: read(&position),
             normal: read(&normal),
             base_color: read(&color),
-            specular: read(&specular),
+            specular: Some(read(&specular)),
             radiance: Resource::StorageImage { view: radiance.view() },
             glossy: None,
-            light_textures: engine.light_textures(),
-            shapes: Resource::buffer(buffer.handle()),
+            light_textures: Some(engine.light_textures()),
+            shapes: Some(Resource::buffer(buffer.handle())),
             tiles: None,
         };
         pass.write_set(set, &resources).expect("resources");
@@ -172,10 +184,7 @@ fn shade(engine: &Engine, effects: Effects, shapes: &[ShapeLight]) -> Vec<Vec4> 
             size: [PIXELS as u32, 1],
             camera: CAMERA.as_vec3(),
             position_from_clip: None,
-            light_count: 0,
-            quad_count: 0,
-            unused: Effects::empty(),
-            shape_count: shapes.len() as u32,
+            lights: LightSummary { effects: effects | packed.summary().effects, ..packed.summary() },
             tile_lists: None,
         };
         host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
@@ -191,7 +200,7 @@ fn pixels_show_what_the_oracle_says_with_every_set_of_kinds() {
     let (disks, balls, tubes) = (Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE);
     for kinds in [disks, disks | balls, tubes] {
         let shapes = of_kinds(kinds);
-        let effects: Effects = shapes.iter().map(ShapeLight::effects).collect();
+        let effects: Effects = shapes.iter().map(Light::effects).collect();
         let found = shade(&engine, lobes | effects, &shapes);
         let expected = expected(&shapes);
         let mut comparison = Comparison::new(format!("{kinds}"));
@@ -211,7 +220,7 @@ fn pixels_show_what_the_oracle_says_with_every_set_of_kinds() {
 }
 
 #[test]
-fn effects_that_no_shape_calls_for_change_nothing() {
+fn effects_that_no_shape_needs_change_nothing() {
     let Some(engine) = TestEngine::new() else { return };
     let shapes = of_kinds(Effects::SPHERE);
     let needed = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPHERE;
@@ -223,21 +232,6 @@ fn effects_that_no_shape_calls_for_change_nothing() {
     let none = shade(&engine, needed - Effects::SPHERE, &[]);
     assert!(none.iter().all(|pixel| pixel.truncate() == Vec3::ZERO));
     assert!(few.iter().any(|pixel| pixel.max_element() > 0.1));
-}
-
-#[test]
-fn a_pass_without_a_shape_s_effect_refuses_it() {
-    let Some(engine) = TestEngine::new() else { return };
-    let options = ShadeOptions { effects: Effects::DIFFUSE | Effects::SPHERE, ..ShadeOptions::all() };
-    // SAFETY: Nothing is recorded.
-    let pass = unsafe { ShadePass::new(engine.context(), options) }.expect("a pipeline");
-    let message = pass.pack_shapes(&shapes(), DVec3::ZERO).unwrap_err().to_string();
-    assert!(message.contains("'disk' calls for the effects: ellipse"), "{message}");
-    assert!(pass.pack_shapes(&of_kinds(Effects::SPHERE), DVec3::ZERO).is_ok());
-    let mut broken = of_kinds(Effects::SPHERE);
-    broken[0].radiance.x = f32::NAN;
-    let error = pass.pack_shapes(&broken, DVec3::ZERO).unwrap_err();
-    assert!(matches!(error, Error::Shape(_)), "{error}");
 }
 
 /// A floor of two triangles at z = 0, of Lambert's lobe alone or of the GGX lobe alone.
@@ -281,9 +275,9 @@ fn the_reference_samples_shapes() {
     let Some(mut engine) = TestEngine::new() else { return };
     pictures::load(&mut engine, &[Arc::new(Texture::gradient(64, 64))]).expect("a picture");
     let mut kinds = shapes();
-    kinds[4].shape = match kinds[4].shape {
+    kinds[4].shape = match kinds[4].shape.clone() {
         // What is open shines less than what has caps: seen from below, and nearly along the axis
-        Shape::Tube { p0, radius, .. } => Shape::Tube {
+        LightShape::Tube { p0, radius, .. } => LightShape::Tube {
             p0,
             p1: p0 + DVec3::new(0.25, 0.0, 0.5),
             radius: radius * 2.0,
@@ -292,28 +286,26 @@ fn the_reference_samples_shapes() {
         other => other,
     };
     kinds.push(shapes()[4].clone());
-    kinds.push(ShapeLight { texture: Some(0), ..shapes()[0].clone() });
+    kinds.push(Light { texture: Some(LightTexture { layer: 0, uvs: vec![] }), ..shapes()[0].clone() });
     for glossy in [false, true] {
         let scene = floor(glossy);
         let camera = scene.framing_camera(1.5);
         let buffers = SceneBuffers::new(&scene, camera.position).expect("buffers");
         let constants = buffers.constants(&camera, SIZE, Vec3::ZERO);
-        let render = |shapes: &[ShapeLight], sampled: bool| -> (DVec3, Vec<Vec4>) {
-            let renderer = SceneRenderer::new(&engine, &buffers, &[], constants, SIZE).expect("a renderer");
-            let mut renderer = renderer.with_shapes(shapes).expect("shapes");
+        let render = |shapes: &[Light], sampled: bool| -> (DVec3, Vec<Vec4>) {
+            let renderer = SceneRenderer::new(&engine, &buffers, shapes, constants, SIZE);
+            let mut renderer = renderer.expect("a renderer");
             if sampled {
                 renderer.reference(SAMPLES, 10, |_| {}).expect("a reference");
             } else {
-                let effects: Effects = shapes.iter().map(ShapeLight::effects).collect();
                 let lobe = if glossy { Effects::GLOSSY } else { Effects::DIFFUSE };
-                let effects = effects | lobe | Effects::SPECULAR_INPUT;
-                renderer.shade(effects, Quality::default()).expect("a frame");
+                renderer.shade(lobe | Effects::SPECULAR_INPUT, Quality::default()).expect("a frame");
             }
             let radiance = renderer.radiance().expect("a picture");
             (radiance.iter().map(|texel| texel.truncate().as_dvec3()).sum(), radiance)
         };
         // All shapes at once for the GGX lobe, which is a fit of a few per cent; Lambert's is exact, for each
-        let groups: Vec<Vec<ShapeLight>> = if glossy {
+        let groups: Vec<Vec<Light>> = if glossy {
             vec![kinds.clone()]
         } else {
             kinds.iter().map(|shape| vec![shape.clone()]).collect()

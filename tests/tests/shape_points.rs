@@ -1,11 +1,12 @@
 //! Disks, spheres and cylinders through the whole chain, from a light in the world to radiance: against the reference, and
 //! against the oracle's fitted lobes.
 
-use arealight::{FormFactor, Fresnel, Horizon, Quality, Shape, ShapeKind};
+use arealight::gpu::GpuShape;
+use arealight::{Effects, FormFactor, Fresnel, Horizon, LightShape, Quality};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{CaseMaterial, ShapeCase, read_cases};
 use arealight_cases::measure::relative_error;
-use arealight_engine::ShapePoint;
+use arealight_engine::EvalPoint;
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_tests::{Comparison, TestEngine};
 use glam::{DVec3, Vec3};
@@ -34,35 +35,37 @@ fn known() -> HashMap<String, [f64; 3]> {
     answers.into_iter().filter_map(|answer| Some((answer.name, answer.radiance?))).collect()
 }
 
-fn point(case: &ShapeCase) -> ShapePoint {
+fn point(case: &ShapeCase) -> EvalPoint {
     let ShapeCase { surface, normal, view, light, .. } = case.clone();
-    ShapePoint { surface, position: DVec3::ZERO, normal, view, light }
+    EvalPoint { surface, position: DVec3::ZERO, normal, view, light }
 }
 
-fn points(cases: &[(ShapeCase, bool)]) -> Vec<ShapePoint> {
+fn points(cases: &[(ShapeCase, bool)]) -> Vec<EvalPoint> {
     cases.iter().map(|(case, _)| point(case)).collect()
 }
 
 /// The shape, with its size changed.
-fn grown(shape: &Shape, by: f64) -> Shape {
+fn grown(shape: &LightShape, by: f64) -> LightShape {
     match *shape {
-        Shape::Ellipse { center, axis_u, axis_v } => {
-            Shape::Ellipse { center, axis_u: axis_u * by, axis_v: axis_v * by }
+        LightShape::Disk { center, axis_u, axis_v } => {
+            LightShape::Disk { center, axis_u: axis_u * by, axis_v: axis_v * by }
         }
-        Shape::Sphere { center, radius } => Shape::Sphere { center, radius: radius * by },
-        Shape::Tube { p0, p1, radius, ends } => Shape::Tube { p0, p1, radius: radius * by, ends },
+        LightShape::Sphere { center, radius } => LightShape::Sphere { center, radius: radius * by },
+        LightShape::Tube { p0, p1, radius, ends } => LightShape::Tube { p0, p1, radius: radius * by, ends },
+        LightShape::Polygon(_) | LightShape::Mesh { .. } => panic!("{shape:?} is no case"),
     }
 }
 
-fn moved(shape: &Shape, offset: DVec3) -> Shape {
+fn moved(shape: &LightShape, offset: DVec3) -> LightShape {
     match *shape {
-        Shape::Ellipse { center, axis_u, axis_v } => {
-            Shape::Ellipse { center: center + offset, axis_u, axis_v }
+        LightShape::Disk { center, axis_u, axis_v } => {
+            LightShape::Disk { center: center + offset, axis_u, axis_v }
         }
-        Shape::Sphere { center, radius } => Shape::Sphere { center: center + offset, radius },
-        Shape::Tube { p0, p1, radius, ends } => {
-            Shape::Tube { p0: p0 + offset, p1: p1 + offset, radius, ends }
+        LightShape::Sphere { center, radius } => LightShape::Sphere { center: center + offset, radius },
+        LightShape::Tube { p0, p1, radius, ends } => {
+            LightShape::Tube { p0: p0 + offset, p1: p1 + offset, radius, ends }
         }
+        LightShape::Polygon(_) | LightShape::Mesh { .. } => panic!("{shape:?} is no case"),
     }
 }
 
@@ -83,7 +86,7 @@ fn compare_with_oracle(cases: &[(ShapeCase, bool)], found: &[Vec3], quality: Qua
         let ShapeCase { name, surface, normal, view, light, .. } = case;
         let by = |alpha: f64| {
             let surface = arealight::Surface { alpha: surface.alpha * alpha, ..*surface };
-            shape_ltc_on(quality, &table, &surface, *normal, *view, light)
+            shape_ltc_on(quality, &table, &surface, *normal, *view, light).unwrap()
         };
         // Relative to what the light sends when it fills the sky
         let whole = light.radiance.as_dvec3().max_element();
@@ -111,7 +114,7 @@ fn shapes_agree_with_the_reference_and_with_the_oracle() {
     assert_eq!(diffuse().count(), 10);
     comparison.assert_all();
     // The twin: lights a thousandth larger
-    let mut larger: Vec<ShapePoint> = diffuse().map(|((case, _), _)| point(case)).collect();
+    let mut larger: Vec<EvalPoint> = diffuse().map(|((case, _), _)| point(case)).collect();
     for point in &mut larger {
         point.light.shape = grown(&point.light.shape, 1.001);
     }
@@ -160,7 +163,7 @@ fn shapes_are_cut_at_both_horizons() {
     let table = arealight_table::ggx();
     let noticed = cases.iter().zip(&found).filter(|((case, _), found)| {
         let ShapeCase { surface, normal, view, light, .. } = case;
-        let one = shape_ltc_on(Quality::default(), &table, surface, *normal, *view, light);
+        let one = shape_ltc_on(Quality::default(), &table, surface, *normal, *view, light).unwrap();
         (found.as_dvec3() - one).abs().max_element()
             > 3.0 * ROUNDING * light.radiance.as_dvec3().max_element()
     });
@@ -173,12 +176,12 @@ fn one_pipeline_takes_any_kind() {
     let Some(engine) = TestEngine::new() else { return };
     let cases = cases();
     let points = points(&cases);
-    let found = engine.eval_shapes_as(ShapeKind::Any, &points.iter().collect::<Vec<_>>(), Quality::default());
+    let found = engine.eval_shapes_as(GpuShape::ANY, &points.iter().collect::<Vec<_>>(), Quality::default());
     let noticed = compare_with_oracle(&cases, &found.unwrap(), Quality::default(), ROUNDING);
     assert!(noticed > 20, "{noticed} noticed");
     // The twin: a pipeline of one kind takes a disk for a sphere
-    let disk = points.iter().find(|point| point.light.shape.kind() == ShapeKind::Ellipse).unwrap();
-    let as_any = engine.eval_shapes_as(ShapeKind::Any, &[disk], Quality::default()).unwrap();
-    let as_sphere = engine.eval_shapes_as(ShapeKind::Sphere, &[disk], Quality::default()).unwrap();
+    let disk = points.iter().find(|point| point.light.effects().contains(Effects::ELLIPSE)).unwrap();
+    let as_any = engine.eval_shapes_as(GpuShape::ANY, &[disk], Quality::default()).unwrap();
+    let as_sphere = engine.eval_shapes_as(GpuShape::SPHERE, &[disk], Quality::default()).unwrap();
     assert_ne!(as_any, as_sphere);
 }

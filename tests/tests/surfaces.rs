@@ -55,7 +55,7 @@ const FAMILIES: [(&str, Make); 6] = [
         let turn = glam::DQuat::from_axis_angle(random.direction(), random.between(0.0, 3.0));
         given.normal = turn * given.normal;
         given.view = turn * given.view;
-        given.light.vertices.iter_mut().for_each(|vertex| *vertex = turn * *vertex);
+        given.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex = turn * *vertex);
         given
     }),
     ("a million units off", |random, index| {
@@ -63,7 +63,7 @@ const FAMILIES: [(&str, Make); 6] = [
         let vertices = in_the_lobe(random, alpha, view, 3 + index % 6);
         let mut given = point(glossy_surface(alpha), view, vertices, index % 3 == 0);
         given.position = random.direction() * 1e6;
-        given.light.vertices.iter_mut().for_each(|vertex| *vertex += given.position);
+        given.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex += given.position);
         given
     }),
     ("concave", |random, index| {
@@ -85,7 +85,7 @@ const FAMILIES: [(&str, Make); 6] = [
 fn judges(table: &LightTable, points: &[EvalPoint], given: &Cases, horizon: Horizon) -> Vec<Judge> {
     let judge = |(index, point): (usize, &EvalPoint)| {
         let lobe = Lobe::glossy(table, &given.cases[index]);
-        let vertices = point.light.vertices.iter().map(|v| *v - point.position).collect();
+        let vertices = point.light.shape.vertices().iter().map(|v| *v - point.position).collect();
         Seen::with_vertices(given, index, vertices, lobe, horizon).judge()
     };
     points.iter().enumerate().map(judge).collect()

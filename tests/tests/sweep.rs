@@ -3,7 +3,7 @@
 
 use arealight::gpu::GpuLight;
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, Horizon, LightTable, Material, PackedLights, PolygonLight};
+use arealight::{Effects, Horizon, Light, LightShape, LightTable, Material, PackedLights};
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{Cases, Comparison, Level, Path, TestEngine};
@@ -50,7 +50,7 @@ fn place(frame: usize) -> Vec3 {
 }
 
 /// A tilted plate, or an arrow, about the origin.
-fn light(concave: bool) -> PolygonLight {
+fn light(concave: bool) -> Light {
     let flat: &[(f64, f64)] = if concave {
         &[(-0.5, -0.4), (0.6, 0.0), (-0.5, 0.5), (-0.1, 0.3), (-0.2, 0.0)]
     } else {
@@ -59,12 +59,12 @@ fn light(concave: bool) -> PolygonLight {
     // Its front looks down, and to the far surface
     let tilt = DQuat::from_rotation_y(0.5) * DQuat::from_rotation_x(0.3);
     let vertices = flat.iter().rev().map(|&(x, y)| tilt * DVec3::new(x, y, 0.0)).collect();
-    PolygonLight {
+    Light {
         name: "sweeping".into(),
-        vertices,
+        shape: LightShape::Polygon(vertices),
         radiance: Vec3::ONE,
         two_sided: concave,
-        ..PolygonLight::default()
+        ..Light::default()
     }
 }
 
@@ -79,7 +79,7 @@ struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    fn new(engine: &'a TestEngine, light: &PolygonLight) -> Self {
+    fn new(engine: &'a TestEngine, light: &Light) -> Self {
         let packed = PackedLights::new(std::slice::from_ref(light), DVec3::ZERO).unwrap();
         let pixels: Vec<(Vec3, Material)> = (0..FRAMES)
             .flat_map(|frame| {
@@ -134,7 +134,7 @@ impl<'a> Sweep<'a> {
     fn shade(&self, level: Level) -> Vec<f32> {
         let host = self.engine.host();
         let effects = level.effects(Effects::DIFFUSE | Effects::GLOSSY);
-        let options = ShadeOptions { effects, quality: level.quality, ..ShadeOptions::all() };
+        let options = ShadeOptions { surfaces: effects, quality: level.quality, ..ShadeOptions::default() };
         let sampled =
             |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
         let [position, normal, color, radiance] = &self.images;
@@ -152,11 +152,11 @@ impl<'a> Sweep<'a> {
                 position: sampled(position),
                 normal: sampled(normal),
                 base_color: sampled(color),
-                specular: sampled(color),
+                specular: Some(sampled(color)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: None,
-                light_textures: self.engine.light_textures(),
-                shapes: Resource::buffer(lights.handle()),
+                light_textures: None,
+                shapes: None,
                 tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
@@ -164,10 +164,7 @@ impl<'a> Sweep<'a> {
                 size: [SURFACES.len() as u32, FRAMES as u32],
                 camera: CAMERA,
                 position_from_clip: None,
-                light_count: 1,
-                quad_count: self.packed.quad_count,
-                unused: self.packed.unused,
-                shape_count: 0,
+                lights: self.packed.summary(),
                 tile_lists: None,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();

@@ -1,7 +1,7 @@
-//! Lights that show an image: energy, orientation, and the cases that have no easy answer.
+//! Textured lights: energy, orientation, and the cases that have no easy answer.
 
 use arealight::{
-    Footprint, FormFactor, Fresnel, Horizon, LightTexture, PolygonLight, PyramidSize, Quality, Surface,
+    Footprint, FormFactor, Fresnel, Horizon, Light, LightTexture, PyramidSize, Quality, Surface,
 };
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
@@ -44,11 +44,11 @@ fn engine() -> Option<TestEngine> {
 }
 
 /// The image laid onto the polygon: its box in the polygon's plane shows all of it.
-fn shown(light: &mut PolygonLight, layer: u32) {
-    let normal = light.area_vector().normalize_or(DVec3::Z);
-    let u = (light.vertices[1] - light.vertices[0]).normalize_or(DVec3::X);
+fn shown(light: &mut Light, layer: u32) {
+    let normal = light.shape.area_vector().normalize_or(DVec3::Z);
+    let u = (light.shape.vertices()[1] - light.shape.vertices()[0]).normalize_or(DVec3::X);
     let v = normal.cross(u);
-    let flat: Vec<DVec2> = light.vertices.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
+    let flat: Vec<DVec2> = light.shape.vertices().iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();
     let low = flat.iter().copied().fold(DVec2::INFINITY, DVec2::min);
     let high = flat.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
     let uvs = flat.iter().map(|p| (*p - low) / (high - low)).collect();
@@ -88,7 +88,8 @@ fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
             shown(&mut given.light, layer);
             if index % 4 == 1 {
                 // A ring: what is nearer to the middle of a star is within it
-                let hole = given.light.vertices.iter().map(|vertex| center.lerp(*vertex, 0.5)).collect();
+                let hole =
+                    given.light.shape.vertices().iter().map(|vertex| center.lerp(*vertex, 0.5)).collect();
                 given.light.cut_holes(&[hole]).expect("a hole within its outline");
             }
             given
@@ -98,7 +99,7 @@ fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
 
 fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
     let plain = |point: &EvalPoint| {
-        let light = PolygonLight { texture: None, ..point.light.clone() };
+        let light = Light { texture: None, ..point.light.clone() };
         EvalPoint { light, ..point.clone() }
     };
     points.iter().map(plain).collect()
@@ -191,14 +192,14 @@ fn seen_color(point: &EvalPoint, pyramid: &Pyramid, filter: Filter) -> DVec3 {
     if white {
         shown(&mut light, WHITE);
     }
-    let map = light.texture.as_ref().unwrap().map(&light).unwrap();
+    let map = light.texture.as_ref().unwrap().map(&light.shape).unwrap();
     let seen = SeenLight {
-        vertices: light.vertices.clone(),
-        center: light.center(),
+        vertices: light.shape.vertices().to_vec(),
+        center: light.shape.center(),
         map,
         texels: DVec2::splat(f64::from(SIZE)) * map.size,
         horizons: Vec::new(),
-        convex_quad: light.is_convex_quad(),
+        convex_quad: light.shape.is_convex_quad(),
     };
     let color =
         filtered(
@@ -236,7 +237,7 @@ fn screen(alpha: f64, x: f64, z: f64) -> EvalPoint {
     let vertices = vec![corner(-1.0, 0.5), corner(1.0, 0.5), corner(1.0, 2.5), corner(-1.0, 2.5)];
     let view = DVec3::new(-x, -2.0, z);
     let mut point = point(glossy_surface(alpha), view, vertices, false);
-    let area = point.light.area_vector();
+    let area = point.light.shape.area_vector();
     assert!(area.y < 0.0, "the front is towards the point: {area}");
     let uvs = vec![DVec2::Y, DVec2::ONE, DVec2::X, DVec2::ZERO];
     point.light.texture = Some(LightTexture { layer: SPLIT, uvs });
@@ -269,7 +270,7 @@ fn the_back_of_a_two_sided_light_shows_it_mirrored() {
     let Some(engine) = engine() else { return };
     // Turned about: what was to the left is still there, seen from behind
     let mut behind = screen(1e-3, -0.6, 2.1);
-    behind.light.vertices.reverse();
+    behind.light.shape.vertices_mut().reverse();
     behind.light.texture.as_mut().unwrap().uvs.reverse();
     let one_sided = behind.clone();
     behind.light.two_sided = true;
@@ -304,7 +305,7 @@ fn sweeps_have_no_seams() {
         .map(|step| {
             let mut point = screen(0.3, 0.2, 1.0);
             point.light.two_sided = true;
-            for vertex in &mut point.light.vertices {
+            for vertex in point.light.shape.vertices_mut() {
                 vertex.y += 2.0 * share(step) - 3.0;
             }
             point

@@ -1,8 +1,9 @@
-//! Disks that show an image: energy, orientation, and how far off the lookups are.
+//! Textured disks: energy, orientation, and how far off the lookups are.
 
-use arealight::{Footprint, FormFactor, Horizon, Quality, Shape, ShapeKind, ShapeLight};
+use arealight::gpu::GpuShape;
+use arealight::{Footprint, FormFactor, Horizon, Light, LightShape, LightTexture, Quality};
 use arealight_benches::pictures;
-use arealight_engine::ShapePoint;
+use arealight_engine::EvalPoint;
 use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, poses};
 use arealight_oracle::shading::{ltc_on, textured_ellipse};
@@ -40,18 +41,18 @@ fn engine() -> Option<TestEngine> {
     Some(engine)
 }
 
-fn ellipse(center: DVec3, axis_u: DVec3, axis_v: DVec3, layer: u32) -> ShapeLight {
-    ShapeLight {
+fn ellipse(center: DVec3, axis_u: DVec3, axis_v: DVec3, layer: u32) -> Light {
+    Light {
         name: "disk".into(),
         radiance: Vec3::ONE,
         two_sided: false,
-        texture: Some(layer),
-        shape: Shape::Ellipse { center, axis_u, axis_v },
+        texture: Some(LightTexture { layer, uvs: vec![] }),
+        shape: LightShape::Disk { center, axis_u, axis_v },
     }
 }
 
 /// Points under disks and ellipses all around, of all roughnesses.
-fn points(seed: u64, layer: u32, count: usize) -> Vec<ShapePoint> {
+fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     let mut point = |index: usize| {
         let distance = 10.0_f64.powf(random.between(-1.0, 2.0));
@@ -66,15 +67,16 @@ fn points(seed: u64, layer: u32, count: usize) -> Vec<ShapePoint> {
         };
         let view = random.direction();
         let view = view.with_z(view.z.abs() + 0.02);
-        ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light }
+        EvalPoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light }
     };
     (0..count).map(&mut point).collect()
 }
 
 /// The same points with lights of another texture.
-fn showing(points: &[ShapePoint], texture: Option<u32>) -> Vec<ShapePoint> {
-    let light = |light: &ShapeLight| ShapeLight { texture, ..light.clone() };
-    points.iter().map(|point| ShapePoint { light: light(&point.light), ..point.clone() }).collect()
+fn showing(points: &[EvalPoint], texture: Option<u32>) -> Vec<EvalPoint> {
+    let texture = texture.map(|layer| LightTexture { layer, uvs: vec![] });
+    let light = |light: &Light| Light { texture: texture.clone(), ..light.clone() };
+    points.iter().map(|point| EvalPoint { light: light(&point.light), ..point.clone() }).collect()
 }
 
 /// One fetch; and four along an axis, of what both horizons leave. A software driver takes seconds for each pipeline.
@@ -92,8 +94,8 @@ fn qualities() -> [Quality; 2] {
 fn images_multiply_what_disks_send() {
     let Some(engine) = engine() else { return };
     let white = points(1, WHITE, 500);
-    let eval = |points: &[ShapePoint], quality| {
-        engine.eval_shapes_as(ShapeKind::Ellipse, &points.iter().collect::<Vec<_>>(), quality).unwrap()
+    let eval = |points: &[EvalPoint], quality| {
+        engine.eval_shapes_as(GpuShape::DISK, &points.iter().collect::<Vec<_>>(), quality).unwrap()
     };
     for quality in qualities() {
         // White is exact in binary16, at every level
@@ -134,10 +136,10 @@ fn an_image_lies_as_the_axes_say_and_the_back_shows_it_mirrored() {
     let seen = |offset: DVec3, front: f64| {
         // Its front is down, its rows run along x, and its top is where y is negative
         let (center, axis_v) = (DVec3::Z - offset, DVec3::NEG_Y * front);
-        let light = ShapeLight { two_sided: true, ..ellipse(center, DVec3::X, axis_v, HALVES) };
+        let light = Light { two_sided: true, ..ellipse(center, DVec3::X, axis_v, HALVES) };
         let surface = glossy_surface(0.01);
-        let point = ShapePoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view: DVec3::Z, light };
-        let radiance = engine.eval_shapes_as(ShapeKind::Ellipse, &[&point], Quality::default()).unwrap()[0];
+        let point = EvalPoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view: DVec3::Z, light };
+        let radiance = engine.eval_shapes_as(GpuShape::DISK, &[&point], Quality::default()).unwrap()[0];
         assert!(radiance.max_element() > 0.1, "{radiance}");
         radiance / radiance.max_element()
     };
@@ -160,10 +162,10 @@ fn an_image_lies_as_the_axes_say_and_the_back_shows_it_mirrored() {
 }
 
 /// The disk in a pose's rectangle.
-fn disk(pose: &Pose, layer: u32) -> ShapePoint {
+fn disk(pose: &Pose, layer: u32) -> EvalPoint {
     let [a, b, c, d] = pose.vertices;
     let light = ellipse((a + b + c + d) * 0.25, (b - a) * 0.5, (d - a) * 0.5, layer);
-    ShapePoint { surface: pose.surface, position: DVec3::ZERO, normal: DVec3::Z, view: pose.view, light }
+    EvalPoint { surface: pose.surface, position: DVec3::ZERO, normal: DVec3::Z, view: pose.view, light }
 }
 
 #[test]
@@ -174,19 +176,18 @@ fn lookups_are_within_the_bars_of_polygons() {
     let count = std::env::var("AREALIGHT_POSES").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     for family in Family::ALL {
         let poses = poses(family, count, 1, &table);
-        let points: Vec<ShapePoint> =
+        let points: Vec<EvalPoint> =
             JUDGED.flat_map(|layer| poses.iter().map(move |pose| disk(pose, layer))).collect();
-        let truth = |point: &ShapePoint| {
-            let texture = &textures[point.light.texture.unwrap_or_default() as usize];
+        let truth = |point: &EvalPoint| {
+            let texture = &textures[point.light.texture.as_ref().map_or(0, |texture| texture.layer) as usize];
             let light = textured_ellipse(&point.light, Arc::clone(texture)).expect("a disk");
             ltc_on(Quality::default(), &table, &point.surface, point.normal, point.view, &light)
         };
         let truths: Vec<DVec3> = points.iter().map(truth).collect();
-        let errors = |points: &[ShapePoint], footprint| {
+        let errors = |points: &[EvalPoint], footprint| {
             let quality = Quality { footprint, ..Quality::default() };
-            let found = engine
-                .eval_shapes_as(ShapeKind::Ellipse, &points.iter().collect::<Vec<_>>(), quality)
-                .unwrap();
+            let found =
+                engine.eval_shapes_as(GpuShape::DISK, &points.iter().collect::<Vec<_>>(), quality).unwrap();
             let mut errors = Errors::default();
             found.iter().zip(&truths).for_each(|(found, truth)| errors.add(found.as_dvec3(), *truth));
             errors.summary()

@@ -1,6 +1,5 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
-use arealight::Effects;
 use arealight_engine::SceneRenderer;
 use arealight_engine::host::Usage;
 use arealight_scene::SceneBuffers;
@@ -40,7 +39,6 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             count: uvs.len() as u32,
         }],
         triangles: uvs.iter().enumerate().map(triangle).collect(),
-        unused: Effects::empty(),
         materials: vec![GpuMaterial {
             base_color: [1.0; 3],
             metalness: 1.0,

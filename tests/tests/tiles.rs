@@ -2,7 +2,7 @@
 
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::table::{LobeHorizon, mirror_frame};
-use arealight::{Effects, LightTable, PolygonLight, Quality, Shape, ShapeLight, TileClass, TubeEnds};
+use arealight::{Effects, Light, LightShape, LightTable, LightTexture, Quality, TileClass, TubeEnds};
 use arealight_engine::{SceneRenderer, TileCounts};
 use arealight_oracle::texture::Texture;
 use arealight_scene::Scene;
@@ -34,16 +34,16 @@ fn black(scene: &Scene) -> Scene {
 fn with_view<T>(
     engine: &TestEngine,
     scene: &Scene,
-    lights: &[PolygonLight],
+    lights: &[Light],
     act: impl FnOnce(&mut SceneRenderer<'_>) -> T,
 ) -> T {
     with_renderer(engine, &black(scene), lights, SIZE, act)
 }
 
 /// The picture without tiles.
-fn plain(engine: &TestEngine, scene: &Scene, lights: &[PolygonLight], effects: Effects) -> Vec<Vec4> {
+fn plain(engine: &TestEngine, scene: &Scene, lights: &[Light], surfaces: Effects) -> Vec<Vec4> {
     with_view(engine, scene, lights, |renderer| {
-        renderer.shade(effects, Quality::default()).unwrap();
+        renderer.shade(surfaces, Quality::default()).unwrap();
         renderer.radiance().unwrap()
     })
 }
@@ -51,17 +51,17 @@ fn plain(engine: &TestEngine, scene: &Scene, lights: &[PolygonLight], effects: E
 fn pictures(
     engine: &TestEngine,
     scene: &Scene,
-    lights: &[PolygonLight],
-    effects: Effects,
+    lights: &[Light],
+    surfaces: Effects,
     tiles: TileOptions,
 ) -> Pictures {
-    let plain = plain(engine, scene, lights, effects);
+    let plain = plain(engine, scene, lights, surfaces);
     with_view(engine, scene, lights, |renderer| {
-        let options = ShadeOptions { effects, ..ShadeOptions::all() };
+        let options = ShadeOptions { surfaces, ..ShadeOptions::default() };
         let view = renderer.tiled(options, tiles).unwrap();
         renderer.shade_tiled(&view).unwrap();
         let tiled = renderer.radiance().unwrap();
-        Pictures { plain, tiled, counts: view.counts(lights.len() + scene.shapes.len()).unwrap() }
+        Pictures { plain, tiled, counts: view.counts(lights.len()).unwrap() }
     })
 }
 
@@ -77,7 +77,7 @@ impl Pictures {
 
     /// How many pixels differ by more than what the quality level promises of each light: some that are left out would be
     /// rounded to more than nothing.
-    fn different(&self, lights: &[PolygonLight]) -> usize {
+    fn different(&self, lights: &[Light]) -> usize {
         let radiance: f32 = lights.iter().map(|light| light.radiance.max_element()).sum();
         let pixels = self.plain.iter().zip(&self.tiled);
         let differs = |(plain, tiled): &(&Vec4, &Vec4)| {
@@ -104,7 +104,7 @@ fn quads_give_the_same_picture_to_the_bit() {
     assert!(found.count(TileClass::Quads) > 0, "{:?}", found.counts);
     // The twin: what is not the same is seen
     let mut lights = scene.lights.clone();
-    lights.iter_mut().flat_map(|light| &mut light.vertices).for_each(|vertex| vertex.x += 1e-3);
+    lights.iter_mut().flat_map(|light| light.shape.vertices_mut()).for_each(|vertex| vertex.x += 1e-3);
     let moved = Pictures { plain: plain(&engine, &scene, &lights, scene.effects()), ..found };
     assert!(moved.different(&scene.lights) > 10);
 }
@@ -134,15 +134,17 @@ fn a_room_of_any_lights_differs_by_rounding_whether_its_lists_hold_them_or_not()
 
 /// Lights that are hard to classify about the floor of the sweep, y = 0: near it, on it, across it, below it, lights away, of
 /// no area, of both sides.
-fn hard_lights(center: DVec3) -> Vec<PolygonLight> {
-    let square = |along: DVec3, across: DVec3, at: DVec3, two_sided| PolygonLight {
+fn hard_lights(center: DVec3) -> Vec<Light> {
+    let square = |along: DVec3, across: DVec3, at: DVec3, two_sided| Light {
         name: format!("{at}"),
-        vertices: [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
-            .map(|(x, y)| center + at + along * x + across * y)
-            .into(),
         radiance: Vec3::new(1.0, 0.5, 0.25),
         two_sided,
-        ..PolygonLight::default()
+        shape: LightShape::Polygon(
+            [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|(x, y)| center + at + along * x + across * y)
+                .into(),
+        ),
+        ..Light::default()
     };
     let (x, y, z) = (DVec3::X * 0.4, DVec3::Y * 0.4, DVec3::Z * 0.4);
     let mut lights = Vec::new();
@@ -164,8 +166,7 @@ fn hard_lights_and_none_differ_by_rounding() {
     let Some(engine) = TestEngine::new() else { return };
     let scene = scene("sweep.glb");
     let lights = hard_lights(scene.bounds.center());
-    let effects = scene.effects() | Effects::TWO_SIDED;
-    let found = pictures(&engine, &scene, &lights, effects, every_frame());
+    let found = pictures(&engine, &scene, &lights, scene.effects(), every_frame());
     assert_eq!(found.different(&lights), 0, "{:?}", found.counts);
     assert!(found.plain.iter().filter(|pixel| pixel.x > 1e-3).count() > 500, "something is lit");
     // Without lights nothing is left but the surfaces' marks
@@ -179,19 +180,17 @@ fn shape_scene(height: f64) -> Scene {
     let mut scene = scene("sweep.glb");
     let at = |x: f64| scene.bounds.center().with_y(scene.bounds.min.y + height) + DVec3::X * x;
     let (x, z) = (DVec3::X * 0.3, DVec3::Z * 0.2);
-    let light = |name: &str, shape| ShapeLight {
+    let light = |name: &str, shape| Light {
         name: name.to_owned(),
         radiance: Vec3::new(1.0, 0.5, 0.25),
-        two_sided: false,
-        texture: None,
         shape,
+        ..Light::default()
     };
-    let shapes = vec![
-        light("disk", Shape::Ellipse { center: at(-0.8), axis_u: x, axis_v: z }),
-        light("sphere", Shape::Sphere { center: at(0.0), radius: 0.2 }),
-        light("tube", Shape::Tube { p0: at(0.6), p1: at(1.0), radius: 0.05, ends: TubeEnds::Round }),
+    scene.lights = vec![
+        light("disk", LightShape::Disk { center: at(-0.8), axis_u: x, axis_v: z }),
+        light("sphere", LightShape::Sphere { center: at(0.0), radius: 0.2 }),
+        light("tube", LightShape::Tube { p0: at(0.6), p1: at(1.0), radius: 0.05, ends: TubeEnds::Round }),
     ];
-    (scene.lights, scene.shapes) = (vec![], shapes);
     scene
 }
 
@@ -200,7 +199,7 @@ fn tiles_list_the_shapes_that_contribute_to_them() {
     let Some(engine) = TestEngine::new() else { return };
     let shade = |height: f64| {
         let scene = shape_scene(height);
-        pictures(&engine, &scene, &[], Effects::DIFFUSE | Effects::SHAPES, every_frame())
+        pictures(&engine, &scene, &scene.lights, Effects::DIFFUSE, every_frame())
     };
     let above = shade(1.0);
     assert_eq!(above.plain, above.tiled);
@@ -228,10 +227,11 @@ fn images_of_disks_are_looked_up_by_tiles_too() {
     arealight_benches::pictures::load(&mut engine, &textures).unwrap();
     let shade = |layer| {
         let mut scene = shape_scene(1.0);
-        scene.shapes.retain(|shape| matches!(shape.shape, Shape::Ellipse { .. }));
-        scene.shapes.iter_mut().for_each(|disk| disk.texture = Some(layer));
-        let effects = Effects::DIFFUSE | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
-        pictures(&engine, &scene, &[], effects, TileOptions { cull_threshold: 0.5, ..every_frame() })
+        scene.lights.retain(|light| matches!(light.shape, LightShape::Disk { .. }));
+        let texture = Some(LightTexture { layer, uvs: vec![] });
+        scene.lights.iter_mut().for_each(|disk| disk.texture.clone_from(&texture));
+        let tiles = TileOptions { cull_threshold: 0.5, ..every_frame() };
+        pictures(&engine, &scene, &scene.lights, Effects::DIFFUSE, tiles)
     };
     let found = shade(0);
     assert!(found.count(TileClass::Any) > 0, "{:?}", found.counts);
@@ -252,34 +252,38 @@ fn places(count: usize, center: DVec3) -> impl Iterator<Item = (DVec3, Vec3)> {
 }
 
 /// Square lamps that face down.
-fn lamps(count: usize, center: DVec3) -> Vec<PolygonLight> {
+fn lamps(count: usize, center: DVec3) -> Vec<Light> {
     let lamp = |(at, radiance): (DVec3, Vec3)| {
         let corner = |x: f64, z: f64| at + DVec3::new(0.05 * x, 0.0, 0.05 * z);
-        PolygonLight {
+        Light {
             name: format!("lamp at {at}"),
-            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
             radiance,
-            ..PolygonLight::default()
+            shape: LightShape::Polygon(vec![
+                corner(-1.0, -1.0),
+                corner(1.0, -1.0),
+                corner(1.0, 1.0),
+                corner(-1.0, 1.0),
+            ]),
+            ..Light::default()
         }
     };
     places(count, center).map(lamp).collect()
 }
 
 /// Disks that face down, spheres and tubes, in turn.
-fn round_lamps(count: usize, center: DVec3) -> Vec<ShapeLight> {
-    let lamp = |(index, (at, radiance)): (usize, (DVec3, Vec3))| ShapeLight {
+fn round_lamps(count: usize, center: DVec3) -> Vec<Light> {
+    let lamp = |(index, (at, radiance)): (usize, (DVec3, Vec3))| Light {
         name: format!("lamp at {at}"),
         radiance,
-        two_sided: false,
-        texture: None,
         shape: match index % 3 {
-            0 => Shape::Ellipse { center: at, axis_u: DVec3::X * 0.06, axis_v: DVec3::Z * 0.05 },
-            1 => Shape::Sphere { center: at, radius: 0.04 },
+            0 => LightShape::Disk { center: at, axis_u: DVec3::X * 0.06, axis_v: DVec3::Z * 0.05 },
+            1 => LightShape::Sphere { center: at, radius: 0.04 },
             _ => {
                 let half = DVec3::new(0.08, 0.01, 0.02);
-                Shape::Tube { p0: at - half, p1: at + half, radius: 0.02, ends: TubeEnds::Round }
+                LightShape::Tube { p0: at - half, p1: at + half, radius: 0.02, ends: TubeEnds::Round }
             }
         },
+        ..Light::default()
     };
     places(count, center).enumerate().map(lamp).collect()
 }
@@ -305,12 +309,10 @@ fn lights_that_are_culled_contribute_less_than_the_threshold() {
     let tiles = TileOptions { cull_threshold: 0.05, capacity: 1000, ..every_frame() };
     // One group of 64 lights and a part, shapes among them; more than the kernel keeps the bounds of
     for (squares, rounds) in [(100, 0), (0, 100), (60, 30), (640, 0)] {
-        let (mut scene, center) = floor();
-        scene.shapes = round_lamps(rounds, center + DVec3::X * 0.3);
-        let lights = lamps(squares, center);
-        let kinds = if rounds > 0 { Effects::SHAPES } else { Effects::empty() };
-        let effects = scene.effects() | kinds;
-        let found = pictures(&engine, &scene, &lights, effects, tiles);
+        let (scene, center) = floor();
+        let (squares_of, rounds_of) = (lamps(squares, center), round_lamps(rounds, center + DVec3::X * 0.3));
+        let lights = [&squares_of[..], &rounds_of[..]].concat();
+        let found = pictures(&engine, &scene, &lights, scene.effects(), tiles);
         let what = lost(&found.plain, &found.tiled);
         assert!(what <= 0.05, "{squares} and {rounds}: {what}");
         let all = u64::from(found.all_tiles() - found.count(TileClass::Empty)) * (squares + rounds) as u64;
@@ -320,19 +322,18 @@ fn lights_that_are_culled_contribute_less_than_the_threshold() {
             found.counts.lights
         );
         // The twin: two rows of lamps too few are seen
-        scene.shapes.drain(..scene.shapes.len().min(20));
-        let few = plain(&engine, &scene, &lights[lights.len().min(20)..], effects);
+        let few = [&squares_of[squares.min(20)..], &rounds_of[rounds.min(20)..]].concat();
+        let few = plain(&engine, &scene, &few, scene.effects());
         assert!(lost(&found.plain, &few) > 0.05, "{squares} and {rounds}: {}", lost(&found.plain, &few));
     }
 }
 
 /// The lists of a frame of lamps: of each tile the polygons and the shapes.
 fn lists(engine: &TestEngine, squares: usize, rounds: usize, tiles: TileOptions) -> Vec<[Vec<u32>; 2]> {
-    let (mut scene, center) = floor();
-    scene.shapes = round_lamps(rounds, center + DVec3::X * 0.3);
-    let lights = lamps(squares, center);
+    let (scene, center) = floor();
+    let lights = [lamps(squares, center), round_lamps(rounds, center + DVec3::X * 0.3)].concat();
     with_view(engine, &scene, &lights, |renderer| {
-        let options = ShadeOptions { effects: scene.effects() | Effects::SHAPES, ..ShadeOptions::all() };
+        let options = ShadeOptions { surfaces: scene.effects(), ..ShadeOptions::default() };
         let view = renderer.tiled(options, tiles).unwrap();
         renderer.shade_tiled(&view).unwrap();
         let lists = view.lists().unwrap();
@@ -373,7 +374,7 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
     };
     let make = |tiles, table_size| {
         // SAFETY: Nothing is made where an error is returned; else it is dropped before the engine.
-        unsafe { ShadePass::with_tiles(engine.context(), ShadeOptions::all(), tiles, table_size) }
+        unsafe { ShadePass::with_tiles(engine.context(), ShadeOptions::default(), tiles, table_size) }
     };
     let refused = |tiles, table_size| field(make(tiles, table_size).unwrap_err());
     assert_eq!(refused(TileOptions { capacity: 0, ..every_frame() }, 64), "capacity");
@@ -387,13 +388,13 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
     assert_eq!(needed.size, arealight::tiles::memory([17, 8], every_frame().capacity));
     assert!(needed.usage.contains(vk::BufferUsageFlags::INDIRECT_BUFFER));
     // SAFETY: As above.
-    let plain = unsafe { ShadePass::new(engine.context(), ShadeOptions::all()) }.unwrap();
+    let plain = unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
     assert_eq!((plain.tile_memory([17, 8]), plain.tiles()), (None, None));
     let names = |pass: &ShadePass| pass.accesses().iter().map(|access| access.name).collect::<Vec<_>>();
     assert!(names(&pass).contains(&"lobe_horizons") && !names(&plain).contains(&"lobe_horizons"));
     let (scene, _) = floor();
     with_view(&engine, &scene, &scene.lights, |renderer| {
-        let view = renderer.tiled(ShadeOptions::all(), every_frame()).unwrap();
+        let view = renderer.tiled(ShadeOptions::default(), every_frame()).unwrap();
         let (resources, frame) = renderer.tiled_run(&view);
         let none = vk::DescriptorSet::null();
         // SAFETY: Nothing is written or recorded where an error is returned.

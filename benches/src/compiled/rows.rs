@@ -5,8 +5,8 @@
 use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
-use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality, TileClass};
+use arealight::plan::{self, ShadeOptions, TileOptions};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, LightSummary, Lobes, Quality, TileClass};
 use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
 use ash::vk;
@@ -184,27 +184,28 @@ fn quads(lights: &'static str, level: &'static str, effects: Effects, quality: Q
     shade(lights, level, effects, true, quality)
 }
 
-/// The shade pass of both lobes where no light is a quad without an image.
+/// The shade pass of both lobes where no light is a quad without a texture.
 fn others(lights: &'static str, level: &'static str, kinds: Effects, quality: Quality) -> Row {
     shade(lights, level, LOBES | kinds, false, quality)
 }
 
 fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: bool, quality: Quality) -> Row {
-    let options = ShadeOptions { quality, ..ShadeOptions::all() };
-    let specialization = plan::shade_variant_specialization(options, ShadeVariant { effects, quads });
+    let options = ShadeOptions { surfaces: effects, quality, ..ShadeOptions::default() };
+    let frame = LightSummary { quad_count: u32::from(quads), effects, ..LightSummary::default() };
+    let specialization = plan::shade_specialization(options, frame);
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
 }
 
 fn classify(lights: &'static str, level: &'static str, kinds: Effects, cull_threshold: f32) -> Row {
-    let variant = ShadeVariant { effects: LOBES | kinds, quads: true };
+    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
     let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
-    let specialization = plan::classify_specialization(ShadeOptions::all(), variant, tiles);
+    let specialization = plan::classify_specialization(ShadeOptions::default(), frame, tiles);
     row(&kernels::CLASSIFY, lights, level, None, specialization)
 }
 
 fn tiles(lights: &'static str, level: &'static str, class: TileClass, kinds: Effects) -> Row {
-    let variant = ShadeVariant { effects: LOBES | kinds, quads: true };
-    let specialization = plan::shade_tiles_specialization(ShadeOptions::all(), variant, class);
+    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
+    let specialization = plan::shade_tiles_specialization(ShadeOptions::default(), frame, class);
     row(&kernels::SHADE_TILES, lights, level, None, specialization)
 }
 

@@ -4,7 +4,7 @@ use super::methods::{Method, Workload};
 use super::points::{Point, lights, points};
 use crate::footprints;
 use crate::school::YardstickTable;
-use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality};
+use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality};
 use arealight_fit::{Aim, GgxBrdf, fit_at};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::frame::SurfaceFrame;
@@ -80,7 +80,7 @@ pub struct Known {
     /// The points.
     pub points: Vec<Point>,
     /// The lights.
-    pub lights: Vec<PolygonLight>,
+    pub lights: Vec<Light>,
     /// Integral of the true BRDF at each point.
     pub truths: Vec<DVec3>,
     relative: Vec<Vec<RelativeLight>>,
@@ -126,7 +126,7 @@ impl Known {
         let (points, lights) = (points(workload.lights, count, seed), lights(workload.lights));
         let relative = |point: &Point| -> Vec<RelativeLight> {
             let position = point.position.as_dvec3();
-            let relative = |light: &PolygonLight| match &light.texture {
+            let relative = |light: &Light| match &light.texture {
                 None => RelativeLight::new(light, position),
                 Some(texture) => {
                     let picture = Arc::clone(&pictures[texture.layer as usize]);

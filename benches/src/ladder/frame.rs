@@ -6,8 +6,8 @@ use crate::school::YardstickTable;
 use crate::textures::{is_software, timed};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Kernel, SHADE};
-use arealight::plan::{ShadeOptions, ShadeVariant, shade_variant_specialization};
-use arealight::{PackedLights, PolygonLight};
+use arealight::plan::{ShadeOptions, shade_specialization};
+use arealight::{Light, LightSummary, PackedLights};
 use arealight_engine::host::{Buffer, Usage};
 use arealight_engine::{BoundSet, Engine, EngineError, GBuffer, SharedPass, UploadedTable};
 use arealight_tool_kernels::LightSampling;
@@ -61,8 +61,7 @@ pub struct Frame<'a> {
     engine: &'a Engine,
     g_buffer: &'a GBuffer,
     camera: Vec3,
-    light_count: u32,
-    quad_count: u32,
+    summary: LightSummary,
     lights: Buffer,
     vertices: Buffer,
     sampling: Buffer,
@@ -83,7 +82,7 @@ impl<'a> Frame<'a> {
     pub fn new(
         engine: &'a Engine,
         g_buffer: &'a GBuffer,
-        lights: &[PolygonLight],
+        lights: &[Light],
         origin: DVec3,
         camera: Vec3,
     ) -> Result<Self, EngineError> {
@@ -95,8 +94,7 @@ impl<'a> Frame<'a> {
             engine,
             g_buffer,
             camera,
-            light_count: lights.len() as u32,
-            quad_count: packed.quad_count,
+            summary: packed.summary(),
             lights: host.storage_buffer("lights", &packed.lights)?,
             vertices: host.storage_buffer("light vertices", &packed.vertices)?,
             sampling: host.storage_buffer("light sampling", &sampling.lights)?,
@@ -126,9 +124,8 @@ impl<'a> Frame<'a> {
     pub fn pipeline(&self, method: Method) -> (&'static Kernel, Vec<(u32, u32)>) {
         match method {
             Method::Level { effects, quality } => {
-                let options = ShadeOptions { effects, quality, ..ShadeOptions::all() };
-                let variant = ShadeVariant { effects, quads: self.quad_count > 0 };
-                (&SHADE, shade_variant_specialization(options, variant))
+                let options = ShadeOptions { surfaces: effects, quality, ..ShadeOptions::default() };
+                (&SHADE, shade_specialization(options, LightSummary { effects, ..self.summary }))
             }
             Method::Yardstick { effects, school, table: _ } => {
                 (&SHADE_YARDSTICK, vec![(0, effects.bits()), (1, school as u32)])
@@ -148,7 +145,7 @@ impl<'a> Frame<'a> {
         Ok(Ready { pass, set, method })
     }
 
-    /// What a kernel's binding is for. Shapes, of which there are none, have any buffer.
+    /// What a kernel's binding is for. Disks, spheres and tubes, of which there are none, have any buffer.
     fn resource(&self, binding: &str, method: Method) -> Resource {
         let has_published =
             matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
@@ -174,7 +171,7 @@ impl<'a> Frame<'a> {
 
     /// Runs a method with all lights, or with the first of them. Seconds of the device; see [`device_seconds`].
     pub fn run(&self, ready: &Ready, lights: u32, seed: u32) -> Result<f64, EngineError> {
-        let light_count = lights.min(self.light_count);
+        let light_count = lights.min(self.summary.light_count);
         let [width, height] = self.size();
         let items = [width, height, 1];
         let Method::Samples { count } = ready.method else {
@@ -183,7 +180,7 @@ impl<'a> Frame<'a> {
                 camera: self.camera.to_array(),
                 light_count,
                 shape_count: 0,
-                quad_count: self.quad_count.min(light_count),
+                quad_count: self.summary.quad_count.min(light_count),
             };
             return device_seconds(self.engine, |commands| {
                 // SAFETY: `commands` is being recorded, outside a render pass.

@@ -3,7 +3,7 @@
 //! Points lie before the lights, at .5 to 8 times their size; half of them look at a light's mirror image, the others
 //! anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
 
-use arealight::{LightTexture, Material, PolygonLight, Surface};
+use arealight::{Light, LightShape, LightTexture, Material, Surface};
 use arealight_oracle::stream::Stream;
 use glam::{DVec2, DVec3, Vec3};
 use half::f16;
@@ -59,7 +59,7 @@ const FRAMES: [(DVec3, DVec3, f64, f64); LIGHTS] = [
 ];
 
 /// The lights of a kind.
-pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
+pub fn lights(kind: LightKind) -> Vec<Light> {
     let light = |(index, (center, normal, half_width, half_height)): (usize, &(DVec3, DVec3, f64, f64))| {
         let (u, v) = normal.normalize_or(DVec3::Y).any_orthonormal_pair();
         let (u, v) = (u * *half_width, v * *half_height);
@@ -71,32 +71,31 @@ pub fn lights(kind: LightKind) -> Vec<PolygonLight> {
         let vertices = if kind == LightKind::Stars { (0..10).map(ray).collect() } else { quad.to_vec() };
         // The trapezoid's third corner is where a straight mapping has it
         let corners = [DVec2::new(0.0, 1.0), DVec2::ONE, DVec2::new(0.9, 0.0), DVec2::ZERO];
-        PolygonLight {
+        Light {
             name: format!("light {index}"),
-            vertices,
             radiance: Vec3::ONE,
+            shape: LightShape::Polygon(vertices),
             two_sided: kind == LightKind::TwoSided,
             texture: (kind == LightKind::Textured)
                 .then(|| LightTexture { layer: index as u32, uvs: corners.to_vec() }),
-            ..PolygonLight::default()
         }
     };
     FRAMES.iter().enumerate().map(light).collect()
 }
 
 /// As many lights as wanted, small ones all about the points.
-pub fn many_lights(count: usize) -> Vec<PolygonLight> {
+pub fn many_lights(count: usize) -> Vec<Light> {
     let light = |index: usize| {
         let mut random = Stream::new("many lights", index as u64, 0);
         let center =
             DVec3::new(random.between(-4.0, 4.0), random.between(-1.0, 3.0), random.between(-8.0, -2.0));
         let (u, v) = random.direction().any_orthonormal_pair();
         let (u, v) = (u * random.between(0.05, 0.3), v * random.between(0.05, 0.3));
-        PolygonLight {
+        Light {
             name: format!("light {index}"),
-            vertices: [-u - v, u - v, u + v, v - u].map(|corner| center + corner).to_vec(),
             radiance: Vec3::ONE,
-            ..PolygonLight::default()
+            shape: LightShape::Polygon([-u - v, u - v, u + v, v - u].map(|corner| center + corner).to_vec()),
+            ..Light::default()
         }
     };
     (0..count).map(light).collect()
@@ -147,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lights_are_valid_and_call_for_what_their_kind_says() {
+    fn lights_are_valid_and_need_what_their_kind_says() {
         use arealight::Effects;
         for (kind, effects) in [
             (LightKind::Quads, Effects::empty()),

@@ -38,7 +38,7 @@
 // Some light is concave, not quite flat, or has more than four vertices.
 #define AREALIGHT_EFFECT_POLYGON 16
 
-// Some light shows an image: ArealightResources.light_textures is read.
+// Some polygon is textured: ArealightResources.light_textures is read.
 #define AREALIGHT_EFFECT_TEXTURED 32
 
 // Some light is a disk or an ellipse.
@@ -53,11 +53,8 @@
 // Some light has several faces: a mesh.
 #define AREALIGHT_EFFECT_MESH 2048
 
-// Some disk or ellipse shows an image: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
-
-// Every effect: right for any lights, at the highest cost.
-#define AREALIGHT_EFFECTS_ALL 7999
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
@@ -118,10 +115,10 @@
 #define AREALIGHT_OUTPUT_ADD 1
 
 // The radiance of both lobes goes to ArealightResources.radiance.
-#define AREALIGHT_IMAGES_ONE 0
+#define AREALIGHT_IMAGES_COMBINED 0
 
 // That of the glossy lobe goes to ArealightResources.glossy instead.
-#define AREALIGHT_IMAGES_APART 1
+#define AREALIGHT_IMAGES_SEPARATE 1
 
 // Radiance is stored in 32-bit floats.
 #define AREALIGHT_RADIANCE_RGBA32F 0
@@ -135,14 +132,20 @@
 // In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.
 #define AREALIGHT_TABLE_RGBA16F 1
 
-// A flat ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
-#define AREALIGHT_SHAPE_ELLIPSE 0
+// A flat polygon, convex or concave, without crossing edges; with holes, if it has any.
+#define AREALIGHT_LIGHT_POLYGON 0
+
+// Several flat faces.
+#define AREALIGHT_LIGHT_MESH 1
+
+// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
+#define AREALIGHT_LIGHT_DISK 2
 
 // A sphere about `center`.
-#define AREALIGHT_SHAPE_SPHERE 1
+#define AREALIGHT_LIGHT_SPHERE 3
 
 // A tube about `center`, whose axis goes from `center - axis_u` to `center + axis_u`.
-#define AREALIGHT_SHAPE_TUBE 2
+#define AREALIGHT_LIGHT_TUBE 4
 
 // The lateral surface of a tube alone shines.
 #define AREALIGHT_TUBE_OPEN 0
@@ -179,20 +182,18 @@ typedef enum ArealightResult {
     AREALIGHT_RESULT_ERROR_VULKAN = 4,
     // A light cannot be shaded; the message names it and its field.
     AREALIGHT_RESULT_ERROR_LIGHT = 5,
-    // A light calls for effects that the pass was made without; the message names both.
-    AREALIGHT_RESULT_ERROR_EFFECTS = 6,
     // The bytes hold no light table, or one of another version.
-    AREALIGHT_RESULT_ERROR_TABLE = 7,
+    AREALIGHT_RESULT_ERROR_TABLE = 6,
     // An array of the host is too small; the size that is needed was written.
-    AREALIGHT_RESULT_ERROR_TOO_SMALL = 8,
+    AREALIGHT_RESULT_ERROR_TOO_SMALL = 7,
     // A fault of the library, which is worth a report. The object of the call is good only for being destroyed.
-    AREALIGHT_RESULT_ERROR_INTERNAL = 9,
+    AREALIGHT_RESULT_ERROR_INTERNAL = 8,
 } ArealightResult;
 
 // The library on a device of the host, with a light table.
 typedef struct Arealight Arealight;
 
-// A shade pass, specialised for effects and a quality.
+// A shade pass, specialised for surfaces and a quality.
 typedef struct ArealightPass ArealightPass;
 
 // The images of lights on a device, filtered for shading.
@@ -269,84 +270,86 @@ typedef struct ArealightUpload {
     void *command_buffer;
 } ArealightUpload;
 
-// A flat polygon that emits constant radiance, or shows an image; or several that are one light, a mesh. Convex or concave, without
-// crossing edges.
+// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its kind.
 typedef struct ArealightLight {
     // For messages, UTF-8; may be null.
     const char *name;
-    // World positions, three numbers a vertex: seen from the front, counter-clockwise.
-    const double *vertices;
-    // Null, or two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions: the light shows
-    // `texture_layer` of the light textures.
-    const double *texture_coordinates;
-    // From 3 on: of the outline, or of all faces.
-    uint32_t vertex_count;
-    // Read only with texture coordinates.
-    uint32_t texture_layer;
-    // Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
-    float radiance[3];
-    // 1: the back emits too.
-    uint32_t two_sided;
-    // Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    // in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON.
-    const uint32_t *hole_vertex_counts;
-    // Null, or how many vertices each face of a mesh has, `vertex_count` together: faces follow one another in `vertices`, each an
-    // outline of its own, such as the three of a triangle. What a face hides of another is added all the same. A mesh needs
-    // AREALIGHT_EFFECT_POLYGON and AREALIGHT_EFFECT_MESH, and has neither holes nor texture coordinates.
-    const uint32_t *face_vertex_counts;
-    // How many holes.
-    uint32_t hole_count;
-    // How many faces; 0 and 1 are one polygon.
-    uint32_t face_count;
-} ArealightLight;
-
-// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
-typedef struct ArealightPackedLights {
-    // Where the lights go, aligned to 4 bytes; null to ask for the sizes alone.
-    void *lights;
-    // Where the vertices go, likewise.
-    void *vertices;
-    // In: bytes at `lights`. Out: bytes that are needed, 128 a light.
-    uint64_t lights_size;
-    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
-    uint64_t vertices_size;
-    // Out: how many lights are convex quads without an image. They come first, else lights are in the given order.
-    uint32_t quad_count;
-    // Out: AREALIGHT_EFFECT_* of lights that none of these calls for.
-    uint32_t unused;
-} ArealightPackedLights;
-
-// A disk, sphere or tube of constant radiance, or a disk that shows an image, in world positions.
-typedef struct ArealightShape {
-    // For messages, UTF-8; may be null.
-    const char *name;
-    // One of AREALIGHT_SHAPE_*.
+    // One of AREALIGHT_LIGHT_*.
     uint32_t kind;
-    // Of a tube: one of AREALIGHT_TUBE_*.
-    uint32_t ends;
-    // The middle.
-    double center[3];
-    // Of an ellipse and a tube.
-    double axis_u[3];
-    // Of an ellipse.
-    double axis_v[3];
-    // Of a sphere and a tube, above zero.
-    double radius;
+    // 1: the back of a polygon, mesh or disk, or the inside of a sphere, emits too.
+    uint32_t two_sided;
     // Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
     float radiance[3];
-    // 1: the back of an ellipse, or the inside of a sphere, emits too.
-    uint32_t two_sided;
-    // 1: an ellipse shows `texture_layer` of the light textures. Seen from the front, its rows run along `axis_u` and its top is where
-    // `axis_v` points to; the parallelogram of both touches its edges.
+    // 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the front of a disk, its rows run
+    // along `axis_u` and its top is where `axis_v` points to; the parallelogram of both touches its edges.
     uint32_t textured;
     // Read only with `textured`.
     uint32_t texture_layer;
-} ArealightShape;
+    // Of a polygon or mesh: how many vertices its outline has, or all faces have; from 3 on.
+    uint32_t vertex_count;
+    // Of a polygon or mesh: three numbers a vertex; seen from the front, counter-clockwise.
+    const double *vertices;
+    // Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions.
+    const double *texture_coordinates;
+    // Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
+    // in the light's plane and inside.
+    const uint32_t *hole_vertex_counts;
+    // Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in `vertices`, each an
+    // outline of its own, such as the three of a triangle. What a face hides of another is added all the same.
+    const uint32_t *face_vertex_counts;
+    // How many holes.
+    uint32_t hole_count;
+    // How many faces.
+    uint32_t face_count;
+    // Of a disk, sphere or tube: the middle.
+    double center[3];
+    // Of a disk or tube.
+    double axis_u[3];
+    // Of a disk.
+    double axis_v[3];
+    // Of a sphere or tube, above zero.
+    double radius;
+    // Of a tube: one of AREALIGHT_TUBE_*.
+    uint32_t ends;
+    // 0
+    uint32_t reserved;
+} ArealightLight;
 
-// What a pass is specialised for. All zero is exact without an effect.
-typedef struct ArealightPassOptions {
-    // AREALIGHT_EFFECT_* that the scene calls for. More only costs time; less is an error when lights are packed.
+// What a frame needs to know of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
+typedef struct ArealightLightSummary {
+    // How many records ArealightPackedLights.lights has: those of polygons and meshes.
+    uint32_t light_count;
+    // How many of the first are convex quads without a texture.
+    uint32_t quad_count;
+    // How many records ArealightPackedLights.shapes has: those of disks, spheres and tubes, in this order.
+    uint32_t shape_count;
+    // AREALIGHT_EFFECT_* that the lights need.
     uint32_t effects;
+} ArealightLightSummary;
+
+// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+typedef struct ArealightPackedLights {
+    // Where polygons and meshes go.
+    void *lights;
+    // Where their vertices go.
+    void *vertices;
+    // Where disks, spheres and tubes go.
+    void *shapes;
+    // In: bytes at `lights`. Out: bytes that are needed, 64 a light.
+    uint64_t lights_size;
+    // In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
+    uint64_t vertices_size;
+    // In: bytes at `shapes`. Out: bytes that are needed, 64 a light.
+    uint64_t shapes_size;
+    // Out: for ArealightFrame.lights.
+    struct ArealightLightSummary summary;
+} ArealightPackedLights;
+
+// What a pass is specialised for. All zero is both lobes at the exact level.
+typedef struct ArealightPassOptions {
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY and _SPECULAR_INPUT. 0 is DIFFUSE and GLOSSY. What lights need is known
+    // from ArealightFrame.lights.
+    uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;
     // One of AREALIGHT_HORIZON_*.
@@ -373,7 +376,7 @@ typedef struct ArealightPassOptions {
     // With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
     // radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
     float tile_cull_threshold;
-    // With tiles: frames of fewer lights, all of them convex quads without an image, are shaded without, which takes less time; such as 4.
+    // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
     uint32_t tile_least_quads;
 } ArealightPassOptions;
 
@@ -414,11 +417,11 @@ typedef struct ArealightImage {
 // The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are left as they
 // are.
 typedef struct ArealightResources {
-    // ArealightPackedLights.lights; without lights, any buffer of 128 bytes or more.
+    // ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
     struct ArealightBuffer lights;
     // ArealightPackedLights.vertices, likewise.
     struct ArealightBuffer light_vertices;
-    // What arealight_pass_pack_shapes made. May be 0 in a pass without AREALIGHT_EFFECT_ELLIPSE, _SPHERE and _TUBE.
+    // ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     struct ArealightBuffer shapes;
     // Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f).
     struct ArealightImage position;
@@ -430,11 +433,11 @@ typedef struct ArealightResources {
     // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    // describes. May be 0 without AREALIGHT_EFFECT_TEXTURED and AREALIGHT_EFFECT_TEXTURED_ELLIPSE.
+    // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
     // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     struct ArealightImage radiance;
-    // Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
+    // Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
     struct ArealightImage glossy;
     // What arealight_lobe_horizons wrote. Without tiles 0.
     struct ArealightBuffer lobe_horizons;
@@ -461,17 +464,8 @@ typedef struct ArealightFrame {
     uint32_t height;
     // The camera's position relative to the origin of positions and lights.
     float camera[3];
-    // How many lights of their buffer are shaded.
-    uint32_t light_count;
-    // How many disks, spheres and tubes of theirs.
-    uint32_t shape_count;
-    // ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
-    // is not counted takes longer.
-    uint32_t quad_count;
-    // AREALIGHT_EFFECT_* that nothing of the frame calls for, which cost nothing then: ArealightPackedLights.unused, with what
-    // the host knows of DIFFUSE, GLOSSY and SPECULAR_INPUT (no surface calls for it) and FAR (no light is 282 of its radii
-    // from a surface). 0 is always right.
-    uint32_t unused;
+    // ArealightPackedLights.summary of the lights in the set's buffers.
+    struct ArealightLightSummary lights;
     // 0
     uint32_t reserved;
     // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
@@ -595,30 +589,17 @@ enum ArealightResult arealight_destroy(struct Arealight *arealight);
 // has. Valid until the next call of this thread that fails.
 const char *arealight_last_error(void);
 
-// Packs lights for the pass, relative to `origin` (three numbers, in world positions), into arrays of the host, which
-// uploads them to its buffers. With null arrays, only says how large they must be.
+// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which uploads them to its buffers,
+// and says what a frame needs to know of them. With null arrays, only says how large they must be.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many items as their counts say.
-enum ArealightResult arealight_pass_pack_lights(const struct ArealightPass *pass,
-                                                const struct ArealightLight *lights,
-                                                uint32_t light_count,
-                                                const double *origin,
-                                                struct ArealightPackedLights *packed);
+enum ArealightResult arealight_pack_lights(const struct ArealightLight *lights,
+                                           uint32_t light_count,
+                                           const double *origin,
+                                           struct ArealightPackedLights *packed);
 
-// Packs disks, spheres and tubes for the pass, relative to `origin`, into an array of the host, 64 bytes each and aligned to 4.
-// `*size` is the array's in bytes, and becomes what is needed. With a null array, only says so.
-//
-// The host sees to it:
-// Pointers are null or valid, with as many items as their counts say.
-enum ArealightResult arealight_pass_pack_shapes(const struct ArealightPass *pass,
-                                                const struct ArealightShape *shapes,
-                                                uint32_t shape_count,
-                                                const double *origin,
-                                                void *packed,
-                                                uint64_t *size);
-
-// Makes a pass. Its pipelines are made when the first frame is recorded whose lights call for them, or ahead by
+// Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
 // arealight_pass_prepare. `*out` is the host's to destroy.
 //
 // The host sees to it:
@@ -670,14 +651,13 @@ enum ArealightResult arealight_pass_tile_memory(const struct ArealightPass *pass
 //
 // The host sees to it:
 // Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
-// set was written, with images of the frame's size and buffers of
-// `frame.light_count` lights and `frame.shape_count` shapes.
+// set was written, with images of the frame's size and buffers of the lights that `frame.lights` is of.
 enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
                                            void *command_buffer,
                                            uint64_t set,
                                            const struct ArealightFrame *frame);
 
-// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet: what arealight_pass_record
+// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
 // would take a moment for otherwise.
 //
 // The host sees to it:
@@ -742,7 +722,7 @@ enum ArealightResult arealight_textures_update(const struct ArealightTextures *t
 enum ArealightResult arealight_textures_image(const struct ArealightTextures *textures,
                                               struct ArealightImage *out);
 
-// Checks that the layer of every light that shows an image is there: passes do not know what will be bound.
+// Checks that the layer of every textured light is there: passes do not know what will be bound.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many items as their counts say.
@@ -796,7 +776,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
 AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, effects) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, fresnel) == 12);
@@ -816,37 +796,39 @@ AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, combined_image_samplers) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightLight) == 72);
+AREALIGHT_ASSERT(sizeof(ArealightLight) == 168);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightLight, vertices) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightLight, texture_coordinates) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightLight, vertex_count) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightLight, texture_layer) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightLight, radiance) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 44);
-AREALIGHT_ASSERT(offsetof(ArealightLight, hole_vertex_counts) == 48);
-AREALIGHT_ASSERT(offsetof(ArealightLight, face_vertex_counts) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightLight, face_count) == 68);
-AREALIGHT_ASSERT(sizeof(ArealightShape) == 120);
-AREALIGHT_ASSERT(offsetof(ArealightShape, name) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightShape, kind) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightShape, ends) == 12);
-AREALIGHT_ASSERT(offsetof(ArealightShape, center) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightShape, axis_u) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightShape, axis_v) == 64);
-AREALIGHT_ASSERT(offsetof(ArealightShape, radius) == 88);
-AREALIGHT_ASSERT(offsetof(ArealightShape, radiance) == 96);
-AREALIGHT_ASSERT(offsetof(ArealightShape, two_sided) == 108);
-AREALIGHT_ASSERT(offsetof(ArealightShape, textured) == 112);
-AREALIGHT_ASSERT(offsetof(ArealightShape, texture_layer) == 116);
-AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightLight, kind) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightLight, two_sided) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightLight, radiance) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightLight, textured) == 28);
+AREALIGHT_ASSERT(offsetof(ArealightLight, texture_layer) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightLight, vertex_count) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightLight, vertices) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightLight, texture_coordinates) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightLight, hole_vertex_counts) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightLight, face_vertex_counts) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightLight, hole_count) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightLight, face_count) == 76);
+AREALIGHT_ASSERT(offsetof(ArealightLight, center) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightLight, axis_u) == 104);
+AREALIGHT_ASSERT(offsetof(ArealightLight, axis_v) == 128);
+AREALIGHT_ASSERT(offsetof(ArealightLight, radius) == 152);
+AREALIGHT_ASSERT(offsetof(ArealightLight, ends) == 160);
+AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 164);
+AREALIGHT_ASSERT(sizeof(ArealightLightSummary) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightLightSummary, light_count) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightLightSummary, quad_count) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightLightSummary, shape_count) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightLightSummary, effects) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightPackedLights) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights_size) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices_size) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightPackedLights, quad_count) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightPackedLights, unused) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, shapes) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, lights_size) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, vertices_size) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, shapes_size) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightPackedLights, summary) == 48);
 AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
@@ -868,10 +850,7 @@ AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, light_count) == 20);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, shape_count) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, quad_count) == 28);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, unused) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, lights) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);

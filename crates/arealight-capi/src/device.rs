@@ -1,10 +1,8 @@
 //! From the host's handles to a table on its device.
 
+use crate::constants::{AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F};
 use crate::failure::{ArealightResult, Failure, call};
-use crate::types::{
-    AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F, ArealightHost, ArealightMemory, ArealightTable,
-    ArealightUpload,
-};
+use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
 use arealight::LightTable;
 use arealight::table::LobeHorizon;
@@ -43,10 +41,10 @@ impl Arealight {
         self.image.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The table as a pass reads it, and in place of light textures; `None` before it has memory.
-    pub(crate) fn table_resources(&self) -> Option<[arealight_vk::Resource; 2]> {
+    /// The table as a pass reads it; `None` before it has memory.
+    pub(crate) fn table_resource(&self) -> Option<arealight_vk::Resource> {
         let image = self.image();
-        image.memory.map(|_| [image.table.resource(), image.table.in_place_of_textures()])
+        image.memory.map(|_| image.table.resource())
     }
 }
 

@@ -21,14 +21,12 @@ pub enum ArealightResult {
     ErrorVulkan = 4,
     /// A light cannot be shaded; the message names it and its field.
     ErrorLight = 5,
-    /// A light calls for effects that the pass was made without; the message names both.
-    ErrorEffects = 6,
     /// The bytes hold no light table, or one of another version.
-    ErrorTable = 7,
+    ErrorTable = 6,
     /// An array of the host is too small; the size that is needed was written.
-    ErrorTooSmall = 8,
+    ErrorTooSmall = 7,
     /// A fault of the library, which is worth a report. The object of the call is good only for being destroyed.
-    ErrorInternal = 9,
+    ErrorInternal = 8,
 }
 
 /// A result that is not OK, with its message.
@@ -53,11 +51,16 @@ impl From<Error> for Failure {
         let result = match &error {
             Error::Vulkan { .. } => ArealightResult::ErrorVulkan,
             Error::MissingFeature { .. } => ArealightResult::ErrorMissingFeature,
-            Error::Light(_) | Error::Shape(_) => ArealightResult::ErrorLight,
-            Error::EffectsTooSmall { .. } => ArealightResult::ErrorEffects,
+            Error::Light(_) => ArealightResult::ErrorLight,
             _ => ArealightResult::ErrorArgument,
         };
         Self::new(result, error.to_string())
+    }
+}
+
+impl From<arealight::LightError> for Failure {
+    fn from(error: arealight::LightError) -> Self {
+        Self::new(ArealightResult::ErrorLight, error.to_string())
     }
 }
 

@@ -5,11 +5,12 @@
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`types`] | what crosses the boundary: structs and constants |
+//! | [`types`] | what crosses the boundary: structs |
+//! | [`constants`] | what numbers in them mean |
 //! | [`device`] | from the host's handles to a table on its device |
 //! | [`pass`] | the shade pass |
-//! | [`lights`] | lights, packed for it |
-//! | [`textures`] | images that lights show |
+//! | [`lights`] | lights, packed for its frames |
+//! | [`textures`] | the images of textured lights |
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
 //! | `handles` | which objects are alive |
@@ -21,6 +22,7 @@
 #![allow(clippy::doc_markdown, reason = "the comments become those of a C header, where backticks are noise")]
 
 mod arguments;
+pub mod constants;
 pub mod device;
 mod failure;
 mod handles;
@@ -30,6 +32,7 @@ pub mod pass;
 pub mod textures;
 pub mod types;
 
+pub use constants::*;
 pub use device::*;
 pub use failure::{ArealightResult, arealight_last_error};
 pub use lights::*;

@@ -1,24 +1,23 @@
 //! Lights of the host, packed into arrays of the host.
 
-use crate::failure::{ArealightResult, Failure, call};
-use crate::pass::ArealightPass;
-use crate::types::{
-    AREALIGHT_SHAPE_ELLIPSE, AREALIGHT_SHAPE_SPHERE, AREALIGHT_SHAPE_TUBE, AREALIGHT_TUBE_FLAT,
-    AREALIGHT_TUBE_OPEN, AREALIGHT_TUBE_ROUND, ArealightLight, ArealightPackedLights, ArealightShape,
+use crate::arguments;
+use crate::constants::{
+    AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH, AREALIGHT_LIGHT_POLYGON, AREALIGHT_LIGHT_SPHERE,
+    AREALIGHT_LIGHT_TUBE, AREALIGHT_TUBE_FLAT, AREALIGHT_TUBE_OPEN, AREALIGHT_TUBE_ROUND,
 };
-use crate::{arguments, handles};
-use arealight::{LightTexture, PolygonLight, Shape, ShapeLight, TubeEnds};
+use crate::failure::{ArealightResult, Failure, call};
+use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights};
+use arealight::{Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, TubeEnds};
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
 
-/// Packs lights for the pass, relative to `origin` (three numbers, in world positions), into arrays of the host, which
-/// uploads them to its buffers. With null arrays, only says how large they must be.
+/// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which uploads them to its buffers,
+/// and says what a frame needs to know of them. With null arrays, only says how large they must be.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many items as their counts say.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn arealight_pass_pack_lights(
-    pass: *const ArealightPass,
+pub unsafe extern "C" fn arealight_pack_lights(
     lights: *const ArealightLight,
     light_count: u32,
     origin: *const f64,
@@ -26,31 +25,37 @@ pub unsafe extern "C" fn arealight_pass_pack_lights(
 ) -> ArealightResult {
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
-        let (pass, lights, origin, mut arrays) = unsafe {
+        let (lights, origin, mut arrays) = unsafe {
             (
-                handles::borrow(pass, "pass")?,
                 arguments::array(lights, light_count as usize, "lights")?,
                 read_origin(origin)?,
                 *arguments::read(packed.cast_const(), "packed")?,
             )
         };
         // SAFETY: as above.
-        let made = pass.shade().pack_lights(&unsafe { read_lights(lights) }?, origin)?;
+        let made = PackedLights::new(&unsafe { read_lights(lights) }?, origin)?;
 
-        // Copy, or say what is needed
-        let bytes: [&[u8]; 2] = [bytemuck::cast_slice(&made.lights), bytemuck::cast_slice(&made.vertices)];
-        let given = [(arrays.lights, arrays.lights_size), (arrays.vertices, arrays.vertices_size)];
-        [arrays.lights_size, arrays.vertices_size] = bytes.map(|bytes| bytes.len() as u64);
-        (arrays.quad_count, arrays.unused) = (made.quad_count, made.unused.bits());
+        // Say what is needed, then copy
+        let bytes: [&[u8]; 3] = [
+            bytemuck::cast_slice(&made.lights),
+            bytemuck::cast_slice(&made.vertices),
+            bytemuck::cast_slice(&made.shapes),
+        ];
+        let given = [
+            (arrays.lights, arrays.lights_size, "packed.lights_size"),
+            (arrays.vertices, arrays.vertices_size, "packed.vertices_size"),
+            (arrays.shapes, arrays.shapes_size, "packed.shapes_size"),
+        ];
+        [arrays.lights_size, arrays.vertices_size, arrays.shapes_size] =
+            bytes.map(|bytes| bytes.len() as u64);
+        arrays.summary = write_summary(made.summary());
         // SAFETY: as above.
         unsafe { arguments::write(packed, arrays, "packed") }?;
-        let fields = ["packed.lights_size", "packed.vertices_size"];
-        let arrays =
-            || given.into_iter().zip(bytes.into_iter().zip(fields)).filter(|((to, _), _)| !to.is_null());
-        for ((_, size), (bytes, field)) in arrays() {
+        let arrays = || given.into_iter().zip(bytes).filter(|((to, ..), _)| !to.is_null());
+        for ((_, size, field), bytes) in arrays() {
             check_size(bytes, size, field)?;
         }
-        for ((to, _), (bytes, _)) in arrays() {
+        for ((to, ..), bytes) in arrays() {
             // SAFETY: as above; there is room.
             unsafe { copy(bytes, to) };
         }
@@ -58,42 +63,21 @@ pub unsafe extern "C" fn arealight_pass_pack_lights(
     })
 }
 
-/// Packs disks, spheres and tubes for the pass, relative to `origin`, into an array of the host, 64 bytes each and aligned to 4.
-/// `*size` is the array's in bytes, and becomes what is needed. With a null array, only says so.
-///
-/// # Safety
-/// Pointers are null or valid, with as many items as their counts say.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn arealight_pass_pack_shapes(
-    pass: *const ArealightPass,
-    shapes: *const ArealightShape,
-    shape_count: u32,
-    origin: *const f64,
-    packed: *mut c_void,
-    size: *mut u64,
-) -> ArealightResult {
-    call(|| {
-        // SAFETY: the caller vouches for the pointers, here and below.
-        let (pass, shapes, origin, given) = unsafe {
-            (
-                handles::borrow(pass, "pass")?,
-                arguments::array(shapes, shape_count as usize, "shapes")?,
-                read_origin(origin)?,
-                *arguments::read(size.cast_const(), "size")?,
-            )
-        };
-        // SAFETY: as above.
-        let shapes = shapes.iter().enumerate().map(|(index, shape)| unsafe { read_shape(index, shape) });
-        let made = pass.shade().pack_shapes(&shapes.collect::<Result<Vec<_>, _>>()?, origin)?;
-        let bytes: &[u8] = bytemuck::cast_slice(&made);
-        // SAFETY: as above.
-        unsafe { arguments::write(size, bytes.len() as u64, "size") }?;
-        if !packed.is_null() {
-            check_size(bytes, given, "size")?;
-            // SAFETY: as above; there is room.
-            unsafe { copy(bytes, packed) };
-        }
-        Ok(())
+fn write_summary(summary: LightSummary) -> ArealightLightSummary {
+    let LightSummary { light_count, quad_count, shape_count, effects } = summary;
+    ArealightLightSummary { light_count, quad_count, shape_count, effects: effects.bits() }
+}
+
+pub(crate) fn read_summary(summary: ArealightLightSummary) -> Result<LightSummary, Failure> {
+    let ArealightLightSummary { light_count, quad_count, shape_count, effects } = summary;
+    let effects = read_effects(effects, "frame.lights.effects")?;
+    Ok(LightSummary { light_count, quad_count, shape_count, effects })
+}
+
+pub(crate) fn read_effects(bits: u32, field: &str) -> Result<Effects, Failure> {
+    Effects::from_bits(bits).ok_or_else(|| {
+        let unknown = bits & !Effects::all().bits();
+        Failure::argument(format!("{field}: {unknown:#x} are no AREALIGHT_EFFECT_*"))
     })
 }
 
@@ -109,13 +93,13 @@ unsafe fn read_origin(origin: *const f64) -> Result<DVec3, Failure> {
     }
 }
 
-/// The name that messages call a light by.
+/// The name that messages call a light by: none where it is null.
 ///
 /// # Safety
 /// `name` is null or a string of C.
-unsafe fn read_name(name: *const c_char, otherwise: String) -> String {
+unsafe fn read_name(name: *const c_char) -> String {
     if name.is_null() {
-        return otherwise;
+        return String::new();
     }
     // SAFETY: the same contract.
     unsafe { CStr::from_ptr(name) }.to_string_lossy().into_owned()
@@ -146,81 +130,94 @@ unsafe fn copy(bytes: &[u8], to: *mut c_void) {
 
 /// # Safety
 /// The lights' pointers are null or valid.
-pub(crate) unsafe fn read_lights(lights: &[ArealightLight]) -> Result<Vec<PolygonLight>, Failure> {
+pub(crate) unsafe fn read_lights(lights: &[ArealightLight]) -> Result<Vec<Light>, Failure> {
     // SAFETY: the same contract.
     lights.iter().enumerate().map(|(index, light)| unsafe { read_light(index, light) }).collect()
 }
 
 /// # Safety
 /// The light's pointers are null or valid.
-unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<PolygonLight, Failure> {
-    let count = light.vertex_count as usize;
+unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Failure> {
     let field = |name| format!("lights[{index}].{name}");
-    // SAFETY: the same contract, for all five.
-    let (name, hole_counts, face_counts, vertices, coordinates) = unsafe {
-        let name = read_name(light.name, format!("lights[{index}]"));
-        let counts = |counts, number: u32, name| arguments::array(counts, number as usize, &field(name));
-        let holes = counts(light.hole_vertex_counts, light.hole_count, "hole_vertex_counts")?;
-        let faces = counts(light.face_vertex_counts, light.face_count, "face_vertex_counts")?;
-        let all = holes.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
-        let vertices = arguments::array(light.vertices, all.saturating_mul(3), &field("vertices"))?;
-        let uvs = light.texture_coordinates;
-        let uvs = (!uvs.is_null()).then(|| arguments::array(uvs, 2 * count, &field("texture_coordinates")));
-        (name, holes, faces, vertices, uvs.transpose()?)
+    let wrong = |name, number, known| Failure::argument(format!("{}: {number} is no {known}", field(name)));
+    let [center, axis_u, axis_v] = [light.center, light.axis_u, light.axis_v].map(DVec3::from_array);
+    let radius = light.radius;
+    // SAFETY: the same contract, here and below.
+    let outlines = || unsafe { read_outlines(light, &field) };
+    let (mut uvs, mut holes) = (vec![], vec![]);
+    let shape = match light.kind {
+        AREALIGHT_LIGHT_POLYGON => {
+            let mut outlines = outlines()?;
+            holes = outlines.split_off(1);
+            // SAFETY: as above.
+            uvs = unsafe { read_coordinates(light, &field) }?;
+            LightShape::Polygon(outlines.remove(0))
+        }
+        AREALIGHT_LIGHT_MESH => {
+            let (count, counts) = (light.face_count as usize, light.face_vertex_counts);
+            // SAFETY: as above.
+            let faces = unsafe { arguments::array(counts, count, &field("face_vertex_counts")) }?.to_vec();
+            LightShape::Mesh { vertices: outlines()?.remove(0), faces }
+        }
+        AREALIGHT_LIGHT_DISK => LightShape::Disk { center, axis_u, axis_v },
+        AREALIGHT_LIGHT_SPHERE => LightShape::Sphere { center, radius },
+        AREALIGHT_LIGHT_TUBE => {
+            let ends = match light.ends {
+                AREALIGHT_TUBE_OPEN => TubeEnds::Open,
+                AREALIGHT_TUBE_FLAT => TubeEnds::Flat,
+                AREALIGHT_TUBE_ROUND => TubeEnds::Round,
+                other => return Err(wrong("ends", other, "AREALIGHT_TUBE_*")),
+            };
+            LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius, ends }
+        }
+        other => return Err(wrong("kind", other, "AREALIGHT_LIGHT_*")),
     };
-    let mut vertices = vertices.chunks_exact(3).map(DVec3::from_slice);
-    let mut made = PolygonLight {
-        name,
-        vertices: vertices.by_ref().take(count).collect(),
-        faces: face_counts.to_vec(),
+    let textured = read_flag(light.textured, &field("textured"))?;
+    let mut made = Light {
+        // SAFETY: as above.
+        name: unsafe { read_name(light.name) },
         radiance: Vec3::from_array(light.radiance),
         two_sided: read_flag(light.two_sided, &field("two_sided"))?,
-        texture: coordinates.map(|uvs| LightTexture {
-            layer: light.texture_layer,
-            uvs: uvs.chunks_exact(2).map(DVec2::from_slice).collect(),
-        }),
+        texture: textured.then_some(LightTexture { layer: light.texture_layer, uvs }),
+        shape,
     };
-    if !hole_counts.is_empty() {
-        let hole = |count: &u32| vertices.by_ref().take(*count as usize).collect();
-        let holes: Vec<Vec<DVec3>> = hole_counts.iter().map(hole).collect();
-        made.cut_holes(&holes).map_err(arealight_vk::Error::from)?;
+    if !holes.is_empty() {
+        made.cut_holes(&holes).map_err(|fault| LightError { index, name: made.name.clone(), fault })?;
     }
     Ok(made)
 }
 
+/// The outline of a polygon or the vertices of a mesh, and the outlines of a polygon's holes.
+///
 /// # Safety
-/// The shape's name is null or a string of C.
-unsafe fn read_shape(index: usize, shape: &ArealightShape) -> Result<ShapeLight, Failure> {
-    let field = |name| format!("shapes[{index}].{name}");
-    let [center, axis_u, axis_v] = [shape.center, shape.axis_u, shape.axis_v].map(DVec3::from_array);
-    let radius = shape.radius;
-    let kind = match shape.kind {
-        AREALIGHT_SHAPE_ELLIPSE => Shape::Ellipse { center, axis_u, axis_v },
-        AREALIGHT_SHAPE_SPHERE => Shape::Sphere { center, radius },
-        AREALIGHT_SHAPE_TUBE => {
-            let ends = match shape.ends {
-                AREALIGHT_TUBE_OPEN => TubeEnds::Open,
-                AREALIGHT_TUBE_FLAT => TubeEnds::Flat,
-                AREALIGHT_TUBE_ROUND => TubeEnds::Round,
-                other => {
-                    return Err(Failure::argument(format!(
-                        "{}: {other} is no AREALIGHT_TUBE_*",
-                        field("ends")
-                    )));
-                }
-            };
-            Shape::Tube { p0: center - axis_u, p1: center + axis_u, radius, ends }
-        }
-        other => {
-            return Err(Failure::argument(format!("{}: {other} is no AREALIGHT_SHAPE_*", field("kind"))));
-        }
+/// As [`read_light`].
+unsafe fn read_outlines(
+    light: &ArealightLight,
+    field: &impl Fn(&'static str) -> String,
+) -> Result<Vec<Vec<DVec3>>, Failure> {
+    let count = light.vertex_count as usize;
+    let hole_count = if light.kind == AREALIGHT_LIGHT_POLYGON { light.hole_count as usize } else { 0 };
+    // SAFETY: the same contract.
+    let (holes, vertices) = unsafe {
+        let holes = arguments::array(light.hole_vertex_counts, hole_count, &field("hole_vertex_counts"))?;
+        let all = holes.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
+        (holes, arguments::array(light.vertices, all.saturating_mul(3), &field("vertices"))?)
     };
-    Ok(ShapeLight {
-        // SAFETY: the same contract.
-        name: unsafe { read_name(shape.name, format!("shapes[{index}]")) },
-        radiance: Vec3::from_array(shape.radiance),
-        two_sided: read_flag(shape.two_sided, &field("two_sided"))?,
-        texture: read_flag(shape.textured, &field("textured"))?.then_some(shape.texture_layer),
-        shape: kind,
-    })
+    let mut vertices = vertices.chunks_exact(3).map(DVec3::from_slice);
+    let counts = std::iter::once(count).chain(holes.iter().map(|count| *count as usize));
+    Ok(counts.map(|count| vertices.by_ref().take(count).collect()).collect())
+}
+
+/// The texture coordinates of a textured polygon; none of others.
+///
+/// # Safety
+/// As [`read_light`].
+unsafe fn read_coordinates(
+    light: &ArealightLight,
+    field: &impl Fn(&'static str) -> String,
+) -> Result<Vec<DVec2>, Failure> {
+    let count = if light.textured == 0 { 0 } else { 2 * light.vertex_count as usize };
+    // SAFETY: the same contract.
+    let uvs = unsafe { arguments::array(light.texture_coordinates, count, &field("texture_coordinates")) }?;
+    Ok(uvs.chunks_exact(2).map(DVec2::from_slice).collect())
 }

@@ -2,6 +2,7 @@
 
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
+use crate::lights::{read_effects, read_summary};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
     ArealightSetLayout, ArealightTileMemory,
@@ -16,18 +17,12 @@ use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileResource
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
-/// A shade pass, specialised for effects and a quality.
+/// A shade pass, specialised for surfaces and a quality.
 pub struct ArealightPass {
     pass: ShadePass,
 }
 
-impl ArealightPass {
-    pub(crate) fn shade(&self) -> &ShadePass {
-        &self.pass
-    }
-}
-
-/// Makes a pass. Its pipelines are made when the first frame is recorded whose lights call for them, or ahead by
+/// Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
 /// arealight_pass_prepare. `*out` is the host's to destroy.
 ///
 /// # Safety
@@ -110,10 +105,14 @@ fn tile_options(options: &ArealightPassOptions) -> Option<TileOptions> {
 }
 
 fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
-    let effects = Effects::from_bits(options.effects).ok_or_else(|| {
-        let unknown = options.effects & !Effects::all().bits();
-        Failure::argument(format!("options.effects: {unknown:#x} are no AREALIGHT_EFFECT_*"))
-    })?;
+    let surfaces = match read_effects(options.surfaces, "options.surfaces")? {
+        none if none.is_empty() => ShadeOptions::default().surfaces,
+        given if Effects::SURFACES.contains(given) => given,
+        given => {
+            let others = given - Effects::SURFACES;
+            return Err(Failure::argument(format!("options.surfaces: {others} are what lights need")));
+        }
+    };
     let quality = Quality {
         form_factor: level(options.form_factor, &[FormFactor::Exact, FormFactor::Difference], "form_factor")?,
         horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "horizon")?,
@@ -126,7 +125,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         )?,
     };
     Ok(ShadeOptions {
-        effects,
+        surfaces,
         quality,
         position: level(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
         g_buffer: level(
@@ -142,7 +141,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
         output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
         images: level(
             options.radiance_images,
-            &[RadianceImages::One, RadianceImages::Apart],
+            &[RadianceImages::Combined, RadianceImages::Separate],
             "radiance_images",
         )?,
         format: level(
@@ -150,7 +149,6 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
             "radiance_format",
         )?,
-        // What suits the device
     })
 }
 
@@ -216,34 +214,21 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             )
         };
         arguments::refuse_null([(set == 0, "set")])?;
-        let [table, in_place_of_textures] = arealight.table_resources().ok_or_else(|| {
+        let table = arealight.table_resource().ok_or_else(|| {
             Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
         })?;
-        // What is not read needs only be there
-        let effects = pass.options().effects;
-        let specular = match resources.specular {
-            image if pass.options().reads_specular() || image.view != 0 => sampled(image),
-            _ => sampled(resources.position),
-        };
-        let light_textures = match resources.light_textures {
-            image if effects.intersects(Effects::IMAGES) || image.view != 0 => filtered(image),
-            _ => in_place_of_textures,
-        };
         let resources = ShadeResources {
             table,
             lights: buffer(resources.lights),
             light_vertices: buffer(resources.light_vertices),
+            shapes: (resources.shapes.buffer != 0).then(|| buffer(resources.shapes)),
+            light_textures: (resources.light_textures.view != 0).then(|| filtered(resources.light_textures)),
             position: sampled(resources.position),
             normal: sampled(resources.normal),
             base_color: sampled(resources.base_color),
-            specular,
+            specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
             radiance: stored(resources.radiance),
             glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
-            light_textures,
-            shapes: match resources.shapes {
-                shapes if effects.intersects(Effects::SHAPES) || shapes.buffer != 0 => buffer(shapes),
-                _ => buffer(resources.lights),
-            },
             tiles: pass.tiles().map(|_| TileResources {
                 lobe_horizons: buffer(resources.lobe_horizons),
                 tile_lists: buffer(resources.tile_lists),
@@ -302,8 +287,7 @@ pub unsafe extern "C" fn arealight_pass_tile_memory(
 ///
 /// # Safety
 /// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
-/// set was written, with images of the frame's size and buffers of
-/// `frame.light_count` lights and `frame.shape_count` shapes.
+/// set was written, with images of the frame's size and buffers of the lights that `frame.lights` is of.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_pass_record(
     pass: *const ArealightPass,
@@ -336,16 +320,12 @@ unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
         size: [frame.width, frame.height],
         camera: Vec3::from_array(frame.camera),
         position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
-        light_count: frame.light_count,
-        quad_count: frame.quad_count,
-        // What is no effect is used by nobody
-        unused: Effects::from_bits_truncate(frame.unused),
-        shape_count: frame.shape_count,
+        lights: read_summary(frame.lights)?,
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
     })
 }
 
-/// Makes the pipeline for frames whose lights call for what this one's do, if it is not made yet: what arealight_pass_record
+/// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
 /// would take a moment for otherwise.
 ///
 /// # Safety
@@ -376,7 +356,7 @@ pub unsafe extern "C" fn arealight_pass_destroy(pass: *mut ArealightPass) -> Are
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::types as c;
+    use crate::constants as c;
 
     #[test]
     fn constants_are_those_of_the_vocabulary() {
@@ -392,7 +372,6 @@ mod tests {
             (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
             (c::AREALIGHT_EFFECT_MESH, Effects::MESH),
             (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
-            (c::AREALIGHT_EFFECTS_ALL, Effects::all()),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }
@@ -411,7 +390,8 @@ mod tests {
         assert_eq!((quality.form_factor, quality.horizon), (FormFactor::Difference, Horizon::Both));
         assert_eq!(quality.footprint, Footprint::Split);
         // Zero is the default of everything
-        assert_eq!(made(ArealightPassOptions::default()), Quality::default());
+        let zero = shade_options(&ArealightPassOptions::default()).unwrap();
+        assert_eq!(zero, ShadeOptions::default());
     }
 
     #[test]
@@ -421,7 +401,8 @@ mod tests {
         let expected = TileOptions { capacity: 64, cull_threshold: 0.5, least_quads: 0 };
         assert_eq!((tile_options(&tiles), tile_options(&zero)), (Some(expected), None));
         for (wrong, field) in [
-            (ArealightPassOptions { effects: 1 << 30, ..zero }, "options.effects"),
+            (ArealightPassOptions { surfaces: 1 << 30, ..zero }, "options.surfaces"),
+            (ArealightPassOptions { surfaces: 16, ..zero }, "options.surfaces: polygon are what lights need"),
             (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
             (ArealightPassOptions { fresnel: 2, ..zero }, "options.fresnel"),

@@ -1,13 +1,13 @@
 //! Images that lights show: memory and sets are the host's, filtering is recorded here.
 
+use crate::constants::{AREALIGHT_WRAP_CLAMP, AREALIGHT_WRAP_MIRROR, AREALIGHT_WRAP_REPEAT};
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{read_flag, read_lights};
 use crate::pass::{sampled, set_layout};
 use crate::types::{
-    AREALIGHT_WRAP_CLAMP, AREALIGHT_WRAP_MIRROR, AREALIGHT_WRAP_REPEAT, ArealightImage, ArealightLight,
-    ArealightMemory, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
-    ArealightTextureUpdate,
+    ArealightImage, ArealightLight, ArealightMemory, ArealightTextureNeeds, ArealightTextureOptions,
+    ArealightTextureSetup, ArealightTextureUpdate,
 };
 use crate::{arguments, handles};
 use arealight::{PyramidSize, TexturePart, Wrap};
@@ -266,7 +266,7 @@ pub unsafe extern "C" fn arealight_textures_image(
     })
 }
 
-/// Checks that the layer of every light that shows an image is there: passes do not know what will be bound.
+/// Checks that the layer of every textured light is there: passes do not know what will be bound.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many items as their counts say.

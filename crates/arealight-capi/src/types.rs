@@ -5,117 +5,6 @@
 
 use std::ffi::{c_char, c_void};
 
-/// The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
-pub const AREALIGHT_EFFECT_DIFFUSE: u32 = 1;
-/// The GGX lobe: some surface reflects specularly.
-pub const AREALIGHT_EFFECT_GLOSSY: u32 = 2;
-/// Some light lights both of its sides.
-pub const AREALIGHT_EFFECT_TWO_SIDED: u32 = 4;
-/// Some surface has a dielectric reflectance of its own: ArealightResources.specular is read.
-pub const AREALIGHT_EFFECT_SPECULAR_INPUT: u32 = 8;
-/// Some light is concave, not quite flat, or has more than four vertices.
-pub const AREALIGHT_EFFECT_POLYGON: u32 = 16;
-/// Some light shows an image: ArealightResources.light_textures is read.
-pub const AREALIGHT_EFFECT_TEXTURED: u32 = 32;
-/// Some light is a disk or an ellipse.
-pub const AREALIGHT_EFFECT_ELLIPSE: u32 = 256;
-/// Some light is a sphere.
-pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
-/// Some light is a cylinder or a capsule.
-pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
-/// Some light has several faces: a mesh.
-pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
-/// Some disk or ellipse shows an image: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
-pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
-/// Every effect: right for any lights, at the highest cost.
-pub const AREALIGHT_EFFECTS_ALL: u32 = 7999;
-
-/// Form factors to float32's own precision, 1e-6.
-pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
-/// As EXACT, and relative precision for lights that look small.
-pub const AREALIGHT_FORM_FACTOR_DIFFERENCE: u32 = 1;
-
-/// Polygons are clipped at the horizon of the lobe's cosine space.
-pub const AREALIGHT_HORIZON_COSINE: u32 = 0;
-/// And at the surface's horizon: nothing leaks from behind the surface.
-pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
-
-/// One integral a glossy lobe.
-pub const AREALIGHT_FRESNEL_BY_F0: u32 = 0;
-/// Two: exact in the reflectance and its colour.
-pub const AREALIGHT_FRESNEL_SPLIT: u32 = 1;
-
-/// The glossy lobe is the table's.
-pub const AREALIGHT_LOBES_TABLE: u32 = 0;
-/// Formulas instead, without a texture, at 1.2 to 1.35 times the error.
-pub const AREALIGHT_LOBES_FORMULA: u32 = 1;
-
-/// A light's image is looked up with one round fetch a lobe.
-pub const AREALIGHT_FOOTPRINT_ROUND: u32 = 0;
-/// With four along the longer axis.
-pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
-/// With four by four parts of the light, a form factor and two fetches each.
-pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
-
-/// ArealightResources.position holds positions; w = 0 where there is no surface.
-pub const AREALIGHT_POSITION_IMAGE: u32 = 0;
-/// It holds depth as stored; exactly 0 or 1 where there is no surface.
-pub const AREALIGHT_POSITION_DEPTH: u32 = 1;
-
-/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
-/// F0 and F90.
-pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;
-/// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
-pub const AREALIGHT_G_BUFFER_UNREAL: u32 = 1;
-/// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
-pub const AREALIGHT_G_BUFFER_UNITY: u32 = 2;
-/// A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
-pub const AREALIGHT_G_BUFFER_OCTAHEDRAL: u32 = 3;
-
-/// Radiance replaces what is in the image.
-pub const AREALIGHT_OUTPUT_OVERWRITE: u32 = 0;
-/// Radiance is added to it.
-pub const AREALIGHT_OUTPUT_ADD: u32 = 1;
-
-/// The radiance of both lobes goes to ArealightResources.radiance.
-pub const AREALIGHT_IMAGES_ONE: u32 = 0;
-/// That of the glossy lobe goes to ArealightResources.glossy instead.
-pub const AREALIGHT_IMAGES_APART: u32 = 1;
-
-/// Radiance is stored in 32-bit floats.
-pub const AREALIGHT_RADIANCE_RGBA32F: u32 = 0;
-/// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
-pub const AREALIGHT_RADIANCE_RGBA16F: u32 = 1;
-
-/// The table is kept in 32-bit floats, 16 bytes a texel.
-pub const AREALIGHT_TABLE_RGBA32F: u32 = 0;
-/// In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.
-pub const AREALIGHT_TABLE_RGBA16F: u32 = 1;
-
-/// A flat ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
-pub const AREALIGHT_SHAPE_ELLIPSE: u32 = 0;
-/// A sphere about `center`.
-pub const AREALIGHT_SHAPE_SPHERE: u32 = 1;
-/// A tube about `center`, whose axis goes from `center - axis_u` to `center + axis_u`.
-pub const AREALIGHT_SHAPE_TUBE: u32 = 2;
-
-/// The lateral surface of a tube alone shines.
-pub const AREALIGHT_TUBE_OPEN: u32 = 0;
-/// Flat caps shine too.
-pub const AREALIGHT_TUBE_FLAT: u32 = 1;
-/// Half spheres about both ends do: a capsule.
-pub const AREALIGHT_TUBE_ROUND: u32 = 2;
-
-/// Beyond the image is its edge.
-pub const AREALIGHT_WRAP_CLAMP: u32 = 0;
-/// The image again.
-pub const AREALIGHT_WRAP_REPEAT: u32 = 1;
-/// The image again, every other one mirrored.
-pub const AREALIGHT_WRAP_MIRROR: u32 = 2;
-
-/// The range of an ArealightBuffer from its offset to its end.
-pub const AREALIGHT_WHOLE_SIZE: u64 = u64::MAX;
-
 /// A function of Vulkan, as vkGetInstanceProcAddr returns it.
 pub type ArealightFunction = Option<unsafe extern "system" fn()>;
 
@@ -196,12 +85,13 @@ pub struct ArealightUpload {
     pub command_buffer: *mut c_void,
 }
 
-/// What a pass is specialised for. All zero is exact without an effect.
+/// What a pass is specialised for. All zero is both lobes at the exact level.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// AREALIGHT_EFFECT_* that the scene calls for. More only costs time; less is an error when lights are packed.
-    pub effects: u32,
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY and _SPECULAR_INPUT. 0 is DIFFUSE and GLOSSY. What lights need is known
+    /// from ArealightFrame.lights.
+    pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,
     /// One of AREALIGHT_HORIZON_*.
@@ -228,7 +118,7 @@ pub struct ArealightPassOptions {
     /// With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
     /// radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
     pub tile_cull_threshold: f32,
-    /// With tiles: frames of fewer lights, all of them convex quads without an image, are shaded without, which takes less time; such as 4.
+    /// With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
     pub tile_least_quads: u32,
 }
 
@@ -248,84 +138,85 @@ pub struct ArealightSetLayout {
     pub storage_buffers: u32,
 }
 
-/// A flat polygon that emits constant radiance, or shows an image; or several that are one light, a mesh. Convex or concave, without
-/// crossing edges.
+/// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its kind.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightLight {
     /// For messages, UTF-8; may be null.
     pub name: *const c_char,
-    /// World positions, three numbers a vertex: seen from the front, counter-clockwise.
-    pub vertices: *const f64,
-    /// Null, or two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions: the light shows
-    /// `texture_layer` of the light textures.
-    pub texture_coordinates: *const f64,
-    /// From 3 on: of the outline, or of all faces.
-    pub vertex_count: u32,
-    /// Read only with texture coordinates.
-    pub texture_layer: u32,
-    /// Radiance of the front, W/(m² sr), linear Rec. 709, not negative.
-    pub radiance: [f32; 3],
-    /// 1: the back emits too.
-    pub two_sided: u32,
-    /// Null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    /// in the light's plane and inside. A light with holes needs AREALIGHT_EFFECT_POLYGON.
-    pub hole_vertex_counts: *const u32,
-    /// Null, or how many vertices each face of a mesh has, `vertex_count` together: faces follow one another in `vertices`, each an
-    /// outline of its own, such as the three of a triangle. What a face hides of another is added all the same. A mesh needs
-    /// AREALIGHT_EFFECT_POLYGON and AREALIGHT_EFFECT_MESH, and has neither holes nor texture coordinates.
-    pub face_vertex_counts: *const u32,
-    /// How many holes.
-    pub hole_count: u32,
-    /// How many faces; 0 and 1 are one polygon.
-    pub face_count: u32,
-}
-
-/// A disk, sphere or tube of constant radiance, or a disk that shows an image, in world positions.
-#[repr(C)]
-#[derive(Debug, Clone, Copy)]
-pub struct ArealightShape {
-    /// For messages, UTF-8; may be null.
-    pub name: *const c_char,
-    /// One of AREALIGHT_SHAPE_*.
+    /// One of AREALIGHT_LIGHT_*.
     pub kind: u32,
-    /// Of a tube: one of AREALIGHT_TUBE_*.
-    pub ends: u32,
-    /// The middle.
-    pub center: [f64; 3],
-    /// Of an ellipse and a tube.
-    pub axis_u: [f64; 3],
-    /// Of an ellipse.
-    pub axis_v: [f64; 3],
-    /// Of a sphere and a tube, above zero.
-    pub radius: f64,
+    /// 1: the back of a polygon, mesh or disk, or the inside of a sphere, emits too.
+    pub two_sided: u32,
     /// Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
     pub radiance: [f32; 3],
-    /// 1: the back of an ellipse, or the inside of a sphere, emits too.
-    pub two_sided: u32,
-    /// 1: an ellipse shows `texture_layer` of the light textures. Seen from the front, its rows run along `axis_u` and its top is where
-    /// `axis_v` points to; the parallelogram of both touches its edges.
+    /// 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the front of a disk, its rows run
+    /// along `axis_u` and its top is where `axis_v` points to; the parallelogram of both touches its edges.
     pub textured: u32,
     /// Read only with `textured`.
     pub texture_layer: u32,
+    /// Of a polygon or mesh: how many vertices its outline has, or all faces have; from 3 on.
+    pub vertex_count: u32,
+    /// Of a polygon or mesh: three numbers a vertex; seen from the front, counter-clockwise.
+    pub vertices: *const f64,
+    /// Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions.
+    pub texture_coordinates: *const f64,
+    /// Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
+    /// in the light's plane and inside.
+    pub hole_vertex_counts: *const u32,
+    /// Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in `vertices`, each an
+    /// outline of its own, such as the three of a triangle. What a face hides of another is added all the same.
+    pub face_vertex_counts: *const u32,
+    /// How many holes.
+    pub hole_count: u32,
+    /// How many faces.
+    pub face_count: u32,
+    /// Of a disk, sphere or tube: the middle.
+    pub center: [f64; 3],
+    /// Of a disk or tube.
+    pub axis_u: [f64; 3],
+    /// Of a disk.
+    pub axis_v: [f64; 3],
+    /// Of a sphere or tube, above zero.
+    pub radius: f64,
+    /// Of a tube: one of AREALIGHT_TUBE_*.
+    pub ends: u32,
+    /// 0
+    pub reserved: u32,
 }
 
-/// Arrays of the host for packed lights, as the buffers of ArealightResources hold them.
+/// What a frame needs to know of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ArealightLightSummary {
+    /// How many records ArealightPackedLights.lights has: those of polygons and meshes.
+    pub light_count: u32,
+    /// How many of the first are convex quads without a texture.
+    pub quad_count: u32,
+    /// How many records ArealightPackedLights.shapes has: those of disks, spheres and tubes, in this order.
+    pub shape_count: u32,
+    /// AREALIGHT_EFFECT_* that the lights need.
+    pub effects: u32,
+}
+
+/// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightPackedLights {
-    /// Where the lights go, aligned to 4 bytes; null to ask for the sizes alone.
+    /// Where polygons and meshes go.
     pub lights: *mut c_void,
-    /// Where the vertices go, likewise.
+    /// Where their vertices go.
     pub vertices: *mut c_void,
-    /// In: bytes at `lights`. Out: bytes that are needed, 128 a light.
+    /// Where disks, spheres and tubes go.
+    pub shapes: *mut c_void,
+    /// In: bytes at `lights`. Out: bytes that are needed, 64 a light.
     pub lights_size: u64,
     /// In: bytes at `vertices`. Out: bytes that are needed, 16 a vertex.
     pub vertices_size: u64,
-    /// Out: how many lights are convex quads without an image. They come first, else lights are in the given order.
-    pub quad_count: u32,
-    /// Out: AREALIGHT_EFFECT_* of lights that none of these calls for.
-    pub unused: u32,
+    /// In: bytes at `shapes`. Out: bytes that are needed, 64 a light.
+    pub shapes_size: u64,
+    /// Out: for ArealightFrame.lights.
+    pub summary: ArealightLightSummary,
 }
 
 /// An image of the host, in the layout that it has when the pass runs.
@@ -357,11 +248,11 @@ pub struct ArealightBuffer {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightResources {
-    /// ArealightPackedLights.lights; without lights, any buffer of 128 bytes or more.
+    /// ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
     pub lights: ArealightBuffer,
     /// ArealightPackedLights.vertices, likewise.
     pub light_vertices: ArealightBuffer,
-    /// What arealight_pass_pack_shapes made. May be 0 in a pass without AREALIGHT_EFFECT_ELLIPSE, _SPHERE and _TUBE.
+    /// ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     pub shapes: ArealightBuffer,
     /// Positions relative to the origin in xyz, 0 in w where there is no surface (rgba32f); or depth (d32f).
     pub position: ArealightImage,
@@ -373,11 +264,11 @@ pub struct ArealightResources {
     /// AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     pub specular: ArealightImage,
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    /// describes. May be 0 without AREALIGHT_EFFECT_TEXTURED and AREALIGHT_EFFECT_TEXTURED_ELLIPSE.
+    /// describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,
     /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
     pub radiance: ArealightImage,
-    /// Where the glossy lobe's goes with AREALIGHT_IMAGES_APART: another such image. Else 0.
+    /// Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
     pub glossy: ArealightImage,
     /// What arealight_lobe_horizons wrote. Without tiles 0.
     pub lobe_horizons: ArealightBuffer,
@@ -395,17 +286,8 @@ pub struct ArealightFrame {
     pub height: u32,
     /// The camera's position relative to the origin of positions and lights.
     pub camera: [f32; 3],
-    /// How many lights of their buffer are shaded.
-    pub light_count: u32,
-    /// How many disks, spheres and tubes of theirs.
-    pub shape_count: u32,
-    /// ArealightPackedLights.quad_count: how many of the first lights are convex quads without an image. 0 is always right; what
-    /// is not counted takes longer.
-    pub quad_count: u32,
-    /// AREALIGHT_EFFECT_* that nothing of the frame calls for, which cost nothing then: ArealightPackedLights.unused, with what
-    /// the host knows of DIFFUSE, GLOSSY and SPECULAR_INPUT (no surface calls for it) and FAR (no light is 282 of its radii
-    /// from a surface). 0 is always right.
-    pub unused: u32,
+    /// ArealightPackedLights.summary of the lights in the set's buffers.
+    pub lights: ArealightLightSummary,
     /// 0
     pub reserved: u32,
     /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May

@@ -17,7 +17,7 @@ use crate::ggx::Ggx;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
 use arealight::table::{ggx_formula, share_above_surface};
-use arealight::{Fresnel, Horizon, LightTable, Lobes, PolygonLight, Quality, Surface, TextureError};
+use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality, Surface, TextureError};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -36,10 +36,10 @@ pub struct RelativeLight {
 }
 
 impl RelativeLight {
-    /// The light as seen from `position`, of one colour: see [`RelativeLight::textured`].
-    pub fn new(light: &PolygonLight, position: DVec3) -> Self {
+    /// A polygon as seen from `position`, of one colour: see [`RelativeLight::textured`].
+    pub fn new(light: &Light, position: DVec3) -> Self {
         Self {
-            vertices: light.vertices.iter().map(|v| *v - position).collect(),
+            vertices: light.shape.vertices().iter().map(|v| *v - position).collect(),
             radiance: light.radiance.as_dvec3(),
             two_sided: light.two_sided,
             image: None,
@@ -50,14 +50,10 @@ impl RelativeLight {
     ///
     /// # Errors
     /// [`TextureError`] where its texture coordinates do not map onto it.
-    pub fn textured(
-        light: &PolygonLight,
-        position: DVec3,
-        texture: Arc<Texture>,
-    ) -> Result<Self, TextureError> {
+    pub fn textured(light: &Light, position: DVec3, texture: Arc<Texture>) -> Result<Self, TextureError> {
         let mut relative = Self::new(light, position);
         if let Some(mapped) = &light.texture {
-            let mut map = mapped.map(light)?;
+            let mut map = mapped.map(&light.shape)?;
             map.corner -= position;
             relative.image = Some(ShownImage { texture, map });
         }

@@ -49,9 +49,6 @@ pub enum Error {
     /// A light cannot be used.
     #[error(transparent)]
     Light(#[from] arealight::LightError),
-    /// A shape cannot be used as a light.
-    #[error(transparent)]
-    Shape(#[from] arealight::ShapeError),
     /// A part of an image cannot become a light's texture.
     #[error("layer {layer} of the light textures: {error}")]
     TexturePart {
@@ -59,17 +56,6 @@ pub enum Error {
         layer: u32,
         /// What is wrong with it.
         error: arealight::TexturePartError,
-    },
-    /// The pass was specialised for fewer effects than a light calls for.
-    #[error(
-        "light '{light}' calls for the effects: {missing}, which this pass was made without; make the pass \
-             with them, or with Effects::all()"
-    )]
-    EffectsTooSmall {
-        /// The light.
-        light: String,
-        /// What is missing.
-        missing: arealight::Effects,
     },
 }
 

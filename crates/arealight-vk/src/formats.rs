@@ -18,11 +18,7 @@ use ash::vk::Format;
 ///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
-/// let options = ShadeOptions {
-///     effects: arealight::Effects::GLOSSY,
-///     position: PositionSource::Depth,
-///     ..ShadeOptions::all()
-/// };
+/// let options = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
 /// formats.check(options)?;
 /// # Ok::<(), arealight_vk::Error>(())
 /// ```
@@ -147,18 +143,18 @@ mod tests {
 
     #[test]
     fn formats_that_will_do_pass() {
-        RIGHT.check(ShadeOptions::all()).unwrap();
-        let depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::all() };
+        let all = ShadeOptions { surfaces: Effects::SURFACES, ..ShadeOptions::default() };
+        RIGHT.check(all).unwrap();
+        let depth = ShadeOptions { position: PositionSource::Depth, ..all };
         ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
-        let without = ShadeOptions { effects: Effects::GLOSSY, ..ShadeOptions::all() };
-        ShadeFormats { specular: Format::UNDEFINED, ..RIGHT }.check(without).unwrap();
-        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..ShadeOptions::all() };
+        ShadeFormats { specular: Format::UNDEFINED, ..RIGHT }.check(ShadeOptions::default()).unwrap();
+        let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..all };
         ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }.check(half).unwrap();
     }
 
     #[test]
     fn each_wrong_format_is_named_with_those_that_will_do() {
-        let options = ShadeOptions::all();
+        let options = ShadeOptions { surfaces: Effects::SURFACES, ..ShadeOptions::default() };
         // Rounded positions, unsigned normals, integers, three channels, and what the kernel cannot store to
         for (formats, expected) in [
             (ShadeFormats { position: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "position"),
@@ -172,9 +168,8 @@ mod tests {
         }
         let depth = ShadeOptions { position: PositionSource::Depth, ..options };
         assert_eq!(field(RIGHT, depth), "position");
-        // A layout's normals, and its third image, which is read without an effect that calls for it
-        let unreal =
-            ShadeOptions { effects: Effects::GLOSSY, g_buffer: GBufferLayout::Unreal, ..ShadeOptions::all() };
+        // A layout's normals, and its third image, which is read whatever surfaces need
+        let unreal = ShadeOptions { g_buffer: GBufferLayout::Unreal, ..ShadeOptions::default() };
         let ten_bits = ShadeFormats { normal: Format::A2B10G10R10_UNORM_PACK32, ..RIGHT };
         ten_bits.check(unreal).unwrap();
         assert_eq!(field(ten_bits, options), "normal");

@@ -119,6 +119,20 @@ impl Layouts {
         set: vk::DescriptorSet,
         resources: &[Resource],
     ) -> Result<(), Error> {
+        // SAFETY: the same contract.
+        unsafe { self.write_set_without(set, resources, &[]) }
+    }
+
+    /// As [`Layouts::write_set`], where something stands in the place of the bindings `absent`, for frames that do not read them.
+    ///
+    /// # Safety
+    /// As [`ComputePass::write_set`].
+    pub(crate) unsafe fn write_set_without(
+        &self,
+        set: vk::DescriptorSet,
+        resources: &[Resource],
+        absent: &[&'static str],
+    ) -> Result<(), Error> {
         let bindings = self.kernel.bindings;
         if resources.len() != bindings.len() {
             return Err(Error::InvalidArgument {
@@ -164,8 +178,13 @@ impl Layouts {
             .collect();
         // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
         unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
-        self.context.written_sets.write(set, self.kernel, resources);
+        self.context.written_sets.write(set, self.kernel, resources, absent);
         Ok(())
+    }
+
+    /// Checks, in debug builds, that a set has what a frame needs.
+    pub(crate) fn check_present(&self, set: vk::DescriptorSet, needed: &[&'static str]) -> Result<(), Error> {
+        self.context.written_sets.check_present(set, needed)
     }
 
     /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they serve.

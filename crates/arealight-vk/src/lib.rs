@@ -6,26 +6,23 @@
 //!
 //! ```no_run
 //! use arealight_vk::{ash::vk, Context, HostDevice, ShadeFrame, ShadePass, ShadeResources};
-//! use arealight::plan::ShadeOptions;
+//! use arealight::{plan::ShadeOptions, PackedLights};
 //!
 //! # unsafe fn frame(host: &HostDevice<'_>, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet,
-//! #     resources: &ShadeResources, lights: &[arealight::PolygonLight], camera: glam::DVec3)
+//! #     resources: &ShadeResources, lights: &[arealight::Light], camera: glam::DVec3)
 //! #     -> Result<(), arealight_vk::Error> {
 //! // Once
 //! let context = unsafe { Context::new(host) }?;
-//! let shade = unsafe { ShadePass::new(&context, ShadeOptions::all()) }?;
+//! let shade = unsafe { ShadePass::new(&context, ShadeOptions::default()) }?;
 //! // When lights change: pack them relative to an origin near the camera, and upload
-//! let packed = shade.pack_lights(lights, camera)?;
+//! let packed = PackedLights::new(lights, camera)?;
 //! // Each frame
 //! unsafe { shade.write_set(set, resources) }?;
 //! let frame = ShadeFrame {
 //!     size: [1920, 1080],
 //!     camera: glam::Vec3::ZERO,
 //!     position_from_clip: None,
-//!     light_count: packed.lights.len() as u32,
-//!     quad_count: packed.quad_count,
-//!     unused: packed.unused,
-//!     shape_count: 0,
+//!     lights: packed.summary(),
 //!     tile_lists: None,
 //! };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;

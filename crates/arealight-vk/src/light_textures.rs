@@ -190,21 +190,13 @@ impl LightTextures {
         self.size
     }
 
-    /// Checks that the layer of every light that shows an image is there, before lights are uploaded with
-    /// [`crate::ShadePass::pack_lights`]: the pass does not know what will be bound.
+    /// Checks that the layer of every textured light is there, before lights are packed and uploaded: the pass does not know what
+    /// will be bound.
     ///
     /// # Errors
     /// [`Error::Light`] names the first light whose layer is not.
-    pub fn check_lights(&self, lights: &[arealight::PolygonLight]) -> Result<(), Error> {
-        lights.iter().try_for_each(|light| light.check_texture_layer(self.layers)).map_err(Error::from)
-    }
-
-    /// As [`LightTextures::check_lights`], of lights that are no polygons.
-    ///
-    /// # Errors
-    /// [`Error::Shape`] names the first one whose layer is not there.
-    pub fn check_shapes(&self, shapes: &[arealight::ShapeLight]) -> Result<(), Error> {
-        shapes.iter().try_for_each(|shape| shape.check_texture_layer(self.layers)).map_err(Error::from)
+    pub fn check_lights(&self, lights: &[arealight::Light]) -> Result<(), Error> {
+        Ok(arealight::Light::check_texture_layers(lights, self.layers)?)
     }
 
     /// How many layers there are.

@@ -6,43 +6,42 @@ use crate::layouts::Layouts;
 use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
-use arealight::gpu::{GpuShape, ShadeConstants};
+use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Access, BindingKind, CLASSIFY, Kernel, SHADE, store_to};
-use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, ShadeVariant, TileOptions};
-use arealight::{Effects, PackedLights, PolygonLight, ShapeLight};
+use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, TileOptions};
+use arealight::{Effects, LightSummary};
 use ash::vk;
-use glam::{DVec3, Mat4, Vec3};
+use glam::{Mat4, Vec3};
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
+/// What may be missing is not read in some frames: in debug builds a frame that reads it is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
     pub table: Resource,
-    /// [`PackedLights::lights`]. With no lights, bind any buffer of 128 bytes or more.
+    /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes or more.
     pub lights: Resource,
-    /// [`PackedLights::vertices`].
+    /// [`PackedLights::vertices`](arealight::PackedLights::vertices), likewise.
     pub light_vertices: Resource,
+    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or tubes.
+    pub shapes: Option<Resource>,
+    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's layer is there. None where no
+    /// frame has textured lights.
+    pub light_textures: Option<Resource>,
     /// Positions or depth, by [`ShadeOptions::position`].
     pub position: Resource,
     /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
     pub normal: Resource,
     /// Base colour and metalness.
     pub base_color: Resource,
-    /// Dielectric reflectance, or the third image of another layout; read only where [`ShadeOptions::reads_specular`], else
-    /// any sampled image.
-    pub specular: Resource,
-    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Apart`] that of the diffuse lobe.
+    /// Dielectric reflectance, or the third image of another layout; none without [`ShadeOptions::reads_specular`].
+    pub specular: Option<Resource>,
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Separate`] that of the diffuse lobe.
     pub radiance: Resource,
-    /// Where the glossy lobe's goes with [`RadianceImages::Apart`]: another image of that format. Else it is not used.
+    /// Where the glossy lobe's goes with [`RadianceImages::Separate`]: another image of that format. Else none.
     pub glossy: Option<Resource>,
-    /// The lights' textures ([`crate::LightTextures`]); the host sees to it that every light's layer is there. Read only with
-    /// [`arealight::Effects::IMAGES`]: without it any 2D array image, the table's for instance.
-    pub light_textures: Resource,
-    /// What [`ShadePass::pack_shapes`] gave. Read only with [`arealight::Effects::SHAPES`]: without them any buffer of 64 bytes
-    /// or more.
-    pub shapes: Resource,
     /// What a pass with tiles needs; others do not use it.
     pub tiles: Option<TileResources>,
 }
@@ -57,15 +56,8 @@ pub struct ShadeFrame {
     /// The inverse of (projection × view), from clip space to positions relative to the origin. Needed with
     /// [`PositionSource::Depth`], else ignored.
     pub position_from_clip: Option<Mat4>,
-    /// How many lights of the buffer are shaded.
-    pub light_count: u32,
-    /// How many of the first lights are convex quads without an image, [`PackedLights::quad_count`]; the others take longer.
-    pub quad_count: u32,
-    /// What nothing of the frame calls for, which costs nothing then: of polygon lights [`PackedLights::unused`], and with it, of
-    /// [`Effects::SURFACES`], what the host knows that no surface does. The empty set is always right.
-    pub unused: Effects,
-    /// How many shapes of their buffer are shaded; none where the pass was made without [`arealight::Effects::SHAPES`].
-    pub shape_count: u32,
+    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers.
+    pub lights: LightSummary,
     /// With tiles, [`TileResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
     pub tile_lists: Option<Resource>,
 }
@@ -105,11 +97,10 @@ pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
     accesses.collect()
 }
 
-/// The shade kernel, specialised for a set of effects and a quality.
+/// The shade kernel, specialised for a host's surfaces and a quality, for every kind of light.
 ///
-/// Of the set, pipelines have what the lights and surfaces of a frame call for: a pass for every effect takes as long as one for just
-/// those.
-/// A pipeline is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
+/// A frame's pipeline has what its lights and the surfaces need, and nothing else.
+/// It is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 ///
 /// With tiles ([`ShadePass::with_tiles`]) a dispatch first lists the lights that contribute to each tile of 8 × 8 pixels, and tiles of quads
 /// alone run less code than others. The picture is the same but for lights that are left out, by [`TileOptions`].
@@ -214,49 +205,6 @@ impl ShadePass {
         accesses
     }
 
-    /// Packs lights for this pass, relative to `origin`; upload both arrays to the buffers of
-    /// [`ShadeResources`]. Where lights show images, [`crate::LightTextures::check_lights`] says whether their layers are
-    /// there.
-    ///
-    /// # Errors
-    /// [`Error::Light`] for a light that cannot be shaded, [`Error::EffectsTooSmall`] for one that calls for
-    /// an effect this pass was made without: a wrong picture is never the answer.
-    pub fn pack_lights(&self, lights: &[PolygonLight], origin: DVec3) -> Result<PackedLights, Error> {
-        self.check_lights(lights)?;
-        Ok(PackedLights::new(lights, origin)?)
-    }
-
-    /// Checks that the pass was made with every effect that `lights` call for.
-    ///
-    /// # Errors
-    /// [`Error::EffectsTooSmall`] names the first light that calls for more.
-    pub fn check_lights(&self, lights: &[PolygonLight]) -> Result<(), Error> {
-        match self.options.effects.missing_for(lights) {
-            Some((missing, light)) => Err(Error::EffectsTooSmall { light: light.to_owned(), missing }),
-            None => Ok(()),
-        }
-    }
-
-    /// Packs disks, spheres and tubes for this pass, relative to `origin`; upload them to [`ShadeResources::shapes`].
-    ///
-    /// # Errors
-    /// [`Error::Shape`] for one that cannot be shaded, [`Error::EffectsTooSmall`] as [`ShadePass::pack_lights`].
-    pub fn pack_shapes(&self, shapes: &[ShapeLight], origin: DVec3) -> Result<Vec<GpuShape>, Error> {
-        self.check_shapes(shapes)?;
-        Ok(shapes.iter().map(|shape| shape.pack(origin)).collect::<Result<_, _>>()?)
-    }
-
-    /// Checks that the pass was made with every effect that `shapes` call for.
-    ///
-    /// # Errors
-    /// [`Error::EffectsTooSmall`] names the first shape that calls for more.
-    pub fn check_shapes(&self, shapes: &[ShapeLight]) -> Result<(), Error> {
-        match self.options.effects.missing_for_shapes(shapes) {
-            Some((missing, light)) => Err(Error::EffectsTooSmall { light: light.to_owned(), missing }),
-            None => Ok(()),
-        }
-    }
-
     /// Points a descriptor set at the resources of a run.
     ///
     /// # Safety
@@ -265,13 +213,21 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
-        let resources = self.in_order(resources)?;
+        let (resources, absent) = self.in_order(resources)?;
         // SAFETY: the same contract.
-        unsafe { self.pipelines.layouts().write_set(set, &resources) }
+        unsafe { self.pipelines.layouts().write_set_without(set, &resources, &absent) }
     }
 
-    /// The resources as the kernel's bindings have them.
-    fn in_order(&self, resources: &ShadeResources) -> Result<Vec<Resource>, Error> {
+    /// The resources as the kernel's bindings have them, and the bindings of those that are missing: something stands there in their place.
+    fn in_order(&self, resources: &ShadeResources) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
+        if resources.specular.is_none() && self.options.reads_specular() {
+            let message = "is missing, but the pass reads it: see ShadeOptions::reads_specular".into();
+            return Err(Error::InvalidArgument { field: "specular", message });
+        }
+        let textures_place = match resources.table {
+            Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
+            other => other,
+        };
         let mut all = vec![
             resources.table,
             resources.lights,
@@ -279,10 +235,10 @@ impl ShadePass {
             resources.position,
             resources.normal,
             resources.base_color,
-            resources.specular,
+            resources.specular.unwrap_or(resources.base_color),
             resources.radiance,
-            resources.light_textures,
-            resources.shapes,
+            resources.light_textures.unwrap_or(textures_place),
+            resources.shapes.unwrap_or(resources.lights),
             self.glossy_image(resources)?,
         ];
         if self.tiles.is_some() {
@@ -292,7 +248,10 @@ impl ShadePass {
             };
             all.extend([tiles.tile_lists, tiles.lobe_horizons]);
         }
-        Ok(all)
+        let absent =
+            [(LIGHT_TEXTURES, resources.light_textures.is_none()), (SHAPES, resources.shapes.is_none())];
+        let absent = absent.into_iter().filter_map(|(name, is_absent)| is_absent.then_some(name)).collect();
+        Ok((all, absent))
     }
 
     /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That takes a moment,
@@ -301,10 +260,10 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
-        let (constants, variant) = self.checked(frame)?;
-        match self.tiled(frame, &constants, variant)? {
+        let constants = self.constants(frame)?;
+        match self.tiled(frame, &constants)? {
             Some((tiles, frame)) => tiles.prepare(self.options, &frame),
-            None => self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |_| ()),
+            None => self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |_| ()),
         }
     }
 
@@ -312,14 +271,14 @@ impl ShadePass {
     fn glossy_image(&self, resources: &ShadeResources) -> Result<Resource, Error> {
         let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
         match (self.options.images, resources.glossy) {
-            (RadianceImages::One, _) => Ok(resources.radiance),
-            (RadianceImages::Apart, None) => {
+            (RadianceImages::Combined, _) => Ok(resources.radiance),
+            (RadianceImages::Separate, None) => {
                 Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
             }
-            (RadianceImages::Apart, Some(glossy)) if glossy.view() == resources.radiance.view() => {
+            (RadianceImages::Separate, Some(glossy)) if glossy.view() == resources.radiance.view() => {
                 Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
             }
-            (RadianceImages::Apart, Some(glossy)) => Ok(glossy),
+            (RadianceImages::Separate, Some(glossy)) => Ok(glossy),
         }
     }
 
@@ -328,21 +287,22 @@ impl ShadePass {
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
     /// - `set` was written by [`ShadePass::write_set`], with images of `frame.size` and buffers that hold
-    ///   `frame.light_count` lights and `frame.shape_count` shapes; with tiles, with `frame.tile_lists`, a buffer of
+    ///   the lights that `frame.lights` is of; with tiles, with `frame.tile_lists`, a buffer of
     ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong; [`Error::Vulkan`] where a pipeline cannot be made. Then
-    /// nothing is recorded.
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource that its lights need and the set was
+    /// written without; [`Error::Vulkan`] where a pipeline cannot be made. Then nothing is recorded.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
         set: vk::DescriptorSet,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
-        let (constants, variant) = self.checked(frame)?;
+        let constants = self.constants(frame)?;
+        self.pipelines.layouts().check_present(set, &needed(frame.lights))?;
         let names = &self.pipelines.layouts().context().names;
-        if let Some((tiles, frame)) = self.tiled(frame, &constants, variant)? {
+        if let Some((tiles, frame)) = self.tiled(frame, &constants)? {
             // SAFETY: the same contract.
             return unsafe {
                 let _label = names.label(command_buffer, c"arealight tiles");
@@ -351,7 +311,7 @@ impl ShadePass {
         }
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
         self.pipelines.check(set, bytemuck::bytes_of(&constants), groups)?;
-        self.pipelines.with(plan::shade_variant_specialization(self.options, variant), |pass| {
+        self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |pass| {
             // SAFETY: the same contract.
             unsafe {
                 let _label = names.label(command_buffer, c"arealight shade");
@@ -365,17 +325,10 @@ impl ShadePass {
         &self,
         frame: &ShadeFrame,
         constants: &ShadeConstants,
-        variant: ShadeVariant,
     ) -> Result<Option<(&Tiles, TiledFrame)>, Error> {
         let Some(tiles) = &self.tiles else { return Ok(None) };
-        let frame = tiles.checked(frame.size, frame.tile_lists, (constants, variant))?;
+        let frame = tiles.checked(frame, constants)?;
         Ok(frame.map(|frame| (tiles, frame)))
-    }
-
-    /// The push constants of a frame, and what its lights need.
-    fn checked(&self, frame: &ShadeFrame) -> Result<(ShadeConstants, ShadeVariant), Error> {
-        let constants = self.constants(frame)?;
-        Ok((constants, ShadeVariant::new(self.options.effects, frame.unused, &constants)))
     }
 
     /// The push constants of a frame.
@@ -393,28 +346,46 @@ impl ShadePass {
             let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
             return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
         }
-        if frame.shape_count > 0 && !self.options.effects.intersects(Effects::SHAPES) {
-            return Err(Error::InvalidArgument {
-                field: "shape_count",
-                message: format!(
-                    "is {}, but the pass was made without an effect of Effects::SHAPES and would shade none",
-                    frame.shape_count
-                ),
-            });
-        }
-        if frame.quad_count > frame.light_count {
-            let message = format!("{} of {} lights", frame.quad_count, frame.light_count);
-            return Err(Error::InvalidArgument { field: "quad_count", message });
-        }
+        check_lights(frame.lights)?;
         if frame.size.contains(&0) {
             return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
         }
         Ok(ShadeConstants {
             position_from_clip: position_from_clip.to_cols_array_2d(),
             camera: frame.camera.to_array(),
-            light_count: frame.light_count,
-            shape_count: frame.shape_count,
-            quad_count: frame.quad_count,
+            light_count: frame.lights.light_count,
+            shape_count: frame.lights.shape_count,
+            quad_count: frame.lights.quad_count,
         })
     }
+}
+
+/// The names of bindings that may have nothing, in the manifest.
+const LIGHT_TEXTURES: &str = "light_textures";
+const SHAPES: &str = "shapes";
+
+/// The bindings that lights need, of those that may have nothing.
+fn needed(lights: LightSummary) -> Vec<&'static str> {
+    let images = lights.effects.intersects(Effects::IMAGES).then_some(LIGHT_TEXTURES);
+    let shapes = (lights.shape_count > 0).then_some(SHAPES);
+    images.into_iter().chain(shapes).collect()
+}
+
+/// Refuses what is no summary of packed lights.
+fn check_lights(lights: LightSummary) -> Result<(), Error> {
+    let wrong = |message: String| Err(Error::InvalidArgument { field: "lights", message });
+    let LightSummary { light_count, quad_count, shape_count, effects } = lights;
+    if quad_count > light_count {
+        return wrong(format!("has {quad_count} quads of {light_count} lights"));
+    }
+    let beyond_quads = Effects::POLYGON | Effects::TEXTURED | Effects::MESH;
+    for (count, effects_of, kind) in [
+        (light_count - quad_count, beyond_quads, "lights beyond quads"),
+        (shape_count, Effects::SHAPES, "shapes"),
+    ] {
+        if count > 0 && !effects.intersects(effects_of) {
+            return wrong(format!("has {count} {kind}, but none of the effects: {effects_of}"));
+        }
+    }
+    Ok(())
 }

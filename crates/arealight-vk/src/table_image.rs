@@ -218,12 +218,6 @@ impl TableImage {
     pub fn resource(&self) -> Resource {
         Resource::SampledImage { view: self.view, layout: Self::LAYOUT }
     }
-
-    /// The table in place of light textures, for a pass that is made without [`arealight::Effects::IMAGES`] and
-    /// does not read them.
-    pub fn in_place_of_textures(&self) -> Resource {
-        Resource::FilteredImage { view: self.view, layout: Self::LAYOUT }
-    }
 }
 
 impl Drop for TableImage {

@@ -5,10 +5,11 @@ use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::pass::Resource;
 use crate::pipelines::Pipelines;
-use arealight::Effects;
+use crate::shade::ShadeFrame;
+use arealight::LightSummary;
 use arealight::gpu::{GpuTileClass, ShadeConstants, TileConstants};
 use arealight::kernels::{CLASSIFY, SHADE_TILES};
-use arealight::plan::{self, ShadeOptions, ShadeVariant, TileOptions};
+use arealight::plan::{self, ShadeOptions, TileOptions};
 use arealight::tiles::{self, TileClass, tile_counts};
 use ash::vk;
 use std::sync::Arc;
@@ -43,7 +44,7 @@ pub(crate) struct Tiles {
 /// A frame, checked.
 pub(crate) struct TiledFrame {
     constants: TileConstants,
-    variant: ShadeVariant,
+    lights: LightSummary,
     /// The buffer of the tile lists, and where in it they begin.
     lists: (vk::Buffer, vk::DeviceSize),
 }
@@ -105,49 +106,46 @@ impl Tiles {
     /// A frame with tiles; none where it has too few lights to be classified.
     pub(crate) fn checked(
         &self,
-        size: [u32; 2],
-        lists: Option<Resource>,
-        (constants, variant): (&ShadeConstants, ShadeVariant),
+        frame: &ShadeFrame,
+        constants: &ShadeConstants,
     ) -> Result<Option<TiledFrame>, Error> {
         let wrong = |message: &str| Error::InvalidArgument { field: "tile_lists", message: message.into() };
-        let lists = match lists {
+        let lists = match frame.tile_lists {
             None => return Err(wrong("is missing, but the pass was made with tiles")),
             Some(Resource::StorageBuffer { buffer, offset, .. }) if buffer != vk::Buffer::null() => {
                 (buffer, offset)
             }
             Some(_) => return Err(wrong("is no buffer")),
         };
-        if !self.options.classifies(constants) {
+        if !self.options.classifies(frame.lights) {
             return Ok(None);
         }
         let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count } = constants;
-        // Where the pass has nothing beyond quads, all lights are
-        let has_others = variant.effects.intersects(Effects::BEYOND_QUADS);
         let constants = TileConstants {
             position_from_clip,
             camera,
             light_count,
-            size,
+            size: frame.size,
             capacity: self.options.capacity,
             horizon_cells: self.horizon_cells,
             shape_count,
-            quad_count: if has_others { quad_count } else { light_count },
+            quad_count,
             cull_threshold: self.options.cull_threshold,
         };
-        Ok(Some(TiledFrame { constants, variant, lists }))
+        Ok(Some(TiledFrame { constants, lights: frame.lights, lists }))
     }
 
     /// Makes the pipelines of a frame that are not made yet.
     pub(crate) fn prepare(&self, options: ShadeOptions, frame: &TiledFrame) -> Result<(), Error> {
         self.classify.with(self.classify_constants(options, frame), |_| ())?;
         for class in dispatched(options, frame) {
-            self.shade.with(plan::shade_tiles_specialization(options, frame.variant, class), |_| ())?;
+            self.shade.with(plan::shade_tiles_specialization(options, frame.lights, class), |_| ())?;
         }
         Ok(())
     }
 
     fn classify_constants(&self, options: ShadeOptions, frame: &TiledFrame) -> Vec<(u32, u32)> {
-        plan::classify_specialization(options, frame.variant, self.options)
+        plan::classify_specialization(options, frame.lights, self.options)
     }
 
     /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the barriers between.
@@ -191,7 +189,7 @@ impl Tiles {
             );
             for class in dispatched(options, frame) {
                 let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;
-                let specialization = plan::shade_tiles_specialization(options, frame.variant, class);
+                let specialization = plan::shade_tiles_specialization(options, frame.lights, class);
                 self.shade.with(specialization, |pass| {
                     pass.record_indirect(command_buffer, set, bytes, (buffer, place));
                 })?;
@@ -232,6 +230,6 @@ impl Tiles {
 
 /// The classes whose tiles have pixels to write.
 fn dispatched(options: ShadeOptions, frame: &TiledFrame) -> impl Iterator<Item = TileClass> {
-    let variant = frame.variant;
-    TileClass::ALL.into_iter().filter(move |class| class.is_dispatched(variant, options.output))
+    let lights = frame.lights;
+    TileClass::ALL.into_iter().filter(move |class| class.is_dispatched(lights, options.output))
 }

@@ -1,5 +1,5 @@
-//! What descriptor sets point at, kept in debug builds: a set that points at a destroyed image of ours is an error that
-//! names it. A release build keeps nothing.
+//! What descriptor sets point at, kept in debug builds: a set that points at a destroyed image of ours, or at nothing where a frame
+//! reads, is an error that names it. A release build keeps nothing.
 
 use crate::error::Error;
 use crate::pass::Resource;
@@ -42,17 +42,25 @@ struct Written {
     views: Vec<(vk::ImageView, &'static str)>,
     /// The first binding whose image was destroyed since.
     destroyed: Option<&'static str>,
+    /// The bindings that it was written without.
+    absent: Vec<&'static str>,
 }
 
 impl WrittenSets {
-    /// Notes that `set` points at `resources` now.
-    pub(crate) fn write(&self, set: vk::DescriptorSet, kernel: &Kernel, resources: &[Resource]) {
+    /// Notes that `set` points at `resources` now, and at nothing of the host's for the bindings `absent`.
+    pub(crate) fn write(
+        &self,
+        set: vk::DescriptorSet,
+        kernel: &Kernel,
+        resources: &[Resource],
+        absent: &[&'static str],
+    ) {
         if !cfg!(debug_assertions) {
             return;
         }
         let views = kernel.bindings.iter().zip(resources);
         let views = views.filter_map(|(binding, resource)| Some((resource.view()?, binding.name))).collect();
-        self.lock().keep(set, Written { views, destroyed: None });
+        self.lock().keep(set, Written { views, destroyed: None, absent: absent.to_vec() });
     }
 
     /// Notes that a view of ours is destroyed. The driver may give its handle to another then, so that the sets are
@@ -74,6 +82,23 @@ impl WrittenSets {
         }
         match self.lock().written.get(&set).and_then(|written| written.destroyed) {
             Some(field) => Err(Error::Destroyed { field }),
+            None => Ok(()),
+        }
+    }
+
+    /// Checks that a set was written with what is needed.
+    pub(crate) fn check_present(&self, set: vk::DescriptorSet, needed: &[&'static str]) -> Result<(), Error> {
+        if !cfg!(debug_assertions) {
+            return Ok(());
+        }
+        let sets = self.lock();
+        let Some(written) = sets.written.get(&set) else { return Ok(()) };
+        match needed.iter().find(|binding| written.absent.contains(binding)) {
+            Some(field) => {
+                let message =
+                    "is missing: the frame's lights need it, but the set was written without".into();
+                Err(Error::InvalidArgument { field, message })
+            }
             None => Ok(()),
         }
     }
@@ -101,9 +126,9 @@ mod tests {
     fn no_more_sets_are_kept_than_a_host_has_in_flight() {
         let sets = WrittenSets::default();
         for number in 1..=MOST as u64 + 10 {
-            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5));
+            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5), &[]);
             // One that is written again stands where it stood
-            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5));
+            sets.write(vk::DescriptorSet::from_raw(number), &TEXTURE_BLUR, &written(5), &[]);
         }
         let kept = if cfg!(debug_assertions) { MOST } else { 0 };
         let counts = {
@@ -122,7 +147,7 @@ mod tests {
     fn a_set_is_refused_from_the_image_s_end_until_it_is_written_again() {
         let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
         assert_eq!(sets.check(set), Ok(()));
-        sets.write(set, &TEXTURE_BLUR, &written(5));
+        sets.write(set, &TEXTURE_BLUR, &written(5), &[]);
         sets.destroy(vk::ImageView::from_raw(6));
         assert_eq!(sets.check(set), Ok(()));
         sets.destroy(vk::ImageView::from_raw(5));
@@ -130,7 +155,21 @@ mod tests {
             if cfg!(debug_assertions) { Err(Error::Destroyed { field: "finer_level" }) } else { Ok(()) };
         assert_eq!(sets.check(set), expected);
         // The driver gives the handle to a new view
-        sets.write(set, &TEXTURE_BLUR, &written(5));
+        sets.write(set, &TEXTURE_BLUR, &written(5), &[]);
         assert_eq!(sets.check(set), Ok(()));
+    }
+
+    #[test]
+    fn a_set_is_refused_by_frames_that_need_what_it_was_written_without() {
+        let (sets, set) = (WrittenSets::default(), vk::DescriptorSet::from_raw(1));
+        assert_eq!(sets.check_present(set, &["shapes"]), Ok(()), "nobody knows of it");
+        sets.write(set, &TEXTURE_BLUR, &written(5), &["shapes"]);
+        assert_eq!(sets.check_present(set, &["light_textures"]), Ok(()));
+        let refused = sets.check_present(set, &["light_textures", "shapes"]);
+        let is_named = matches!(refused, Err(Error::InvalidArgument { field: "shapes", .. }));
+        assert_eq!(is_named, cfg!(debug_assertions), "{refused:?}");
+        // The twin: written with them
+        sets.write(set, &TEXTURE_BLUR, &written(5), &[]);
+        assert_eq!(sets.check_present(set, &["light_textures", "shapes"]), Ok(()));
     }
 }

@@ -32,42 +32,50 @@ pub struct GpuLight {
 impl GpuLight {
     /// The back emits too.
     pub const TWO_SIDED: u32 = 1;
-    /// [`PolygonLight::is_flat`](crate::PolygonLight::is_flat).
+    /// [`LightShape::is_flat`](crate::LightShape::is_flat).
     pub const FLAT: u32 = 2;
-    /// It has several faces ([`PolygonLight::is_mesh`](crate::PolygonLight::is_mesh)).
+    /// It has several faces ([`LightShape::is_mesh`](crate::LightShape::is_mesh)).
     pub const MESH: u32 = 4;
-    /// It is convex and has at most four vertices ([`PolygonLight::is_convex_quad`](crate::PolygonLight::is_convex_quad)).
+    /// It is convex and has at most four vertices ([`LightShape::is_convex_quad`](crate::LightShape::is_convex_quad)).
     pub const QUAD: u32 = 8;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
 }
 
-/// A disk, sphere or tube as a light, packed by [`crate::ShapeLight::pack`]: `ArealightGpuShape` in
+/// A disk, sphere or tube as a light: `ArealightGpuShape` in
 /// `shaders/kernels/light_records.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuShape {
     /// Radiance of the front or outside, W/(m² sr).
     pub radiance: [f32; 3],
-    /// [`crate::ShapeKind`], but not `Any`.
+    /// [`GpuShape::DISK`], [`GpuShape::SPHERE`] or [`GpuShape::TUBE`].
     pub kind: u32,
     /// The middle, relative to the origin.
     pub center: [f32; 3],
-    /// Of a sphere or tube; of an ellipse the longer half axis, or a little more.
+    /// Of a sphere or tube; of a disk the longer half axis, or a little more.
     pub radius: f32,
-    /// A half axis of an ellipse; of a tube, from the center to one end. Else zero.
+    /// A half axis of a disk; of a tube, from the center to one end. Else zero.
     pub axis_u: [f32; 3],
-    /// Of a tube [`crate::TubeEnds`]; of an ellipse the layer of the image that it shows, or [`GpuLight::NO_TEXTURE`]; else zero.
+    /// Of a tube [`crate::TubeEnds`]; of a disk the layer of its texture, or [`GpuLight::NO_TEXTURE`]; else zero.
     pub detail: u32,
-    /// The other half axis of an ellipse, else zero.
+    /// The other half axis of a disk, else zero.
     pub axis_v: [f32; 3],
     /// [`GpuShape::TWO_SIDED`] or zero.
     pub flags: u32,
 }
 
 impl GpuShape {
-    /// The back of an ellipse, or the inside of a sphere, emits too.
+    /// The back of a disk, or the inside of a sphere, emits too.
     pub const TWO_SIDED: u32 = 1;
+    /// A kind: [`LightShape::Disk`](crate::LightShape::Disk).
+    pub const DISK: u32 = 0;
+    /// A kind: [`LightShape::Sphere`](crate::LightShape::Sphere).
+    pub const SPHERE: u32 = 1;
+    /// A kind: [`LightShape::Tube`](crate::LightShape::Tube).
+    pub const TUBE: u32 = 2;
+    /// No record's kind; as a specialisation constant, each shape is what its record says: for lists of several kinds.
+    pub const ANY: u32 = 3;
 }
 
 /// Push constants of the shade kernel.
@@ -83,7 +91,7 @@ pub struct ShadeConstants {
     pub light_count: u32,
     /// How many shapes are shaded.
     pub shape_count: u32,
-    /// How many of the first polygon lights are convex quads without an image, see [`crate::PackedLights::quad_count`].
+    /// How many of the first polygon lights are convex quads without a texture, see [`crate::LightSummary::quad_count`].
     pub quad_count: u32,
 }
 

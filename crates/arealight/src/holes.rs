@@ -4,7 +4,9 @@
 //! the two edges of a bridge add to a sum over edges cancels but for rounding, wherever it is cut: so all that takes any
 //! outline takes this one, and the light is one record with one radiance.
 
-use crate::light::{FLAT, LightError, PolygonLight};
+use crate::light::LightFault;
+use crate::light_shape::FLAT;
+use crate::{Light, LightShape};
 use glam::{DVec2, DVec3};
 
 /// Why a hole cannot be cut.
@@ -45,48 +47,48 @@ pub enum HoleError {
     /// It has no area, or the polygon has none.
     #[error("no area: of the hole, or of the polygon it is in")]
     NoArea,
-    /// The light is a mesh.
-    #[error("the light has several faces: cut holes into a face before it is added")]
-    Mesh,
+    /// The light is a mesh, disk, sphere or tube.
+    #[error("only polygons have holes: cut them into a face before it is added")]
+    NoPolygon,
     /// There is no way to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
     #[error("no straight way to the outline: vertices lie too near to each other")]
     NoBridge,
 }
 
-impl PolygonLight {
-    /// Cuts holes into the light, each an outline of its own, in either direction. The light's vertices become one outline
+impl Light {
+    /// Cuts holes into a polygon, each an outline of its own, in either direction. The light's vertices become one outline
     /// that goes around all of them; its area and center are those of what is left, and its image stays where it is. A light has as many vertices more as the holes
     /// have, and two for each hole.
     ///
     /// ```
-    /// # use arealight::PolygonLight;
+    /// # use arealight::{Light, LightShape};
     /// # use glam::DVec3;
     /// let square = |size: f64| vec![DVec3::ZERO, DVec3::X * size, DVec3::new(size, size, 0.0), DVec3::Y * size];
     /// let hole = square(1.0).into_iter().map(|vertex| vertex + DVec3::new(1.0, 1.0, 0.0)).collect();
-    /// let mut frame = PolygonLight { vertices: square(3.0), ..PolygonLight::default() };
+    /// let mut frame = Light { shape: LightShape::Polygon(square(3.0)), ..Light::default() };
     /// frame.cut_holes(&[hole])?;
-    /// assert_eq!((frame.vertices.len(), frame.area_vector()), (10, DVec3::Z * 8.0));
-    /// # Ok::<(), arealight::LightError>(())
+    /// assert_eq!((frame.shape.vertices().len(), frame.shape.area_vector()), (10, DVec3::Z * 8.0));
+    /// # Ok::<(), arealight::LightFault>(())
     /// ```
     ///
     /// # Errors
-    /// What [`PolygonLight::validate`] refuses, and [`LightError::BadHole`], which names the hole; then the light is as it was.
-    pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightError> {
+    /// What [`Light::validate`] refuses, and [`LightFault::BadHole`], which names the hole; then the light is as it was.
+    pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightFault> {
         self.validate()?;
-        if self.is_mesh() && !holes.is_empty() {
-            return Err(LightError::BadHole { light: self.name.clone(), hole: 0, reason: HoleError::Mesh });
+        if holes.is_empty() {
+            return Ok(());
         }
-        let map = self.texture.as_ref().and_then(|texture| texture.map(self).ok());
-        let bad = |(hole, reason)| LightError::BadHole { light: self.name.clone(), hole, reason };
-        self.vertices = with_holes(self, holes).map_err(bad)?;
+        let bad = |(hole, reason)| LightFault::BadHole { hole, reason };
+        if !self.shape.is_polygonal() || self.shape.is_mesh() {
+            return Err(bad((0, HoleError::NoPolygon)));
+        }
+        let map = self.texture.as_ref().and_then(|texture| texture.map(&self.shape).ok());
+        let outline = with_holes(&self.shape, holes).map_err(bad)?;
         // The holes' vertices are where the image is
         if let (Some(texture), Some(map)) = (&mut self.texture, map) {
-            texture.uvs = self.vertices.iter().map(|vertex| map.coordinate(*vertex)).collect();
+            texture.uvs = outline.iter().map(|vertex| map.coordinate(*vertex)).collect();
         }
-        // One outline, if it was said to be one face
-        if !holes.is_empty() {
-            self.faces.clear();
-        }
+        self.shape = LightShape::Polygon(outline);
         Ok(())
     }
 }
@@ -99,19 +101,18 @@ struct Vertex {
 }
 
 /// The vertices of one outline around a polygon and its holes; else the hole that cannot be cut.
-fn with_holes(light: &PolygonLight, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, (usize, HoleError)> {
+fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, (usize, HoleError)> {
     // Project onto the plane, so that the front is counter-clockwise
-    let Some(normal) = light.area_vector().try_normalize() else {
-        return if holes.is_empty() { Ok(light.vertices.clone()) } else { Err((0, HoleError::NoArea)) };
-    };
+    let normal = polygon.area_vector().try_normalize().ok_or((0, HoleError::NoArea))?;
+    let vertices = polygon.vertices();
     let (tangent, bitangent) = normal.any_orthonormal_pair();
-    let anchor = light.vertices[0];
+    let anchor = vertices[0];
     let flatten = |space: &DVec3| {
         let offset = *space - anchor;
         Vertex { space: *space, flat: DVec2::new(offset.dot(tangent), offset.dot(bitangent)) }
     };
-    let mut outline: Vec<Vertex> = light.vertices.iter().map(flatten).collect();
-    let size = light.vertices.iter().map(|vertex| vertex.distance(anchor)).fold(0.0, f64::max);
+    let mut outline: Vec<Vertex> = vertices.iter().map(flatten).collect();
+    let size = vertices.iter().map(|vertex| vertex.distance(anchor)).fold(0.0, f64::max);
     let mut loops = Vec::new();
     for (number, hole) in holes.iter().enumerate() {
         check_vertices(hole, |vertex| (vertex - anchor).dot(normal), size)
@@ -251,17 +252,25 @@ mod tests {
         (0..count).map(vertex).collect()
     }
 
-    fn disk() -> PolygonLight {
-        PolygonLight { name: "disk".into(), vertices: regular([0.0; 2], 4.0, 24), ..PolygonLight::default() }
+    fn polygon(vertices: Vec<DVec3>) -> Light {
+        Light { shape: LightShape::Polygon(vertices), ..Light::default() }
+    }
+
+    fn disk() -> Light {
+        polygon(regular([0.0; 2], 4.0, 24))
     }
 
     /// That triangles with the corners of a light cover its area once.
-    fn assert_covered(light: &PolygonLight, area: f64) {
-        assert!((light.area_vector() - DVec3::Z * area).length() < 1e-12, "{}", light.area_vector());
+    fn assert_covered(light: &Light, area: f64) {
+        assert!(
+            (light.shape.area_vector() - DVec3::Z * area).length() < 1e-12,
+            "{}",
+            light.shape.area_vector()
+        );
         let mut triangles: Vec<usize> = Vec::new();
-        earcut::Earcut::new().earcut(light.vertices.iter().map(|v| [v.x, v.y]), &[], &mut triangles);
+        earcut::Earcut::new().earcut(light.shape.vertices().iter().map(|v| [v.x, v.y]), &[], &mut triangles);
         let areas = triangles.chunks_exact(3).map(|triangle| {
-            let [a, b, c] = [0, 1, 2].map(|i| light.vertices[triangle[i]]);
+            let [a, b, c] = [0, 1, 2].map(|i| light.shape.vertices()[triangle[i]]);
             (b - a).cross(c - a).z.abs() * 0.5
         });
         let sum: f64 = areas.sum();
@@ -269,7 +278,7 @@ mod tests {
     }
 
     fn area(outline: &[DVec3]) -> f64 {
-        PolygonLight { vertices: outline.to_vec(), ..PolygonLight::default() }.area_vector().z.abs()
+        LightShape::Polygon(outline.to_vec()).area_vector().z.abs()
     }
 
     #[test]
@@ -279,11 +288,15 @@ mod tests {
         for hole in [hole, reversed] {
             let mut ring = disk();
             ring.cut_holes(std::slice::from_ref(&hole)).unwrap();
-            assert_eq!(ring.vertices.len(), 24 + 24 + 2);
-            assert_covered(&ring, area(&disk().vertices) - area(&hole));
+            assert_eq!(ring.shape.vertices().len(), 24 + 24 + 2);
+            assert_covered(&ring, area(disk().shape.vertices()) - area(&hole));
             // What is left lies to the left
-            assert!(ring.center().x < -0.1 && ring.center().y.abs() < 1e-12, "{}", ring.center());
-            assert!(!ring.is_convex_quad());
+            assert!(
+                ring.shape.center().x < -0.1 && ring.shape.center().y.abs() < 1e-12,
+                "{}",
+                ring.shape.center()
+            );
+            assert!(!ring.shape.is_convex_quad());
         }
     }
 
@@ -291,22 +304,22 @@ mod tests {
     fn an_image_stays_where_it_is() {
         let mut ring = disk();
         let place = |vertex: &DVec3| DVec2::new(vertex.x, vertex.y) / 8.0 + 0.5;
-        let uvs = ring.vertices.iter().map(place).collect();
+        let uvs = ring.shape.vertices().iter().map(place).collect();
         ring.texture = Some(crate::LightTexture { layer: 0, uvs });
         let mut stale = ring.clone();
-        let before = ring.texture.as_ref().unwrap().map(&ring).unwrap();
+        let before = ring.texture.as_ref().unwrap().map(&ring.shape).unwrap();
         let hole = regular([0.5, 0.0], 3.0, 24);
         ring.cut_holes(std::slice::from_ref(&hole)).unwrap();
         ring.validate().unwrap();
         let texture = ring.texture.as_ref().unwrap();
         let off = |(uv, vertex): (&DVec2, &DVec3)| uv.distance(place(vertex));
-        assert!(texture.uvs.iter().zip(&ring.vertices).map(off).fold(0.0, f64::max) < 1e-12);
-        let after = texture.map(&ring).unwrap();
+        assert!(texture.uvs.iter().zip(ring.shape.vertices()).map(off).fold(0.0, f64::max) < 1e-12);
+        let after = texture.map(&ring.shape).unwrap();
         assert!(
             (after.corner - before.corner).length() < 1e-9 && (after.axis_u - before.axis_u).length() < 1e-9
         );
         // The twin: a light whose coordinates stay as they were is refused
-        stale.vertices.clone_from(&ring.vertices);
+        stale.shape.clone_from(&ring.shape);
         assert!(stale.validate().is_err());
     }
 
@@ -316,12 +329,12 @@ mod tests {
         let holes: Vec<_> = places.map(|center| regular(center, 0.45, 7)).collect();
         let mut sieve = disk();
         sieve.cut_holes(&holes).unwrap();
-        assert_eq!(sieve.vertices.len(), 24 + 25 * (7 + 2));
-        assert_covered(&sieve, area(&disk().vertices) - 25.0 * area(&holes[0]));
+        assert_eq!(sieve.shape.vertices().len(), 24 + 25 * (7 + 2));
+        assert_covered(&sieve, area(disk().shape.vertices()) - 25.0 * area(&holes[0]));
         // The twin: one hole less
         sieve = disk();
         sieve.cut_holes(&holes[1..]).unwrap();
-        assert!(sieve.area_vector().z > area(&disk().vertices) - 24.5 * area(&holes[0]));
+        assert!(sieve.shape.area_vector().z > area(disk().shape.vertices()) - 24.5 * area(&holes[0]));
     }
 
     #[test]
@@ -341,8 +354,8 @@ mod tests {
             );
         }
         comb.push(DVec3::new(0.0, -1.0, 0.0));
-        let mut light = PolygonLight { vertices: comb, ..PolygonLight::default() };
-        let whole = light.area_vector().z;
+        let mut light = polygon(comb);
+        let whole = light.shape.area_vector().z;
         light.cut_holes(&holes).unwrap();
         assert_covered(&light, whole - 5.0 * area(&holes[0]));
     }
@@ -354,7 +367,7 @@ mod tests {
             let error = light.cut_holes(holes).unwrap_err();
             assert_eq!(light, disk(), "as it was");
             match error {
-                LightError::BadHole { hole, reason, .. } => (hole, reason),
+                LightFault::BadHole { hole, reason } => (hole, reason),
                 other => panic!("{other}"),
             }
         };
@@ -381,6 +394,6 @@ mod tests {
         let line = [0.0, 1.0, 0.5].map(|x| DVec3::new(x, 0.0, 2.0)).to_vec();
         assert_eq!(refused(&[line]), (0, HoleError::NoArea));
         let message = disk().cut_holes(&[good[..2].to_vec()]).unwrap_err().to_string();
-        assert_eq!(message, "light 'disk': holes[0]: 2 vertices given, a hole has at least 3");
+        assert_eq!(message, "holes[0]: 2 vertices given, a hole has at least 3");
     }
 }

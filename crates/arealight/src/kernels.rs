@@ -149,14 +149,14 @@ const RADIANCE: Binding = write(
     "radiance_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Apart; 1 in a where there is a \
+    "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Separate; 1 in a where there is a \
      surface (rgba32f, or by RadianceFormat)",
 );
 const GLOSSY: Binding = write(
     "glossy_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "the glossy lobe's, likewise; used only with RadianceImages::Apart, else bind radiance_image's again",
+    "the glossy lobe's, likewise; used only with RadianceImages::Separate, else bind radiance_image's again",
 );
 
 /// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].

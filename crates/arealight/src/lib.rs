@@ -17,15 +17,16 @@
 //! # The rooms
 //! | module | holds |
 //! |---|---|
-//! | [`light`] | polygon lights and how they are packed for the GPU |
-//! | [`holes`] | polygon lights with holes |
+//! | [`light`] | lights, of which a host has one list |
+//! | [`light_shape`] | what shines: polygons, meshes, disks, spheres, tubes |
+//! | [`holes`] | polygons with holes |
 //! | [`mesh`] | several flat faces that are one light |
-//! | [`shape`] | disks, spheres, cylinders and capsules as lights |
-//! | [`light_texture`] | what a light shows |
+//! | [`packed_lights`] | the list as the GPU reads it, and what it needs |
+//! | [`light_texture`] | textured lights |
 //! | [`texture_part`] | which part of an image becomes one |
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
 //! | [`material`] | metallic-roughness materials and the surface they make |
-//! | [`effects`] | what a scene calls for, and nothing else |
+//! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
@@ -38,6 +39,7 @@ pub mod gpu;
 pub mod holes;
 pub mod kernels;
 pub mod light;
+pub mod light_shape;
 pub mod light_texture;
 pub mod material;
 pub mod mesh;
@@ -45,7 +47,6 @@ pub mod packed_lights;
 pub mod plan;
 pub mod pyramid;
 pub mod quality;
-pub mod shape;
 pub mod table;
 pub mod texture_part;
 pub mod tiles;
@@ -54,14 +55,14 @@ pub use effects::{Effects, UnknownEffect};
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;
 pub use holes::HoleError;
-pub use light::{LightError, PolygonLight};
+pub use light::{Light, LightError, LightFault};
+pub use light_shape::{LightShape, TubeEnds};
 pub use light_texture::{LightTexture, TextureError, TextureMap};
 pub use material::{Material, Surface};
 pub use mesh::FaceError;
-pub use packed_lights::PackedLights;
+pub use packed_lights::{LightSummary, PackedLights};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
-pub use shape::{Shape, ShapeError, ShapeKind, ShapeLight, TubeEnds};
 pub use table::{GrazingDip, LightTable, TableDescription, TableError, TableSample};
 pub use texture_part::{TexturePart, TexturePartError, Wrap};
 pub use tiles::TileClass;

@@ -1,15 +1,18 @@
-//! What a light shows: a layer of the light textures, mapped onto its polygon.
+//! Textured lights: a layer of the light textures, mapped onto a polygon or disk.
 
-use crate::PolygonLight;
+use crate::LightShape;
 use glam::{DMat2, DVec2, DVec3};
 
-/// An image that multiplies a polygon light's radiance.
+/// An image that multiplies a light's radiance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LightTexture {
     /// The layer of the light textures (see [`crate::pyramid`]).
     pub layer: u32,
-    /// A texture coordinate for each vertex, in [0, 1]; (0, 0) is the outer corner of the first texel of the top row.
+    /// A texture coordinate for each vertex of a polygon, in [0, 1]; (0, 0) is the outer corner of the first texel of the top row.
     /// They are an affine function of the vertices' positions, as those of a triangle always are.
+    ///
+    /// None for a disk: seen from its front, the image's rows run along `axis_u` and the top row is where `axis_v` points to; the
+    /// disk is what is seen of it within the parallelogram of both, which touches its edges.
     ///
     /// What lies outside of an image, when it is repeated, is loaded into a layer of its own.
     pub uvs: Vec<DVec2>,
@@ -20,8 +23,11 @@ pub struct LightTexture {
 #[non_exhaustive]
 pub enum TextureError {
     /// The light has several faces, which one image does not fit.
-    #[error("a mesh shows no image; give the faces that show one lights of their own")]
+    #[error("a mesh is not textured; give the faces that are lights of their own")]
     Mesh,
+    /// The light is a sphere or tube.
+    #[error("only polygons and disks are textured; a sphere or tube has one colour")]
+    Solid,
     /// There must be one coordinate a vertex.
     #[error("uvs: {uvs} given for {vertices} vertices; give one each")]
     Count {
@@ -91,15 +97,26 @@ impl TextureMap {
 }
 
 impl LightTexture {
-    /// Checks the coordinates, and maps them onto `light`, whose vertices are valid.
+    /// Checks the coordinates, and maps them onto `shape`, whose vertices are valid.
     ///
     /// # Errors
     /// [`TextureError`] says what is wrong with them.
-    pub fn map(&self, light: &PolygonLight) -> Result<TextureMap, TextureError> {
-        if light.is_mesh() {
-            return Err(TextureError::Mesh);
+    pub fn map(&self, shape: &LightShape) -> Result<TextureMap, TextureError> {
+        match *shape {
+            LightShape::Mesh { .. } if shape.is_mesh() => return Err(TextureError::Mesh),
+            LightShape::Polygon(_) | LightShape::Mesh { .. } => {}
+            LightShape::Disk { center, axis_u, axis_v } => {
+                return Ok(TextureMap {
+                    corner: center - axis_u + axis_v,
+                    axis_u: axis_u * 2.0,
+                    axis_v: axis_v * -2.0,
+                    low: DVec2::ZERO,
+                    size: DVec2::ONE,
+                });
+            }
+            LightShape::Sphere { .. } | LightShape::Tube { .. } => return Err(TextureError::Solid),
         }
-        let (uvs, vertices) = (&self.uvs, &light.vertices);
+        let (uvs, vertices) = (&self.uvs, shape.vertices());
         if uvs.len() != vertices.len() {
             return Err(TextureError::Count { uvs: uvs.len(), vertices: vertices.len() });
         }
@@ -109,9 +126,9 @@ impl LightTexture {
         }
 
         // Work in the polygon's plane, in units of its size
-        let center = light.center();
+        let center = shape.center();
         let scale = vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
-        let normal = light.area_vector().try_normalize().ok_or(TextureError::Flat)?;
+        let normal = shape.area_vector().try_normalize().ok_or(TextureError::Flat)?;
         let (tangent, bitangent) = normal.any_orthonormal_pair();
         let flat = |vertex: &DVec3| {
             let offset = (*vertex - center) / scale;
@@ -157,24 +174,30 @@ impl LightTexture {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Light;
     use glam::Vec3;
 
-    fn screen() -> PolygonLight {
+    fn screen() -> Light {
         let corner = |x: f64, y: f64| DVec3::new(x, y, 3.0);
-        PolygonLight {
+        Light {
             name: "screen".into(),
-            vertices: vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(2.0, 1.0), corner(0.0, 1.0)],
+            shape: LightShape::Polygon(vec![
+                corner(0.0, 0.0),
+                corner(2.0, 0.0),
+                corner(2.0, 1.0),
+                corner(0.0, 1.0),
+            ]),
             radiance: Vec3::ONE,
             texture: Some(LightTexture {
                 layer: 0,
                 uvs: vec![DVec2::new(0.0, 1.0), DVec2::ONE, DVec2::new(1.0, 0.5), DVec2::new(0.0, 0.5)],
             }),
-            ..PolygonLight::default()
+            ..Light::default()
         }
     }
 
-    fn map(light: &PolygonLight) -> Result<TextureMap, TextureError> {
-        light.texture.as_ref().unwrap().map(light)
+    fn map(light: &Light) -> Result<TextureMap, TextureError> {
+        light.texture.as_ref().unwrap().map(&light.shape)
     }
 
     #[test]
@@ -189,7 +212,7 @@ mod tests {
     #[test]
     fn a_triangle_has_the_box_around_its_coordinates() {
         let mut light = screen();
-        light.vertices.pop();
+        light.shape = LightShape::Polygon(light.shape.vertices()[..3].to_vec());
         light.texture.as_mut().unwrap().uvs = vec![DVec2::ZERO, DVec2::X, DVec2::new(0.5, 1.0)];
         let map = map(&light).unwrap();
         // The apex, (2, 1), is half way along u and all along v
@@ -208,7 +231,7 @@ mod tests {
         assert_eq!(map(&light), Err(TextureError::Count { uvs: 1, vertices: 4 }));
         assert_eq!(
             light.validate().unwrap_err().to_string(),
-            "light 'screen': texture: uvs: 1 given for 4 vertices; give one each"
+            "texture: uvs: 1 given for 4 vertices; give one each"
         );
         let outside = with(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
         assert!(matches!(map(&outside), Err(TextureError::Outside { index: 1, .. })));

@@ -1,130 +1,159 @@
-//! Polygon lights as the GPU reads them.
+//! Lights as the GPU reads them.
 
-use crate::Effects;
-use crate::gpu::GpuLight;
-use crate::light::{LightError, PolygonLight};
+use crate::gpu::{GpuLight, GpuShape};
+use crate::light::{LightError, LightFault};
 use crate::light_texture::TextureMap;
 use crate::mesh::area_of;
+use crate::{Effects, Light, LightShape};
 use glam::DVec3;
 
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
 
-fn flags(light: &PolygonLight) -> u32 {
-    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
-    flag(light.two_sided, GpuLight::TWO_SIDED)
-        | flag(light.is_flat(), GpuLight::FLAT)
-        | flag(light.is_mesh(), GpuLight::MESH)
-        | flag(light.is_convex_quad(), GpuLight::QUAD)
-}
-
-/// Lights as the GPU reads them, relative to an origin.
-#[derive(Debug, Clone, PartialEq)]
+/// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each; [`PackedLights::summary`] goes to the frame.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PackedLights {
-    /// One record a light: convex quads without an image first, else in the given order.
+    /// One record per polygon or mesh: convex quads without a texture first, else in the given order.
     pub lights: Vec<GpuLight>,
-    /// Of each light its vertices' positions relative to its center, in xyz. A mesh has before each face's vertices a row with the
-    /// face's unit normal in xyz and their count in w. After the vertices of a light with a texture come four rows, its place:
+    /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's vertices a row with the
+    /// face's unit normal in xyz and their count in w. After the vertices of a textured light come four rows, its image's place:
     /// (corner, lowest u), (axis of u, lowest v), (axis of v, extent in u), (extent in v, 0, 0, 0), see
     /// [`TextureMap`].
     pub vertices: Vec<[f32; 4]>,
-    /// Which of the given lights each record is of.
+    /// One record per disk, sphere or tube: by kind in this order, else in the given one.
+    pub shapes: Vec<GpuShape>,
+    /// Which of the given lights each record of [`PackedLights::lights`] is of.
     pub order: Vec<u32>,
-    /// How many records come first that are convex quads without an image.
-    pub quad_count: u32,
-    /// What none of the lights calls for, of [`Effects::TWO_SIDED`] and [`Effects::BEYOND_QUADS`].
-    pub unused: Effects,
+    /// Which of the given lights each record of [`PackedLights::shapes`] is of.
+    pub shape_order: Vec<u32>,
+    quad_count: u32,
+    effects: Effects,
 }
 
-impl Default for PackedLights {
-    fn default() -> Self {
-        let unused = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
-        Self { lights: vec![], vertices: vec![], order: vec![], quad_count: 0, unused }
+/// What a frame needs to know of its packed lights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct LightSummary {
+    /// How many records [`PackedLights::lights`] has.
+    pub light_count: u32,
+    /// How many of the first are convex quads without a texture, which have a loop of their own.
+    pub quad_count: u32,
+    /// How many records [`PackedLights::shapes`] has.
+    pub shape_count: u32,
+    /// The effects that the lights need, and so which kinds there are.
+    pub effects: Effects,
+}
+
+impl LightSummary {
+    /// Whether there are polygons or meshes beyond the quads.
+    pub fn has_polygons(self) -> bool {
+        self.light_count > self.quad_count
+    }
+
+    /// The quads alone.
+    #[must_use]
+    pub fn quads(self) -> Self {
+        let effects = self.effects & Effects::TWO_SIDED;
+        Self { light_count: self.quad_count, shape_count: 0, effects, ..self }
     }
 }
 
 impl PackedLights {
-    /// Packs `lights` relative to `origin`: the subtraction is made in float64, so that a scene far from the
+    /// Checks and packs `lights` relative to `origin`: the subtraction is made in float64, so that a scene far from the
     /// world's origin shades as well as one at it. Use the same origin for the G-buffer's positions.
     ///
     /// # Errors
-    /// The first light that [`PolygonLight::validate`] refuses.
-    pub fn new(lights: &[PolygonLight], origin: DVec3) -> Result<Self, LightError> {
-        let rows = |light: &PolygonLight| light.vertices.len() + light.faces.len() + TEXTURE_ROWS;
-        let count = lights.iter().map(rows).sum::<usize>();
-        if u32::try_from(count).is_err() {
-            return Err(LightError::TooMany { count });
-        }
-        let maps = lights.iter().map(PolygonLight::mapped).collect::<Result<Vec<_>, _>>()?;
-        let effects: Vec<Effects> = lights.iter().map(PolygonLight::effects).collect();
-        let (quads, others): (Vec<usize>, Vec<usize>) =
-            (0..lights.len()).partition(|index| !effects[*index].intersects(Effects::BEYOND_QUADS));
-        let mut packed = Self { quad_count: quads.len() as u32, ..Self::default() };
-        for index in quads.into_iter().chain(others) {
-            packed.push(&lights[index], maps[index], origin)?;
-            packed.order.push(index as u32);
-            packed.unused -= effects[index];
+    /// [`LightError`] names a light that cannot be shaded, by its index, and the field that is wrong.
+    pub fn new(lights: &[Light], origin: DVec3) -> Result<Self, LightError> {
+        check_rows(lights)?;
+        let effects: Vec<Effects> = lights.iter().map(Light::effects).collect();
+        let mut indices: Vec<usize> = (0..lights.len()).collect();
+        indices.sort_by_key(|index| rank(effects[*index]));
+        let mut packed = Self::default();
+        for index in indices {
+            let light = &lights[index];
+            let pushed = if light.shape.is_polygonal() {
+                packed.order.push(index as u32);
+                packed.push(light, origin)
+            } else {
+                packed.shape_order.push(index as u32);
+                light.pack_shape(origin).map(|shape| packed.shapes.push(shape))
+            };
+            pushed.map_err(|fault| fault.of(index, light))?;
+            packed.quad_count += u32::from(rank(effects[index]) == QUAD);
+            packed.effects |= effects[index];
         }
         Ok(packed)
     }
 
+    /// What a frame needs to know of the lights.
+    pub fn summary(&self) -> LightSummary {
+        LightSummary {
+            light_count: self.lights.len() as u32,
+            quad_count: self.quad_count,
+            shape_count: self.shapes.len() as u32,
+            effects: self.effects,
+        }
+    }
+
     /// Adds the lights of `other`, which may be packed relative to another origin, after those that are here. Their quads are
-    /// counted as such only where none but quads are here.
+    /// counted as such only where no polygons but quads are here.
     ///
     /// # Errors
-    /// [`LightError::TooMany`] where a 32-bit index does not reach; then nothing is added.
+    /// [`LightError`] where a 32-bit index does not reach; then nothing is added.
     pub fn append(&mut self, other: Self) -> Result<(), LightError> {
-        let count = (self.vertices.len() + other.vertices.len()).max(self.lights.len() + other.lights.len());
+        let before = self.order.len() + self.shape_order.len();
+        let added = other.order.len() + other.shape_order.len();
+        let count = (self.vertices.len() + other.vertices.len()).max(before + added);
         if u32::try_from(count).is_err() {
-            return Err(LightError::TooMany { count });
+            let fault = LightFault::TooManyVertices { count };
+            return Err(LightError { index: before, name: String::new(), fault });
         }
         if self.quad_count as usize == self.lights.len() {
             self.quad_count += other.quad_count;
         }
-        self.unused &= other.unused;
-        let before = self.lights.len() as u32;
-        self.order.extend(other.order.into_iter().map(|index| before + index));
+        self.effects |= other.effects;
+        let place = |index: u32| before as u32 + index;
+        self.order.extend(other.order.into_iter().map(place));
+        self.shape_order.extend(other.shape_order.into_iter().map(place));
         let shift = self.vertices.len() as u32;
         self.lights.extend(other.lights.into_iter().map(|mut light| {
             light.first_vertex += shift;
             light
         }));
         self.vertices.extend(other.vertices);
+        self.shapes.extend(other.shapes);
         Ok(())
     }
 
-    fn push(
-        &mut self,
-        light: &PolygonLight,
-        map: Option<TextureMap>,
-        origin: DVec3,
-    ) -> Result<(), LightError> {
+    /// Adds a polygon or mesh.
+    fn push(&mut self, light: &Light, origin: DVec3) -> Result<(), LightFault> {
+        let map = light.mapped()?;
+        let (shape, vertices) = (&light.shape, light.shape.vertices());
         let first_vertex = self.vertices.len() as u32;
-        for (index, &value) in light.vertices.iter().enumerate() {
+        for (index, &value) in vertices.iter().enumerate() {
             if !(value - origin).as_vec3().is_finite() {
-                return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
+                return Err(LightFault::VertexNotFinite { index, value });
             }
         }
         // Subtract the origin in float64, then round once: the center for all, the vertices about the rounded center
-        let center = (light.center() - origin).as_vec3();
+        let center = (shape.center() - origin).as_vec3();
         let offsets: Vec<DVec3> =
-            light.vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();
+            vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();
         // The middle lies between the vertices, but two of them may be farther apart than float32 reaches
         if let Some(index) = offsets.iter().position(|offset| !(offset.length() as f32 * 2.0).is_finite()) {
-            let value = light.vertices[index];
-            return Err(LightError::VertexNotFinite { light: light.name.clone(), index, value });
+            return Err(LightFault::VertexNotFinite { index, value: vertices[index] });
         }
         let mut radius = offsets.iter().map(|offset| offset.length()).fold(0.0, f64::max);
-        if light.is_mesh() {
-            radius = radius.max(light.covering_radius());
+        if shape.is_mesh() {
+            radius = radius.max(shape.covering_radius(light.two_sided));
         }
-        self.push_outlines(light, &offsets);
+        self.push_outlines(shape, &offsets);
         let vertex_count = self.vertices.len() as u32 - first_vertex;
         if let Some(map) = map {
             // The texture's axes keep their precision as the vertices do
             self.push_texture(map, map.corner - origin - center.as_dvec3());
         }
-        let area_vector = light.area_vector();
+        let area_vector = shape.area_vector();
         let area = area_vector.length() / radius.powi(2);
         self.lights.push(GpuLight {
             radiance: light.radiance.to_array(),
@@ -142,11 +171,11 @@ impl PackedLights {
     }
 
     /// The rows of an outline, or of the faces of a mesh.
-    fn push_outlines(&mut self, light: &PolygonLight, offsets: &[DVec3]) {
+    fn push_outlines(&mut self, shape: &LightShape, offsets: &[DVec3]) {
         let mut first = 0;
-        for face in light.outlines() {
+        for face in shape.outlines() {
             let vertices = &offsets[first..first + face.len()];
-            if light.is_mesh() {
+            if shape.is_mesh() {
                 let normal = area_of(vertices).normalize_or_zero().as_vec3();
                 self.vertices.push(normal.extend(face.len() as f32).to_array());
             }
@@ -167,47 +196,116 @@ impl PackedLights {
     }
 }
 
+/// The rank of convex quads without a texture.
+const QUAD: u32 = 0;
+
+/// Where lights of these effects are in the order of records.
+fn rank(effects: Effects) -> u32 {
+    match effects - Effects::TWO_SIDED {
+        kind if kind.is_empty() => QUAD,
+        kind if kind.contains(Effects::ELLIPSE) => 2,
+        kind if kind.contains(Effects::SPHERE) => 3,
+        kind if kind.contains(Effects::TUBE) => 4,
+        _ => 1,
+    }
+}
+
+/// Checks that a 32-bit index reaches every row of vertices.
+fn check_rows(lights: &[Light]) -> Result<(), LightError> {
+    let mut count = 0;
+    for (index, light) in lights.iter().enumerate() {
+        count += light.shape.vertices().len() + light.shape.faces().len() + TEXTURE_ROWS;
+        if u32::try_from(count).is_err() {
+            return Err(LightFault::TooManyVertices { count }.of(index, light));
+        }
+    }
+    Ok(())
+}
+
+fn flags(light: &Light) -> u32 {
+    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+    flag(light.two_sided, GpuLight::TWO_SIDED)
+        | flag(light.shape.is_flat(), GpuLight::FLAT)
+        | flag(light.shape.is_mesh(), GpuLight::MESH)
+        | flag(light.shape.is_convex_quad(), GpuLight::QUAD)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::light::tests::arrow;
+    use crate::{LightTexture, TubeEnds};
+
+    fn of(shape: LightShape) -> Light {
+        Light { shape, ..Light::default() }
+    }
 
     #[test]
-    fn quads_come_first_and_every_record_says_whose_it_is() {
-        let light = |x: f64, concave: bool, two_sided: bool| {
+    fn records_are_sorted_by_kind_and_say_whose_they_are() {
+        let polygon = |x: f64, concave: bool, two_sided: bool| {
             let mut light = arrow();
-            light.vertices[3].x = if concave { 1.0 } else { -1.0 };
-            light.vertices.iter_mut().for_each(|vertex| vertex.x += x);
-            PolygonLight { two_sided, ..light }
+            light.shape.vertices_mut()[3].x = if concave { 1.0 } else { -1.0 };
+            light.shape.vertices_mut().iter_mut().for_each(|vertex| vertex.x += x);
+            Light { two_sided, ..light }
         };
+        let sphere = || of(LightShape::Sphere { center: DVec3::ZERO, radius: 1.0 });
+        let disk = of(LightShape::Disk { center: DVec3::ZERO, axis_u: DVec3::X, axis_v: DVec3::Y });
+        let ends = TubeEnds::Flat;
+        let tube = of(LightShape::Tube { p0: DVec3::ZERO, p1: DVec3::X, radius: 1.0, ends });
         let lights = [
-            light(0.0, true, false),
-            light(1.0, false, false),
-            light(2.0, true, true),
-            light(3.0, false, false),
+            tube,
+            polygon(0.0, true, false),
+            sphere(),
+            polygon(1.0, false, false),
+            polygon(2.0, true, true),
+            disk,
+            polygon(3.0, false, false),
+            sphere(),
         ];
         let mut packed = PackedLights::new(&lights, DVec3::ZERO).unwrap();
-        assert_eq!((&packed.order[..], packed.quad_count), (&[1, 3, 0, 2][..], 2));
-        assert_eq!(packed.unused, Effects::TEXTURED | Effects::MESH);
+        assert_eq!((&packed.order[..], &packed.shape_order[..]), (&[3, 6, 1, 4][..], &[5, 2, 7, 0][..]));
+        let effects = Effects::SHAPES | Effects::POLYGON | Effects::TWO_SIDED;
+        let expected = LightSummary { light_count: 4, quad_count: 2, shape_count: 4, effects };
+        assert_eq!(packed.summary(), expected);
+        assert!(packed.summary().has_polygons() && !packed.summary().quads().has_polygons());
+        assert_eq!(packed.summary().quads().effects, Effects::TWO_SIDED);
+        let kinds: Vec<u32> = packed.shapes.iter().map(|shape| shape.kind).collect();
+        assert_eq!(kinds, [GpuShape::DISK, GpuShape::SPHERE, GpuShape::SPHERE, GpuShape::TUBE]);
         for (record, index) in packed.lights.iter().zip(&packed.order) {
             let first = packed.vertices[record.first_vertex as usize][0] + record.center[0];
-            assert!((f64::from(first) - lights[*index as usize].vertices[0].x).abs() < 1e-6);
+            assert!((f64::from(first) - lights[*index as usize].shape.vertices()[0].x).abs() < 1e-6);
         }
         // What comes after other lights is not among the first quads
-        let quads = || PackedLights::new(&lights[1..2], DVec3::ZERO).unwrap();
+        let quads = || PackedLights::new(&lights[3..4], DVec3::ZERO).unwrap();
         packed.append(quads()).unwrap();
-        assert_eq!((&packed.order[..], packed.quad_count), (&[1, 3, 0, 2, 4][..], 2));
+        assert_eq!((&packed.order[..], packed.quad_count), (&[3, 6, 1, 4, 8][..], 2));
         let mut two = quads();
         two.append(quads()).unwrap();
-        assert_eq!((two.quad_count, two.unused), (2, Effects::TWO_SIDED | Effects::BEYOND_QUADS));
+        assert_eq!((two.quad_count, two.effects), (2, Effects::empty()));
+        two.append(PackedLights::new(&lights[..1], DVec3::ZERO).unwrap()).unwrap();
+        assert_eq!((&two.shape_order[..], two.effects), (&[2][..], Effects::TUBE));
         assert_eq!(PackedLights::new(&[], DVec3::ZERO).unwrap(), PackedLights::default());
+    }
+
+    #[test]
+    fn the_summary_has_what_any_light_needs() {
+        let uvs = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]].map(glam::DVec2::from_array).to_vec();
+        let triangle = of(LightShape::Polygon(vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.0)]));
+        let textured = Light { texture: Some(LightTexture { layer: 0, uvs }), ..triangle.clone() };
+        let disk = of(LightShape::Disk { center: DVec3::ZERO, axis_u: DVec3::X, axis_v: DVec3::Y });
+        let shown = Light { texture: Some(LightTexture { layer: 0, uvs: vec![] }), ..disk };
+        let needs = |lights: &[Light]| PackedLights::new(lights, DVec3::ZERO).unwrap().summary().effects;
+        assert_eq!(needs(std::slice::from_ref(&triangle)), Effects::empty());
+        assert_eq!(needs(&[triangle.clone(), textured]), Effects::TEXTURED);
+        let both = Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE;
+        assert_eq!(needs(&[triangle, shown]), both);
     }
 
     #[test]
     fn packing_keeps_precision_far_from_the_world_origin() {
         let offset = DVec3::splat(1e7);
         let mut far = arrow();
-        for v in &mut far.vertices {
+        for v in far.shape.vertices_mut() {
             *v = *v + offset + DVec3::new(1e-3, 0.0, 0.0);
         }
         let packed = PackedLights::new(&[far], offset).unwrap();

@@ -1,10 +1,10 @@
 //! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
 //! recorder of this project or for one of your own.
 
-use crate::gpu::{ShadeConstants, TextureBlurConstants, TextureLoadConstants};
+use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, Quality, TileClass};
+use crate::{Effects, LightSummary, Quality, TileClass};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -56,9 +56,9 @@ pub enum Output {
 pub enum RadianceImages {
     /// Their sum in one image.
     #[default]
-    One = 0,
+    Combined = 0,
     /// The diffuse lobe's and the glossy lobe's in an image each, for what treats them apart: denoisers, skin, fog.
-    Apart = 2,
+    Separate = 2,
 }
 
 /// The texel format of the images that the shade kernel stores radiance to.
@@ -73,11 +73,11 @@ pub enum RadianceFormat {
     Rgba16Float = 4,
 }
 
-/// Everything that a shade pipeline is specialised for.
+/// Everything that a shade pipeline is specialised for beside a frame's lights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
-    /// What the scene calls for.
-    pub effects: Effects,
+    /// What the host's surfaces need, of [`Effects::SURFACES`]; other effects are a frame's lights' to say, and are not read here.
+    pub surfaces: Effects,
     /// What accuracy the host pays for.
     pub quality: Quality,
     /// Where positions come from.
@@ -92,11 +92,11 @@ pub struct ShadeOptions {
     pub format: RadianceFormat,
 }
 
-impl ShadeOptions {
-    /// The catch-all: every effect, the exact level, positions from an image, overwriting one image of 32-bit floats.
-    pub fn all() -> Self {
+impl Default for ShadeOptions {
+    /// Both lobes, at the exact level; positions from an image, dielectrics of F0 = 0.04, overwriting one image of 32-bit floats.
+    fn default() -> Self {
         Self {
-            effects: Effects::all(),
+            surfaces: Effects::DIFFUSE | Effects::GLOSSY,
             quality: Quality::default(),
             position: PositionSource::default(),
             g_buffer: GBufferLayout::default(),
@@ -105,46 +105,22 @@ impl ShadeOptions {
             format: RadianceFormat::default(),
         }
     }
+}
+
+impl ShadeOptions {
+    /// The effects of a pipeline: what surfaces need, and `lights`.
+    pub fn effects(self, lights: LightSummary) -> Effects {
+        (self.surfaces & Effects::SURFACES) | (lights.effects - Effects::SURFACES)
+    }
 
     /// Whether the image at the binding `g_specular` is read.
     pub fn reads_specular(self) -> bool {
-        self.g_buffer != GBufferLayout::Arealight || self.effects.contains(Effects::SPECULAR_INPUT)
+        self.g_buffer != GBufferLayout::Arealight || self.surfaces.contains(Effects::SPECULAR_INPUT)
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::images`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
     pub fn output_bits(self) -> u32 {
         self.output as u32 | self.images as u32 | self.format as u32
-    }
-}
-
-/// What is left of a shade pipeline for the lights and surfaces of a frame: what none of them calls for costs nothing, and changes
-/// nothing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct ShadeVariant {
-    /// The effects that it handles.
-    pub effects: Effects,
-    /// Whether there are convex quads without an image.
-    pub quads: bool,
-}
-
-impl ShadeVariant {
-    /// What a pass for `effects` needs for the lights that `constants` count, and surfaces, of which none calls for `unused`. Lights
-    /// that are counted beyond the quads are shaded by all that the pass has for such, whatever `unused` says.
-    pub fn new(effects: Effects, unused: Effects, constants: &ShadeConstants) -> Self {
-        let of = |count: u32, kinds: Effects| match effects & kinds {
-            _ if count == 0 => Effects::empty(),
-            all if (all - unused).is_empty() => all,
-            all => all - unused,
-        };
-        let lights = of(constants.light_count.saturating_sub(constants.quad_count), Effects::BEYOND_QUADS);
-        let shapes = of(constants.shape_count, Effects::OF_SHAPES);
-        // Shapes have two sides too
-        let unused_sides =
-            if constants.shape_count == 0 { unused & Effects::TWO_SIDED } else { Effects::empty() };
-        let unused_anywhere = unused & Effects::SURFACES;
-        let others = effects - Effects::BEYOND_QUADS - Effects::OF_SHAPES - unused_sides - unused_anywhere;
-        let quad_count = if lights.is_empty() { constants.light_count } else { constants.quad_count };
-        Self { effects: others | lights | shapes, quads: quad_count > 0 }
     }
 }
 
@@ -159,32 +135,26 @@ pub struct Dispatch {
     pub groups: [u32; 3],
 }
 
-/// The shade pass over a G-buffer of `width` × `height` pixels. Its module is that of
+/// The shade pass over a G-buffer of `width` × `height` pixels, for a frame's lights. Its module is that of
 /// [`Kernel::words_for`] with [`ShadeOptions::format`].
-pub fn shade(options: ShadeOptions, width: u32, height: u32) -> Dispatch {
+pub fn shade(options: ShadeOptions, lights: LightSummary, width: u32, height: u32) -> Dispatch {
     Dispatch {
         kernel: &kernels::SHADE,
-        specialization: shade_specialization(options),
+        specialization: shade_specialization(options, lights),
         groups: kernels::SHADE.groups_for([width, height, 1]),
     }
 }
 
-/// The values of the shade kernel's specialisation constants.
-pub fn shade_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
-    let mut values = lobe_specialization(options.effects, options.quality);
+/// The values of the shade kernel's specialisation constants, for a frame's lights: what none of them needs is not in the pipeline.
+pub fn shade_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<(u32, u32)> {
+    let mut values = lobe_specialization(options.effects(lights), options.quality);
     values.extend([
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::OUTPUT, options.output_bits()),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
+        (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
     ]);
-    values
-}
-
-/// As [`shade_specialization`], of what is left for the lights of a frame.
-pub fn shade_variant_specialization(options: ShadeOptions, variant: ShadeVariant) -> Vec<(u32, u32)> {
-    let mut values = shade_specialization(ShadeOptions { effects: variant.effects, ..options });
-    values.push((kernels::constant::HAS_QUADS, u32::from(variant.quads)));
     values
 }
 
@@ -197,16 +167,15 @@ pub struct TileOptions {
     /// Lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the radiance of
     /// each of its pixels, in the sum of the channels; in [0, 1). With 0 only lights that contribute nothing are left out.
     pub cull_threshold: f32,
-    /// Frames of fewer lights than this, all of them convex quads without an image, are shaded without tiles: to classify them would take
+    /// Frames of fewer lights than this, all of them convex quads without a texture, are shaded without tiles: to classify them would take
     /// longer than it could save (docs/tiles.md). With 0 every frame is classified.
     pub least_quads: u32,
 }
 
 impl TileOptions {
-    /// Whether the tiles of a frame are classified that has as many lights, quads first, and shapes as `constants` has.
-    pub fn classifies(self, constants: &ShadeConstants) -> bool {
-        let &ShadeConstants { light_count, quad_count, shape_count, .. } = constants;
-        light_count >= self.least_quads || quad_count < light_count || shape_count > 0
+    /// Whether the tiles of a frame of these lights are classified.
+    pub fn classifies(self, lights: LightSummary) -> bool {
+        lights.light_count >= self.least_quads || lights.has_polygons() || lights.shape_count > 0
     }
 }
 
@@ -220,11 +189,11 @@ impl Default for TileOptions {
 /// The values of the classify kernel's specialisation constants, for the lights of a frame.
 pub fn classify_specialization(
     options: ShadeOptions,
-    variant: ShadeVariant,
+    lights: LightSummary,
     tiles: TileOptions,
 ) -> Vec<(u32, u32)> {
     vec![
-        (kernels::constant::EFFECTS, variant.effects.bits()),
+        (kernels::constant::EFFECTS, options.effects(lights).bits()),
         (kernels::constant::POSITION_SOURCE, options.position as u32),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
@@ -237,11 +206,10 @@ pub fn classify_specialization(
 /// The values of the tile kernel's specialisation constants, for the lights of a frame in tiles of `class`.
 pub fn shade_tiles_specialization(
     options: ShadeOptions,
-    variant: ShadeVariant,
+    lights: LightSummary,
     class: TileClass,
 ) -> Vec<(u32, u32)> {
-    let variant = ShadeVariant { effects: class.effects(variant.effects), ..variant };
-    let mut values = shade_variant_specialization(options, variant);
+    let mut values = shade_specialization(options, class.lights(lights));
     values.push((kernels::constant::CLASS, class as u32));
     values
 }
@@ -302,48 +270,32 @@ pub fn texture_blur(
 mod tests {
     use super::*;
     use crate::TexturePart;
-    use bytemuck::Zeroable as _;
 
-    fn counts(light_count: u32, quad_count: u32, shape_count: u32) -> ShadeConstants {
-        ShadeConstants { light_count, shape_count, quad_count, ..ShadeConstants::zeroed() }
+    fn counts(light_count: u32, quad_count: u32, shape_count: u32) -> LightSummary {
+        LightSummary { light_count, quad_count, shape_count, ..LightSummary::default() }
     }
 
     #[test]
-    fn a_pipeline_has_what_the_lights_of_a_frame_call_for() {
-        let all = Effects::all();
-        let of_lights = Effects::TWO_SIDED | Effects::BEYOND_QUADS;
-        let variant = |unused, counts| {
-            let ShadeVariant { effects, quads } = ShadeVariant::new(all, unused, &counts);
-            (all - effects, quads)
+    fn a_pipeline_has_what_surfaces_and_lights_need() {
+        let options = ShadeOptions::default();
+        let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+        let lights = |effects| LightSummary { effects, ..counts(3, 1, 2) };
+        assert_eq!(options.effects(lights(Effects::SPHERE)), lobes | Effects::SPHERE);
+        // Neither has a say in what is the other's
+        assert_eq!(options.effects(lights(Effects::SPECULAR_INPUT)), lobes);
+        let all = ShadeOptions { surfaces: Effects::all(), ..options };
+        assert_eq!(all.effects(lights(Effects::empty())), Effects::SURFACES);
+        assert!(all.reads_specular() && !options.reads_specular());
+        let has_quads = |lights| {
+            let values = shade_specialization(options, lights);
+            values.iter().find(|(id, _)| *id == kernels::constant::HAS_QUADS).map(|(_, value)| *value)
         };
-        // Quads, one-sided or not
-        assert_eq!(variant(of_lights, counts(3, 3, 0)), (of_lights | Effects::OF_SHAPES, true));
-        let beyond = Effects::BEYOND_QUADS;
-        assert_eq!(variant(beyond, counts(3, 3, 0)), (beyond | Effects::OF_SHAPES, true));
-        // Others, with quads and without
-        let no_image = Effects::TEXTURED;
-        assert_eq!(variant(no_image, counts(3, 1, 0)), (no_image | Effects::OF_SHAPES, true));
-        assert_eq!(variant(no_image, counts(3, 0, 0)), (no_image | Effects::OF_SHAPES, false));
-        // Shapes may have two sides, whatever polygons have
-        assert_eq!(variant(of_lights, counts(0, 0, 2)), (beyond, false));
-        assert_eq!(variant(of_lights | Effects::TUBE, counts(0, 0, 2)), (beyond | Effects::TUBE, false));
-        let no_image = Effects::TEXTURED_ELLIPSE;
-        assert_eq!(variant(no_image, counts(0, 0, 2)), (beyond | no_image, false));
-        // Nothing is known: right, and slower
-        assert_eq!(variant(Effects::empty(), counts(3, 0, 2)), (Effects::empty(), false));
-        // What is counted is shaded, even where nothing is said to call for it
-        assert_eq!(variant(all, counts(3, 1, 2)).0 & (beyond | Effects::OF_SHAPES), Effects::empty());
-        // What depends on surfaces, whatever lights there are
-        let of_surfaces = Effects::GLOSSY | Effects::SPECULAR_INPUT;
-        assert_eq!(variant(of_surfaces, counts(3, 1, 2)).0, of_surfaces);
-        // A pass without those effects takes all lights for quads
-        let plain = ShadeVariant::new(Effects::GLOSSY, Effects::empty(), &counts(3, 0, 0));
-        assert_eq!(plain, ShadeVariant { effects: Effects::GLOSSY, quads: true });
+        assert_eq!([counts(3, 1, 0), counts(3, 0, 0)].map(has_quads), [Some(1), Some(0)]);
     }
 
     #[test]
     fn groups_cover_every_pixel() {
-        let dispatch = shade(ShadeOptions::all(), 17, 8);
+        let dispatch = shade(ShadeOptions::default(), LightSummary::default(), 17, 8);
         assert_eq!(dispatch.groups, [3, 1, 1]);
         let size = PyramidSize::new(128, 64).unwrap();
         let constants = TexturePart::default().load_constants([128, 64], size, 0, false).unwrap();
@@ -355,10 +307,10 @@ mod tests {
     #[test]
     fn frames_of_few_quads_and_nothing_else_are_not_classified() {
         let tiles = TileOptions::default();
-        assert!(!tiles.classifies(&counts(0, 0, 0)) && !tiles.classifies(&counts(3, 3, 0)));
-        assert!(tiles.classifies(&counts(4, 4, 0)));
-        assert!(tiles.classifies(&counts(1, 0, 0)), "an outline");
-        assert!(tiles.classifies(&counts(1, 1, 1)), "a shape");
-        assert!(TileOptions { least_quads: 0, ..tiles }.classifies(&counts(0, 0, 0)));
+        assert!(!tiles.classifies(counts(0, 0, 0)) && !tiles.classifies(counts(3, 3, 0)));
+        assert!(tiles.classifies(counts(4, 4, 0)));
+        assert!(tiles.classifies(counts(1, 0, 0)), "an outline");
+        assert!(tiles.classifies(counts(1, 1, 1)), "a shape");
+        assert!(TileOptions { least_quads: 0, ..tiles }.classifies(counts(0, 0, 0)));
     }
 }

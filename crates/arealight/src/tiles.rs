@@ -4,14 +4,14 @@
 //! the lights that contribute to it, and each class of tiles has a pipeline with no more code than their lights need. docs/tiles.md
 //! has measurements.
 
-use crate::Effects;
+use crate::LightSummary;
 use crate::gpu::GpuTileClass;
-use crate::plan::{Output, ShadeVariant};
+use crate::plan::Output;
 
 /// Width and height of a tile in pixels.
 pub const SIDE: u32 = 8;
 
-/// Words of a tile's record before the indices of its lights: how many convex quads without an image, polygons in all, and shapes.
+/// Words of a tile's record before the indices of its lights: how many convex quads without a texture, polygons in all, and shapes.
 pub const RECORD_HEADER: u32 = 3;
 
 /// In the place of each of these counts: the tile is shaded by all lights of the frame, since its list does not hold those that
@@ -28,7 +28,7 @@ pub enum TileClass {
     /// No surface, or no light that contributes to it. Its pipeline writes that, where pixels are overwritten; where they are added
     /// to it has none.
     Empty = 0,
-    /// Convex quads without images, and no other light.
+    /// Convex quads without textures, and no other light.
     Quads = 1,
     /// Any lights.
     Any = 2,
@@ -38,20 +38,20 @@ impl TileClass {
     /// Every class, by number.
     pub const ALL: [Self; 3] = [Self::Empty, Self::Quads, Self::Any];
 
-    /// What is left of a frame's effects in its pipeline.
-    pub fn effects(self, frame: Effects) -> Effects {
+    /// What its pipeline needs of a frame's lights.
+    pub fn lights(self, frame: LightSummary) -> LightSummary {
         match self {
             Self::Any => frame,
-            Self::Empty | Self::Quads => frame - Effects::BEYOND_QUADS - Effects::OF_SHAPES,
+            Self::Empty | Self::Quads => frame.quads(),
         }
     }
 
-    /// Whether frames whose lights need `frame` may have such tiles, of which pixels are written.
-    pub fn is_dispatched(self, frame: ShadeVariant, output: Output) -> bool {
+    /// Whether frames of these lights may have such tiles, of which pixels are written.
+    pub fn is_dispatched(self, frame: LightSummary, output: Output) -> bool {
         match self {
             Self::Empty => output == Output::Overwrite,
-            Self::Quads => frame.quads,
-            Self::Any => frame.effects.intersects(Effects::BEYOND_QUADS | Effects::SHAPES),
+            Self::Quads => frame.quad_count > 0,
+            Self::Any => frame.has_polygons() || frame.shape_count > 0,
         }
     }
 
@@ -95,28 +95,32 @@ pub fn memory(size: [u32; 2], capacity: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Effects;
 
     #[test]
     fn the_cheapest_class_comes_first_and_numbers_are_places() {
         for (number, class) in (0..).zip(TileClass::ALL) {
             assert_eq!(class as u32, number);
         }
-        let lobes = Effects::DIFFUSE | Effects::GLOSSY;
-        let frame = |effects, quads| ShadeVariant { effects, quads };
+        let frame = |light_count, quad_count, shape_count| LightSummary {
+            light_count,
+            quad_count,
+            shape_count,
+            ..LightSummary::default()
+        };
         let dispatched = |frame, output| TileClass::ALL.map(|class| class.is_dispatched(frame, output));
-        assert_eq!(dispatched(frame(lobes, true), Output::Add), [false, true, false]);
-        assert_eq!(dispatched(frame(lobes, true), Output::Overwrite), [true, true, false]);
-        assert_eq!(dispatched(frame(lobes | Effects::POLYGON, true), Output::Add), [false, true, true]);
-        assert_eq!(dispatched(frame(lobes | Effects::SPHERE, false), Output::Add), [false, false, true]);
+        assert_eq!(dispatched(frame(2, 2, 0), Output::Add), [false, true, false]);
+        assert_eq!(dispatched(frame(2, 2, 0), Output::Overwrite), [true, true, false]);
+        assert_eq!(dispatched(frame(3, 2, 0), Output::Add), [false, true, true]);
+        assert_eq!(dispatched(frame(0, 0, 1), Output::Add), [false, false, true]);
     }
 
     #[test]
     fn tiles_of_quads_have_the_code_of_quads_alone() {
-        assert_eq!(
-            TileClass::Quads.effects(Effects::all()) & (Effects::POLYGON | Effects::SHAPES),
-            Effects::empty()
-        );
-        assert_eq!(TileClass::Any.effects(Effects::all()), Effects::all());
+        let effects = Effects::all() - Effects::SURFACES;
+        let frame = LightSummary { light_count: 3, quad_count: 2, shape_count: 1, effects };
+        assert_eq!(TileClass::Quads.lights(frame).effects, Effects::TWO_SIDED);
+        assert_eq!(TileClass::Any.lights(frame), frame);
     }
 
     #[test]

@@ -6,11 +6,9 @@ use crate::g_buffer::GBuffer;
 use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, Memory, Semaphores};
 use crate::picture::{Picture, Readback};
 use crate::scene;
+use arealight::PackedLights;
 use arealight::gpu::GpuLight;
-use arealight::plan::{
-    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions, TileOptions,
-};
-use arealight::{Effects, Quality};
+use arealight::plan::{Output, PositionSource, ShadeOptions, TileOptions};
 use arealight_vk::{
     Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
     TileResources,
@@ -70,15 +68,11 @@ impl<'a> Deferred<'a> {
         // doc end
 
         // doc: pass
-        // Make the pass for what your scenes call for, and nothing else
+        // Make the pass for the way in which your surfaces are stored; it takes every kind of light
         let options = ShadeOptions {
-            effects: Effects::DIFFUSE | Effects::GLOSSY,
-            quality: Quality::default(),
             position: PositionSource::Depth,
-            g_buffer: GBufferLayout::Arealight,
             output: Output::Add, // to the emission that was drawn
-            images: RadianceImages::One,
-            format: RadianceFormat::Rgba32Float,
+            ..ShadeOptions::default()
         };
         g_buffer.formats().check(options)?; // says which image has another format than it should
         let table = arealight_table::ggx();
@@ -163,20 +157,19 @@ impl<'a> Deferred<'a> {
         // Point the sets at your images and buffers
         let sampled = |image: &Image<'_>, layout| Resource::SampledImage { view: image.view, layout };
         let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
-        let base_color = sampled(&g_buffer.base_color_metalness, read_only);
         for place in &self.places {
             let resources = ShadeResources {
                 table: table.resource(),
                 lights: Resource::buffer(place.lights.raw),
                 light_vertices: Resource::buffer(place.light_vertices.raw),
+                shapes: None,         // without disks, spheres and tubes
+                light_textures: None, // without textured lights
                 position: sampled(&g_buffer.depth, vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL),
                 normal: sampled(&g_buffer.normal_roughness, read_only),
-                base_color,
-                specular: base_color, // not read without Effects::SPECULAR_INPUT
+                base_color: sampled(&g_buffer.base_color_metalness, read_only),
+                specular: None, // without Effects::SPECULAR_INPUT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
-                glossy: None, // its radiance is in that image too, without RadianceImages::Apart
-                light_textures: table.in_place_of_textures(), // nor these without Effects::TEXTURED
-                shapes: Resource::buffer(place.lights.raw), // nor these without Effects::SHAPES
+                glossy: None, // its radiance is in that image too, without RadianceImages::Separate
                 tiles: Some(TileResources {
                     lobe_horizons: Resource::buffer(lobe_horizons.raw),
                     tile_lists: Resource::buffer(place.tile_lists.raw),
@@ -236,7 +229,7 @@ impl<'a> Deferred<'a> {
             // doc: frame
             // Write what is new in this frame: no other frame reads this place's buffers
             let camera = scene::camera(*size);
-            let packed = shade.pack_lights(&scene::lights(seconds), camera.position.as_dvec3())?;
+            let packed = PackedLights::new(&scene::lights(seconds), camera.position.as_dvec3())?;
             place.lights.write(bytemuck::cast_slice(&packed.lights))?;
             place.light_vertices.write(bytemuck::cast_slice(&packed.vertices))?;
             let vertices = scene::vertices(seconds);
@@ -247,10 +240,7 @@ impl<'a> Deferred<'a> {
                 size: *size,
                 camera: Vec3::ZERO,
                 position_from_clip: Some(camera.clip_from_view.inverse()),
-                light_count: packed.lights.len() as u32,
-                quad_count: packed.quad_count,
-                unused: packed.unused,
-                shape_count: 0,
+                lights: packed.summary(),
                 tile_lists: Some(Resource::buffer(place.tile_lists.raw)),
             };
             // SAFETY: the commands are being recorded; buffers and sets are this place's.

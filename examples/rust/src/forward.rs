@@ -33,7 +33,7 @@ struct Place<'a> {
 }
 
 // doc: lamps
-/// A light as `forward.frag` reads it: of [`arealight::gpu::GpuLight`] what lights without an image need.
+/// A light as `forward.frag` reads it: of [`arealight::gpu::GpuLight`] what lights without a texture need.
 #[repr(C)]
 #[derive(Clone, Copy, Pod, Zeroable)]
 struct Lamp {

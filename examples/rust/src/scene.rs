@@ -1,6 +1,6 @@
 //! What both engines draw: three boxes on a floor, and two panels that shine on them, one of which swings.
 
-use arealight::PolygonLight;
+use arealight::{Light, LightShape};
 use bytemuck::{Pod, Zeroable};
 use glam::camera::rh::{proj::vulkan, view};
 use glam::{DVec3, Mat4, Vec3};
@@ -51,14 +51,14 @@ pub fn camera(size: [u32; 2]) -> Camera {
 }
 
 /// The lights as they are after `seconds`.
-pub fn lights(seconds: f64) -> Vec<PolygonLight> {
+pub fn lights(seconds: f64) -> Vec<Light> {
     // Seen from where they shine, vertices run counter-clockwise
     let swing = DVec3::X * (seconds * 2.0).sin();
-    let panel = |name: &str, corner: DVec3, u: DVec3, v: DVec3, radiance| PolygonLight {
+    let panel = |name: &str, corner: DVec3, u: DVec3, v: DVec3, radiance| Light {
         name: name.into(),
-        vertices: vec![corner, corner + u, corner + u + v, corner + v],
         radiance,
-        ..PolygonLight::default()
+        shape: LightShape::Polygon(vec![corner, corner + u, corner + u + v, corner + v]),
+        ..Light::default()
     };
     let ceiling = DVec3::new(-1.0, 2.6, -0.8) + swing;
     let wall = DVec3::new(-2.6, 0.3, 1.2);
@@ -83,8 +83,9 @@ pub fn vertices(seconds: f64) -> Vec<Vertex> {
     for light in lights(seconds) {
         let black = Surface { base_color: Vec3::ZERO, metalness: 1.0, emission: light.radiance, ..white };
         // A panel lies a centimetre behind its light: in the light's own plane, the last bit would say whether it is lit
-        let back = -0.01 * light.area_vector().normalize_or_zero();
-        let corners = light.vertices.iter().map(|vertex| (*vertex + back).as_vec3()).collect::<Vec<_>>();
+        let back = -0.01 * light.shape.area_vector().normalize_or_zero();
+        let corners =
+            light.shape.vertices().iter().map(|vertex| (*vertex + back).as_vec3()).collect::<Vec<_>>();
         quad(&mut mesh, corners[0], corners[1] - corners[0], corners[3] - corners[0], black);
     }
     mesh

@@ -75,13 +75,13 @@ impl Relation {
 /// In two, from the first vertex on. A convex quad along its diagonal, a triangle to the middle of the opposite edge, a
 /// star through its middle.
 fn split(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
-    let outline = &given.light.vertices;
-    let [one, other] = match &outline[..] {
+    let outline = given.light.shape.vertices();
+    let [one, other] = match outline {
         [a, b, c] => {
             let middle = (*b + *c) * 0.5;
             [vec![*a, *b, middle], vec![*a, middle, *c]]
         }
-        [a, b, c, d] if given.light.is_convex_quad() => [vec![*a, *b, *c], vec![*a, *c, *d]],
+        [a, b, c, d] if given.light.shape.is_convex_quad() => [vec![*a, *b, *c], vec![*a, *c, *d]],
         _ => {
             let middle = star_middle(outline);
             let rest = [&outline[2..], &[outline[0], middle][..]].concat();
@@ -107,15 +107,15 @@ fn star_middle(outline: &[DVec3]) -> DVec3 {
 
 fn begun_elsewhere(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     let mut turned = given.clone();
-    let count = turned.light.vertices.len();
-    turned.light.vertices.rotate_left(1 + random.bits() as usize % (count - 1));
+    let count = turned.light.shape.vertices().len();
+    turned.light.shape.vertices_mut().rotate_left(1 + random.bits() as usize % (count - 1));
     vec![turned]
 }
 
 /// With one side, and with two.
 fn reversed(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     let mut back = given.clone();
-    back.light.vertices.reverse();
+    back.light.shape.vertices_mut().reverse();
     let mut both_sides = back.clone();
     both_sides.light.two_sided = true;
     vec![back, both_sides]
@@ -124,8 +124,8 @@ fn reversed(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
 /// A triangle or a star as it is, with the midpoint of an edge, and with a vertex twice. A quad has no room for a fifth
 /// vertex, so it loses one first.
 fn inserted(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
-    let mut outline = given.light.vertices.clone();
-    if given.light.is_convex_quad() {
+    let mut outline = given.light.shape.vertices().to_vec();
+    if given.light.shape.is_convex_quad() {
         outline.truncate(3);
     }
     let after = random.bits() as usize % outline.len();
@@ -138,7 +138,7 @@ fn inserted(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
 
 /// Shrunk towards the middle: by a ten-millionth, or by half.
 fn part(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
-    let outline = &given.light.vertices;
+    let outline = given.light.shape.vertices();
     let middle = star_middle(outline);
     let factor = 1.0 - 10.0_f64.powf(random.between(-7.0, -0.3));
     vec![with_outline(given, outline.iter().map(|v| middle.lerp(*v, factor)).collect())]
@@ -146,7 +146,7 @@ fn part(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
 
 /// With a hole, and what was cut out of it: the outline shrunk towards its middle.
 fn cut(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
-    let outline = &given.light.vertices;
+    let outline = given.light.shape.vertices();
     let middle = star_middle(outline);
     let factor = random.between(0.1, 0.95);
     let hole: Vec<_> = outline.iter().map(|v| middle.lerp(*v, factor)).collect();
@@ -163,7 +163,7 @@ fn rotated(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
         let mut turned = given.clone();
         turned.normal = turn * given.normal;
         turned.view = turn * given.view;
-        turned.light.vertices.iter_mut().for_each(|vertex| *vertex = turn * *vertex);
+        turned.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex = turn * *vertex);
         turned
     };
     [anyhow, about_normal].map(by).into()

@@ -62,9 +62,9 @@ fn wrong_arguments_are_exit_code_2() {
     refuse(folder.path(), &["render", &room, "--reference", "0"], 2, &["--reference"]);
     refuse(
         folder.path(),
-        &["render", &room, "--effects", "shiny"],
+        &["render", &room, "--surfaces", "shiny"],
         2,
-        &["--effects", "'shiny' is no effect", "two_sided"],
+        &["--surfaces", "'shiny' is no effect", "two_sided"],
     );
     refuse(folder.path(), &["effects"], 2, &["SCENE"]);
     refuse(folder.path(), &["render", &room, "-o", "picture.bmp"], 2, &["picture.bmp", ".png or .exr"]);
@@ -295,22 +295,26 @@ fn effects_are_told_with_who_calls_for_them() {
 }
 
 #[test]
-fn a_stated_set_that_is_too_small_is_refused_by_the_light() {
+fn a_stated_set_that_a_surface_needs_more_than_is_said() {
     if !device() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
     let screen = scene("screen.glb");
-    let render = |effects| vec!["render", screen.as_str(), "--size", "16x9", "--effects", effects];
-    let words = ["--effects: light '", "calls for the effects: textured"];
-    refuse(folder.path(), &render("diffuse,glossy,two_sided,polygon"), 2, &words);
-    for (effects, warned) in [("all", false), ("diffuse,two_sided,polygon,textured", true)] {
-        let output = run(folder.path(), &render(effects));
+    for (surfaces, warned) in [("diffuse,glossy", false), ("diffuse", true)] {
+        let output = run(folder.path(), &["render", &screen, "--size", "16x9", "--surfaces", surfaces]);
         let said = text(&output.stderr);
         assert!(output.status.success(), "{said}");
-        assert_eq!(said.contains("--effects is without glossy: material '"), warned, "{said}");
-        assert!(text(&output.stdout).contains("stated   "), "{}", text(&output.stdout));
+        assert_eq!(said.contains("--surfaces is without glossy: material '"), warned, "{said}");
+        let expected = format!("surfaces {}", surfaces.replace(',', ", "));
+        assert!(text(&output.stdout).contains(&expected), "{}", text(&output.stdout));
     }
+    refuse(
+        folder.path(),
+        &["render", &screen, "--surfaces", "tube"],
+        2,
+        &["--surfaces", "tube depends on the lights"],
+    );
 }
 
 #[test]

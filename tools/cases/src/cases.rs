@@ -6,9 +6,7 @@
 
 mod fields;
 
-use arealight::{
-    LightTexture, MIN_ALPHA, PolygonLight, Shape, ShapeLight, Surface, TextureError, TextureMap, TubeEnds,
-};
+use arealight::{Light, LightShape, LightTexture, MIN_ALPHA, Surface, TextureError, TextureMap, TubeEnds};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
@@ -119,7 +117,7 @@ pub enum CaseShape {
         /// Half axis, perpendicular to the first.
         axis_v: DVec3,
         /// Path beside the file of cases of an image that the radiance is multiplied with: as
-        /// [`ShapeLight::texture`](arealight::ShapeLight::texture) says.
+        /// [`LightTexture::uvs`] says.
         texture: Option<String>,
     },
     /// A sphere that emits outwards.
@@ -194,7 +192,7 @@ pub struct ShapeCase {
     /// Direction to the viewer, not zero, of any length.
     pub view: DVec3,
     /// The light, relative to the shading point; the layer of its image is 0.
-    pub light: ShapeLight,
+    pub light: Light,
     /// The image that it shows.
     pub image: Option<Arc<Texture>>,
 }
@@ -399,14 +397,16 @@ impl Case {
         let shape = match self.light.shape {
             CaseShape::Polygon { .. } => return Err(Unsupported { reason: "the light is a polygon".into() }),
             CaseShape::Disk { center, axis_u, axis_v, .. } => {
-                Shape::Ellipse { center: center - self.position, axis_u, axis_v }
+                LightShape::Disk { center: center - self.position, axis_u, axis_v }
             }
-            CaseShape::Sphere { center, radius } => Shape::Sphere { center: center - self.position, radius },
+            CaseShape::Sphere { center, radius } => {
+                LightShape::Sphere { center: center - self.position, radius }
+            }
             CaseShape::Cylinder { p0, p1, radius, caps } => {
                 let (p0, p1) = (p0 - self.position, p1 - self.position);
                 // It emits outwards, whatever is said of its sides
                 let ends = if caps { TubeEnds::Flat } else { TubeEnds::Open };
-                Shape::Tube { p0, p1, radius, ends }
+                LightShape::Tube { p0, p1, radius, ends }
             }
         };
         let image = match &self.light.shape {
@@ -416,11 +416,11 @@ impl Case {
             }
             _ => None,
         };
-        let light = ShapeLight {
+        let light = Light {
             name: self.name.clone(),
             radiance: self.light.radiance.as_vec3(),
             two_sided: self.light.two_sided,
-            texture: image.as_ref().map(|_| 0),
+            texture: image.as_ref().map(|_| LightTexture { layer: 0, uvs: vec![] }),
             shape,
         };
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
@@ -467,8 +467,7 @@ impl Case {
 impl CaseTexture {
     /// Where the image is on a polygon.
     fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, TextureError> {
-        let light = PolygonLight { vertices: vertices.to_vec(), ..PolygonLight::default() };
-        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&light)
+        LightTexture { layer: 0, uvs: self.uv.clone() }.map(&LightShape::Polygon(vertices.to_vec()))
     }
 }
 

@@ -2,11 +2,14 @@
 
 use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
-use arealight::{Effects, PackedLights, PolygonLight, Quality, Surface};
+use arealight::{Effects, Light, PackedLights, Quality, Surface};
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
+
+/// What polygons and meshes may need beyond a convex quad without a texture.
+pub(crate) const POLYGONAL: Effects = Effects::POLYGON.union(Effects::TEXTURED).union(Effects::MESH);
 
 /// A shading point with its one light.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,7 +23,7 @@ pub struct EvalPoint {
     /// Direction to the viewer, of any length.
     pub view: DVec3,
     /// The light, in world positions.
-    pub light: PolygonLight,
+    pub light: Light,
 }
 
 impl Engine {
@@ -29,10 +32,10 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        // Points get a pipeline that has no more than their lights call for
+        // Points get a pipeline that has no more than their lights need
         let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
         for (index, point) in points.iter().enumerate() {
-            let needed = point.light.effects() & Effects::BEYOND_QUADS;
+            let needed = point.light.effects() & POLYGONAL;
             match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
                 Some((_, subset)) => subset.push(index),
                 None => subsets.push((needed, vec![index])),
@@ -40,7 +43,7 @@ impl Engine {
         }
         let mut radiance = vec![Vec3::ZERO; points.len()];
         for (needed, indices) in subsets {
-            let effects = (Effects::all() - Effects::BEYOND_QUADS) | needed;
+            let effects = (Effects::all() - POLYGONAL) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
             let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;

@@ -19,7 +19,6 @@ mod texture_array;
 mod textures;
 
 pub use eval::{EvalPoint, gpu_case};
-pub use eval_shapes::ShapePoint;
 pub use g_buffer::GBuffer;
 pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
@@ -56,9 +55,6 @@ pub enum EngineError {
     /// The scene does not fit the device's buffers.
     #[error(transparent)]
     Scene(#[from] arealight_scene::BufferError),
-    /// A shape cannot be used as a light.
-    #[error(transparent)]
-    Shape(#[from] arealight::ShapeError),
     /// A buffer is larger than the device binds.
     #[error("{name}: {bytes} bytes, but the device binds at most {limit} to a shader: use a smaller scene")]
     BufferTooLarge {

@@ -1,20 +1,20 @@
-//! What a camera sees of a scene, lit by its polygon lights and its disks, spheres and tubes.
+//! What a camera sees of a scene and its lights.
 
 pub(crate) mod tiled;
 
 use crate::host::{Buffer, DescriptorPool, Usage};
 use crate::{BoundPass, Engine, EngineError, GBuffer};
-use arealight::gpu::{GpuShape, ShadeConstants};
+use arealight::gpu::ShadeConstants;
 use arealight::kernels::Kernel;
 use arealight::plan::{Output, ShadeOptions};
-use arealight::{Effects, PackedLights, PolygonLight, Quality, ShapeLight};
+use arealight::{Effects, Light, LightSummary, PackedLights, Quality};
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight_tool_kernels::kernels::{REFERENCE, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 use std::time::Duration;
 
 /// A scene on the device, with the images of one view of it.
@@ -23,9 +23,7 @@ use std::time::Duration;
 /// reflected light to the emission that the camera sees directly.
 pub struct SceneRenderer<'a> {
     engine: &'a Engine,
-    lights: &'a [PolygonLight],
-    shapes: &'a [ShapeLight],
-    origin: DVec3,
+    lights: LightSummary,
     size: [u32; 2],
     camera: VisibilityConstants,
     g_buffer: GBuffer,
@@ -34,8 +32,6 @@ pub struct SceneRenderer<'a> {
     vertex_buffer: Buffer,
     shape_buffer: Buffer,
     sampling: LightSampling,
-    quad_count: u32,
-    unused: Effects,
     shown: bool,
 }
 
@@ -48,7 +44,7 @@ impl<'a> SceneRenderer<'a> {
     pub fn new(
         engine: &'a Engine,
         scene: &SceneBuffers,
-        lights: &'a [PolygonLight],
+        lights: &[Light],
         camera: VisibilityConstants,
         size: [u32; 2],
     ) -> Result<Self, EngineError> {
@@ -63,35 +59,17 @@ impl<'a> SceneRenderer<'a> {
         ];
         Ok(Self {
             engine,
-            lights,
-            shapes: &[],
-            origin: scene.origin,
+            lights: packed.summary(),
             size,
             camera,
             g_buffer: GBuffer::new(engine, size)?,
             geometry,
             light_buffer: engine.storage("lights", &packed.lights)?,
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
-            shape_buffer: engine.storage::<GpuShape>("shapes", &[])?,
+            shape_buffer: engine.storage("shapes", &packed.shapes)?,
             sampling: LightSampling::new(lights, &packed),
-            quad_count: packed.quad_count,
-            unused: packed.unused | scene.unused,
             shown: false,
         })
-    }
-
-    /// Adds lights that are no polygons.
-    ///
-    /// # Errors
-    /// [`EngineError`] names the shape that cannot be shaded.
-    pub fn with_shapes(mut self, shapes: &'a [ShapeLight]) -> Result<Self, EngineError> {
-        let layers = self.engine.texture_layers();
-        shapes.iter().try_for_each(|shape| shape.check_texture_layer(layers))?;
-        let packed = shapes.iter().map(|shape| shape.pack(self.origin));
-        let packed = packed.collect::<Result<Vec<GpuShape>, _>>()?;
-        self.shape_buffer = self.engine.storage("shapes", &packed)?;
-        self.shapes = shapes;
-        Ok(self)
     }
 
     /// Finds the surface at each pixel, and writes the emission that the camera sees. GPU time, where the
@@ -118,12 +96,12 @@ impl<'a> SceneRenderer<'a> {
         Ok(took)
     }
 
-    /// Adds the light that surfaces reflect, by the fitted lobes. GPU time, where the queue has timestamps.
+    /// Adds the light that surfaces reflect, by the fitted lobes; `surfaces` is what they need ([`ShadeOptions::surfaces`]). GPU time, where the queue has timestamps.
     ///
     /// # Errors
-    /// [`EngineError`] names a light that calls for more than `effects`, or says why the device fails.
-    pub fn shade(&mut self, effects: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
-        self.shade_as(ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() })
+    /// [`EngineError`] says why the device fails.
+    pub fn shade(&mut self, surfaces: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
+        self.shade_as(ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() })
     }
 
     /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of ours, and radiance is
@@ -134,8 +112,6 @@ impl<'a> SceneRenderer<'a> {
     pub fn shade_as(&mut self, options: ShadeOptions) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let pass = self.engine.shade_pass(options)?;
-        pass.check_lights(self.lights)?;
-        pass.check_shapes(self.shapes)?;
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
@@ -180,9 +156,9 @@ impl<'a> SceneRenderer<'a> {
         let constants = ShadeConstants {
             position_from_clip: glam::Mat4::IDENTITY.to_cols_array_2d(),
             camera: self.camera.camera,
-            light_count: self.lights.len() as u32,
-            shape_count: self.shapes.len() as u32,
-            quad_count: self.quad_count,
+            light_count: self.lights.light_count,
+            shape_count: self.lights.shape_count,
+            quad_count: self.lights.quad_count,
         };
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
@@ -239,12 +215,12 @@ impl<'a> SceneRenderer<'a> {
     ) -> Result<Option<Duration>, EngineError> {
         let constants = ReferenceConstants {
             camera: self.camera.camera,
-            light_count: self.lights.len() as u32,
+            light_count: self.lights.light_count,
             first_sample,
             sample_count,
             weight: (f64::from(sample_count) / f64::from(samples)) as f32,
             seed,
-            shape_count: self.shapes.len() as u32,
+            shape_count: self.lights.shape_count,
         };
         self.engine.host().try_submit_timed(|commands: vk::CommandBuffer| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
@@ -256,7 +232,7 @@ impl<'a> SceneRenderer<'a> {
     /// device after two seconds; at least one for each pixel and light, however many there are.
     fn samples_a_dispatch(&self) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
-        let light_samples = pixels * ((self.lights.len() + self.shapes.len()) as u64).max(1);
+        let light_samples = pixels * u64::from(self.lights.light_count + self.lights.shape_count).max(1);
         ((1 << 23) / light_samples).clamp(1, 64) as u32
     }
 
@@ -268,6 +244,11 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let texels: Vec<[f32; 4]> = self.g_buffer.radiance.download(Usage::COMPUTE_WRITE)?;
         Ok(texels.into_iter().map(Vec4::from_array).collect())
+    }
+
+    /// What the lights are.
+    pub fn lights(&self) -> LightSummary {
+        self.lights
     }
 
     /// The G-buffer, after [`SceneRenderer::visibility`].
@@ -291,11 +272,11 @@ impl<'a> SceneRenderer<'a> {
             position,
             normal,
             base_color,
-            specular,
+            specular: Some(specular),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             glossy: None,
-            light_textures: self.engine.light_textures(),
-            shapes: Resource::buffer(self.shape_buffer.handle()),
+            light_textures: Some(self.engine.light_textures()),
+            shapes: Some(Resource::buffer(self.shape_buffer.handle())),
             tiles: None,
         }
     }
@@ -305,10 +286,7 @@ impl<'a> SceneRenderer<'a> {
             size: self.size,
             camera: Vec3::from(self.camera.camera),
             position_from_clip: None,
-            light_count: self.lights.len() as u32,
-            quad_count: self.quad_count,
-            unused: self.unused,
-            shape_count: self.shapes.len() as u32,
+            lights: self.lights,
             tile_lists: None,
         }
     }

@@ -54,6 +54,7 @@ impl UploadedTable {
 
     /// As an array image with a sampler: what is bound where no light has a texture.
     pub(crate) fn filtered(&self) -> Resource {
-        self.allocated.image.in_place_of_textures()
+        let (view, layout) = (self.allocated.image.view(), TableImage::LAYOUT);
+        Resource::FilteredImage { view, layout }
     }
 }

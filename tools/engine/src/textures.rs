@@ -3,7 +3,7 @@
 use crate::host::Location;
 use crate::texture_array::TextureArray;
 use crate::{Engine, EngineError};
-use arealight::{PolygonLight, PyramidSize, TexturePart};
+use arealight::{Light, PyramidSize, TexturePart};
 use arealight_vk::Resource;
 use ash::vk;
 
@@ -93,10 +93,9 @@ impl Engine {
     /// Checks that every light's texture is there.
     ///
     /// # Errors
-    /// [`arealight::LightError::NoTextureLayer`] names the first light whose is not.
-    pub fn check_layers(&self, lights: &[PolygonLight]) -> Result<(), EngineError> {
-        let layers = self.texture_layers();
-        Ok(lights.iter().try_for_each(|light| light.check_texture_layer(layers))?)
+    /// [`arealight::LightFault::NoTextureLayer`] names the first light whose is not.
+    pub fn check_layers(&self, lights: &[Light]) -> Result<(), EngineError> {
+        Ok(Light::check_texture_layers(lights, self.texture_layers())?)
     }
 
     /// A level of a layer: [`PyramidSize::extent`] texels, row after row.

@@ -1,7 +1,7 @@
 //! What the Monte Carlo reference needs to draw points of lights: triangles and their areas.
 
 use crate::gpu::{GpuLightSampling, GpuLightTriangle};
-use arealight::{PackedLights, PolygonLight};
+use arealight::{Light, LightShape, PackedLights};
 use glam::DVec3;
 
 /// The buffers of the reference kernel beside the lights themselves.
@@ -14,11 +14,11 @@ pub struct LightSampling {
 }
 
 /// Vertex indices of triangles that cover a polygon, or each face of a mesh, once, three a triangle, in its
-/// orientation. Empty for a degenerate polygon.
-pub fn triangles(light: &PolygonLight) -> Vec<u32> {
+/// orientation. Empty for a degenerate polygon, and for disks, spheres and tubes.
+pub fn triangles(light: &Light) -> Vec<u32> {
     let mut indices = Vec::new();
     let mut first = 0;
-    for outline in light.outlines() {
+    for outline in light.shape.outlines() {
         indices.extend(triangles_of(outline).into_iter().map(|index| first + index));
         first += outline.len() as u32;
     }
@@ -27,8 +27,7 @@ pub fn triangles(light: &PolygonLight) -> Vec<u32> {
 
 /// Indices of an outline's vertices: triangles that cover it once, in its orientation.
 fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
-    let polygon = PolygonLight { vertices: outline.to_vec(), ..PolygonLight::default() };
-    let normal = polygon.area_vector().normalize_or_zero();
+    let normal = LightShape::Polygon(outline.to_vec()).area_vector().normalize_or_zero();
     if normal == DVec3::ZERO {
         return Vec::new();
     }
@@ -52,11 +51,11 @@ fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
 }
 
 /// The row of each of a light's vertices among its rows: before each face of a mesh there is one more.
-fn vertex_rows(light: &PolygonLight) -> Vec<u32> {
-    let mut rows = Vec::with_capacity(light.vertices.len());
+fn vertex_rows(light: &Light) -> Vec<u32> {
+    let mut rows = Vec::with_capacity(light.shape.vertices().len());
     let mut next = 0;
-    for outline in light.outlines() {
-        next += u32::from(light.is_mesh());
+    for outline in light.shape.outlines() {
+        next += u32::from(light.shape.is_mesh());
         rows.extend(next..next + outline.len() as u32);
         next += outline.len() as u32;
     }
@@ -65,7 +64,7 @@ fn vertex_rows(light: &PolygonLight) -> Vec<u32> {
 
 impl LightSampling {
     /// Triangulates `lights`, which were packed as `packed`.
-    pub fn new(lights: &[PolygonLight], packed: &PackedLights) -> Self {
+    pub fn new(lights: &[Light], packed: &PackedLights) -> Self {
         let mut sampling = Self::default();
         for (index, record) in packed.order.iter().zip(&packed.lights) {
             let Some(light) = lights.get(*index as usize) else { continue };
@@ -73,7 +72,7 @@ impl LightSampling {
             let indices = triangles(light);
             let rows = vertex_rows(light);
             let areas = indices.chunks_exact(3).map(|triangle| {
-                let [a, b, c] = [0, 1, 2].map(|corner| light.vertices[triangle[corner] as usize]);
+                let [a, b, c] = [0, 1, 2].map(|corner| light.shape.vertices()[triangle[corner] as usize]);
                 (b - a).cross(c - a).length() * 0.5
             });
             let total: f64 = areas.clone().sum();
@@ -86,7 +85,11 @@ impl LightSampling {
                 });
             }
             // The faces of a mesh have normals of their own
-            let normal = if light.is_mesh() { DVec3::ZERO } else { light.area_vector().normalize_or_zero() };
+            let normal = if light.shape.is_mesh() {
+                DVec3::ZERO
+            } else {
+                light.shape.area_vector().normalize_or_zero()
+            };
             sampling.lights.push(GpuLightSampling {
                 normal: normal.as_vec3().to_array(),
                 area: total as f32,
@@ -105,10 +108,10 @@ mod tests {
     use glam::Vec3;
 
     /// A concave quad in the plane z = 2, counter-clockwise from above.
-    fn arrow() -> PolygonLight {
+    fn arrow() -> Light {
         let outline = [[0.0, 0.0], [2.0, 1.0], [0.0, 2.0], [1.0, 1.0]];
         let vertices = outline.map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec();
-        PolygonLight { name: "arrow".into(), vertices, ..PolygonLight::default() }
+        Light { name: "arrow".into(), shape: LightShape::Polygon(vertices), ..Light::default() }
     }
 
     #[test]
@@ -117,29 +120,28 @@ mod tests {
         let area: DVec3 = triangles(&light)
             .chunks_exact(3)
             .map(|t| {
-                let [a, b, c] = [0, 1, 2].map(|i| light.vertices[t[i] as usize]);
+                let [a, b, c] = [0, 1, 2].map(|i| light.shape.vertices()[t[i] as usize]);
                 let area = (b - a).cross(c - a) * 0.5;
                 assert!(area.z > 0.0, "every triangle faces the light's front");
                 area
             })
             .sum();
-        assert!((area - light.area_vector()).length() < 1e-12);
+        assert!((area - light.shape.area_vector()).length() < 1e-12);
     }
 
     #[test]
     fn degenerate_polygons_have_no_triangles() {
         let mut light = arrow();
-        light.vertices = vec![DVec3::ONE; 4];
+        light.shape = LightShape::Polygon(vec![DVec3::ONE; 4]);
         assert!(triangles(&light).is_empty());
     }
 
     #[test]
     fn cumulative_areas_end_at_one_and_degenerate_lights_have_no_triangles() {
-        let light = |vertices: Vec<DVec3>| PolygonLight {
-            name: "light".into(),
-            vertices,
+        let light = |vertices: Vec<DVec3>| Light {
             radiance: Vec3::ONE,
-            ..PolygonLight::default()
+            shape: LightShape::Polygon(vertices),
+            ..Light::default()
         };
         let square = [DVec3::ZERO, DVec3::X, DVec3::ONE - DVec3::Z, DVec3::Y];
         let lights = [light(vec![DVec3::ONE; 3]), light(square.to_vec())];

@@ -3,7 +3,7 @@
 use crate::SceneError;
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
-use arealight::{PolygonLight, Shape, ShapeLight};
+use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
 
@@ -89,13 +89,19 @@ pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), Scene
         })?;
         let name = [&node.name, &light.name].into_iter().flatten().find(|name| !name.is_empty());
         let name = name.map_or_else(|| format!("area light {}", reference.light), Clone::clone);
-        let added = match light.shape.as_str() {
-            "rect" => polygon(light, node, name.clone()).map(|light| loader.scene.lights.push(light)),
-            "disk" => disk(light, node, name.clone()).map(|light| loader.scene.shapes.push(light)),
+        let shape = match light.shape.as_str() {
+            "rect" => polygon(light, node),
+            "disk" => disk(light, node),
             other => Err(format!("type '{other}' is not known")),
         };
-        if let Err(problem) = added {
-            loader.warn(format!("light '{name}'"), format!("{problem}: left out"));
+        let radiance = radiance(light);
+        let made = shape.and_then(|shape| {
+            let light = Light { name: name.clone(), radiance, shape, ..Light::default() };
+            light.validate().map(|()| light).map_err(|fault| fault.to_string())
+        });
+        match made {
+            Ok(light) => loader.scene.lights.push(light),
+            Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }
     Ok(())
@@ -130,7 +136,7 @@ fn radiance(light: &AreaLight) -> Vec3 {
 }
 
 /// The light's rectangle in the world, or why there is none.
-fn polygon(light: &AreaLight, node: &PlacedNode, name: String) -> Result<PolygonLight, String> {
+fn polygon(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     let Placing { scale, right, up, front } = Placing::new(node)?;
     let [half_width, half_height] =
         [scale * light.size * light.rect.aspect, scale * light.size].map(|s| s * 0.5);
@@ -143,21 +149,16 @@ fn polygon(light: &AreaLight, node: &PlacedNode, name: String) -> Result<Polygon
     if up.cross(right).dot(front) < 0.0 {
         vertices.reverse();
     }
-    let polygon = PolygonLight { name, vertices, radiance: radiance(light), ..PolygonLight::default() };
-    polygon.validate().map_err(|e| e.to_string())?;
-    Ok(polygon)
+    Ok(LightShape::Polygon(vertices))
 }
 
 /// The light's disk in the world, or why there is none.
-fn disk(light: &AreaLight, node: &PlacedNode, name: String) -> Result<ShapeLight, String> {
+fn disk(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     let Placing { scale, right, front, .. } = Placing::new(node)?;
     let radius = scale * light.size * 0.5;
     if !(radius > 0.0 && radius.is_finite()) {
         return Err(format!("a disk of the diameter {}", 2.0 * radius));
     }
     let (axis_u, axis_v) = (right * radius, front.cross(right) * radius);
-    let shape = Shape::Ellipse { center: node.world.translation, axis_u, axis_v };
-    let disk = ShapeLight { name, radiance: radiance(light), two_sided: false, texture: None, shape };
-    disk.validate().map_err(|e| e.to_string())?;
-    Ok(disk)
+    Ok(LightShape::Disk { center: node.world.translation, axis_u, axis_v })
 }

@@ -1,6 +1,6 @@
 //! Flat parts of meshes that have holes: their borders, and one outline around all of them.
 
-use arealight::PolygonLight;
+use arealight::{Light, LightShape};
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -34,11 +34,11 @@ pub(crate) fn borders(triangles: impl Iterator<Item = [u32; 3]>) -> Option<Vec<V
 /// One outline around what several loops border, of which one goes around counter-clockwise as seen from the side that `normal`
 /// points to, and the others are holes. None where that is not so.
 pub(crate) fn with_holes(loops: Vec<Vec<DVec3>>, normal: DVec3) -> Option<Vec<DVec3>> {
-    let lights = loops.into_iter().map(|vertices| PolygonLight { vertices, ..PolygonLight::default() });
+    let shapes = loops.into_iter().map(LightShape::Polygon);
     let (mut outlines, holes): (Vec<_>, Vec<_>) =
-        lights.partition(|light| light.area_vector().dot(normal) > 0.0);
-    let mut light = outlines.pop()?;
-    let holes: Vec<_> = holes.into_iter().map(|light| light.vertices).collect();
+        shapes.partition(|shape| shape.area_vector().dot(normal) > 0.0);
+    let mut light = Light { shape: outlines.pop()?, ..Light::default() };
+    let holes: Vec<_> = holes.iter().map(|shape| shape.vertices().to_vec()).collect();
     light.cut_holes(&holes).ok()?;
-    outlines.is_empty().then_some(light.vertices)
+    outlines.is_empty().then(|| light.shape.vertices().to_vec())
 }

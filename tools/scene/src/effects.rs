@@ -1,15 +1,15 @@
-//! The scan that says which effects a scene calls for.
+//! The scan that says which effects a scene needs.
 
 use crate::{Scene, SceneMaterial};
 use arealight::Effects;
 use glam::Vec3;
 
-/// An effect, and who in the scene calls for it.
+/// An effect, and who in the scene needs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Call {
     /// One effect.
     pub effect: Effects,
-    /// The first light or material that calls for it, such as "light 'sign'".
+    /// The first light or material that needs it, such as "light 'sign'".
     pub reason: String,
 }
 
@@ -19,7 +19,7 @@ impl std::fmt::Display for Call {
     }
 }
 
-/// What a scene calls for and nothing else, each effect once, with its reason, in the order of their bits.
+/// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
 /// [`Scene::effects`] is their union.
 pub fn required_effects(scene: &Scene) -> Vec<Call> {
     // Only materials that something has been made of are in a scene
@@ -28,10 +28,8 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         Some(Call { effect, reason: format!("material '{}'", first.name) })
     };
     let light = |effect| {
-        let polygon = scene.lights.iter().find(|light| light.effects().contains(effect));
-        let shape = || scene.shapes.iter().find(|shape| shape.effects().contains(effect));
-        let name = polygon.map(|light| &light.name).or_else(|| shape().map(|shape| &shape.name))?;
-        Some(Call { effect, reason: format!("light '{name}'") })
+        let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
+        Some(Call { effect, reason: format!("light '{}'", first.name) })
     };
     let calls = [
         material(Effects::DIFFUSE, has_diffuse_lobe),

@@ -1,12 +1,12 @@
 //! Emissive geometry to polygon lights.
 
-use crate::light_textures::{self, Owner, TexturedLight};
+use crate::light_textures::{self, TexturedLight};
 use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
 use crate::outlines::{Coordinates, outlines};
 use crate::shape_lights;
-use arealight::PolygonLight;
+use arealight::{Light, LightShape};
 use glam::Vec3;
 
 /// Adds the lights that an instance is, if its material emits.
@@ -33,13 +33,13 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     let outlines = outlines(&instance.positions, &instance.triangles, instance.rounding, coordinates);
     let Some(texture) = texture else {
         // One light of one colour, of as many faces as there are flat parts
-        let mut light =
-            PolygonLight { name: instance.name.clone(), radiance, two_sided, ..PolygonLight::default() };
-        outlines.polygons.iter().for_each(|outline| light.add_face(outline));
-        if !light.is_mesh() {
-            light.faces.clear();
+        let mut shape = LightShape::default();
+        match &outlines.polygons[..] {
+            [outline] => shape = LightShape::Polygon(outline.clone()),
+            polygons => polygons.iter().for_each(|outline| shape.add_face(outline)),
         }
-        push(loader, &place, light);
+        let name = instance.name.clone();
+        push(loader, &place, Light { name, radiance, two_sided, shape, ..Light::default() });
         return;
     };
     // An image lies on one plane: each straight part is a light of its own
@@ -62,16 +62,17 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
         let uvs = uvs.next().unwrap_or_default();
         let name =
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
-        let light = PolygonLight { name, vertices, radiance, two_sided, ..PolygonLight::default() };
+        let shape = LightShape::Polygon(vertices);
+        let light = Light { name, radiance, two_sided, shape, ..Light::default() };
         if push(loader, &place, light) {
-            let owner = Owner::Polygon(loader.scene.lights.len() - 1);
+            let owner = loader.scene.lights.len() - 1;
             loader.textured.push(TexturedLight { owner, texture, uvs });
         }
     }
 }
 
 /// Adds a light; false where it cannot be shaded.
-fn push(loader: &mut Loader, place: &str, light: PolygonLight) -> bool {
+fn push(loader: &mut Loader, place: &str, light: Light) -> bool {
     match light.validate() {
         Ok(()) => loader.scene.lights.push(light),
         Err(problem) => {

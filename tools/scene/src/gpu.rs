@@ -2,7 +2,6 @@
 
 use crate::bvh::Bvh;
 use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
-use arealight::Effects;
 use arealight_tool_kernels::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::{DVec3, Vec3};
 
@@ -23,8 +22,6 @@ pub struct SceneBuffers {
     pub textures: Vec<GpuTexture>,
     /// The images' texels, one after the other.
     pub texels: Vec<u32>,
-    /// What no surface calls for, of [`Effects::SURFACES`].
-    pub unused: Effects,
     /// Nodes from the root to the deepest leaf, at most [`crate::bvh::MAX_DEPTH`].
     pub max_depth: u32,
 }
@@ -108,7 +105,6 @@ impl SceneBuffers {
             materials: scene.materials.iter().map(pack_material).collect(),
             textures: scene.textures.iter().map(texture).collect(),
             texels,
-            unused: Effects::SURFACES - scene.effects(),
             max_depth: bvh.max_depth,
         })
     }

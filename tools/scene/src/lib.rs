@@ -14,7 +14,7 @@
 //! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
 //!   [`LUMENS_PER_WATT`].
 //! - Emissive meshes whose node has a word for what they stand for: `"extras": { "arealight": { "shape": "sphere", "radius": 0.5 } }`.
-//!   The mesh is drawn, and a [`ShapeLight`](arealight::ShapeLight) in [`Scene::shapes`] lights. Shapes are `disk` (which faces
+//!   The mesh is drawn, and a [`Light`](arealight::Light) of that shape lights. Shapes are `disk` (which faces
 //!   +Y), `sphere`, `cylinder`, `pipe` (a cylinder without caps) and `capsule`, about the node's origin and its Y axis,
 //!   each with a `radius`, and the last three with the `height` of their straight part, in the node's space. A disk may be
 //!   scaled at will; a sphere and a capsule stay what they are under a uniform scale, a cylinder as long as it stays round.

@@ -12,7 +12,7 @@ use crate::load::Loader;
 use crate::shown::{Images, Key, Rectangle, Shown};
 use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
-use arealight::{LightTexture, PolygonLight, TexturePart};
+use arealight::{Light, LightShape, LightTexture, TexturePart};
 use glam::{DVec2, Vec3};
 use std::collections::{HashMap, HashSet};
 
@@ -100,39 +100,14 @@ impl Scene {
     }
 }
 
-/// A light that shows a texture, while the scene is read.
+/// A textured light, while the scene is read.
 pub(crate) struct TexturedLight {
-    /// Which light.
-    pub owner: Owner,
+    /// Which light: an index into [`Scene::lights`].
+    pub owner: usize,
     /// Index into [`Scene::textures`].
     pub texture: u32,
-    /// Of its vertices, in the texture's coordinates; of a shape those of its box's corners, the first texel's first.
+    /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's first.
     pub uvs: Vec<DVec2>,
-}
-
-/// A light of a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Owner {
-    /// Index into [`Scene::lights`].
-    Polygon(usize),
-    /// Index into [`Scene::shapes`].
-    Shape(usize),
-}
-
-impl Owner {
-    fn name(self, scene: &Scene) -> &str {
-        match self {
-            Self::Polygon(index) => &scene.lights[index].name,
-            Self::Shape(index) => &scene.shapes[index].name,
-        }
-    }
-
-    fn radiance(self, scene: &mut Scene) -> &mut Vec3 {
-        match self {
-            Self::Polygon(index) => &mut scene.lights[index].radiance,
-            Self::Shape(index) => &mut scene.shapes[index].radiance,
-        }
-    }
 }
 
 /// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be
@@ -150,7 +125,7 @@ pub(crate) fn assign(loader: &mut Loader) {
     let mut images = Images::default();
     let shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
     let mut layers = Layers { whole: shown_in_many_pieces(&shown), ..Layers::default() };
-    let mut losses: Vec<(&str, Vec<Owner>)> = Vec::new();
+    let mut losses: Vec<(&str, Vec<usize>)> = Vec::new();
     for (TexturedLight { owner, .. }, shown) in textured.iter().zip(shown) {
         // Show it, or else its colour
         let (color, loss) = match shown {
@@ -161,7 +136,7 @@ pub(crate) fn assign(loader: &mut Loader) {
                 Err(loss) => (rectangle.mean(scene), Some(loss)),
             },
         };
-        *owner.radiance(scene) *= color.as_vec3();
+        scene.lights[*owner].radiance *= color.as_vec3();
         if let Some(loss) = loss {
             match losses.iter_mut().find(|(known, _)| *known == loss) {
                 Some((_, owners)) => owners.push(*owner),
@@ -172,14 +147,13 @@ pub(crate) fn assign(loader: &mut Loader) {
     scene.light_textures = layers.made;
     scale_down(scene);
     for (loss, lights) in losses {
-        let name = lights[0].name(&loader.scene);
+        let name = &loader.scene.lights[lights[0]].name;
         let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
         let text = format!("emissiveTexture: {loss}: its mean colour is everywhere");
         loader.warn(format!("light '{name}'{more}"), text);
     }
     // A black light lights nothing. None is that shows no texture: its material would not emit
     loader.scene.lights.retain(|light| light.radiance != Vec3::ZERO);
-    loader.scene.shapes.retain(|shape| shape.radiance != Vec3::ZERO);
 }
 
 /// Textures of which there are more pieces than a few that make up at least half of it.
@@ -239,25 +213,27 @@ impl Layers {
     fn show_to(
         &mut self,
         scene: &mut Scene,
-        owner: Owner,
+        owner: usize,
         rectangle: &Rectangle,
     ) -> Result<(), &'static str> {
-        match owner {
-            Owner::Polygon(index) => {
-                scene.lights[index].texture = Some(self.show(rectangle, &scene.lights[index])?);
-            }
-            Owner::Shape(index) => {
-                // A shape shows the whole of a layer, upright
-                let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
-                let upright = |first: &DVec2| (*first - low).abs().cmplt(size * 0.5).all();
-                if !rectangle.uvs.first().is_some_and(upright) {
-                    return Err("its texture is mirrored");
-                }
-                let new = SceneLightTexture { texture: rectangle.texture, low, size };
-                scene.shapes[index].texture = Some(self.layer(rectangle.key(), new)?);
-            }
-        }
+        let light = &scene.lights[owner];
+        let texture = match light.shape {
+            LightShape::Disk { .. } => self.show_upright(rectangle)?,
+            _ => self.show(rectangle, light)?,
+        };
+        scene.lights[owner].texture = Some(texture);
         Ok(())
+    }
+
+    /// The texture of a disk that shows the whole of `rectangle`, or why there is none.
+    fn show_upright(&mut self, rectangle: &Rectangle) -> Result<LightTexture, &'static str> {
+        let (low, size) = (rectangle.low, rectangle.high - rectangle.low);
+        let upright = |first: &DVec2| (*first - low).abs().cmplt(size * 0.5).all();
+        if !rectangle.uvs.first().is_some_and(upright) {
+            return Err("its texture is mirrored");
+        }
+        let new = SceneLightTexture { texture: rectangle.texture, low, size };
+        Ok(LightTexture { layer: self.layer(rectangle.key(), new)?, uvs: vec![] })
     }
 
     /// The layer of a rectangle that is shown whole: one that is known, or a new one.
@@ -275,7 +251,7 @@ impl Layers {
     }
 
     /// The texture of a light that shows `rectangle`, or why there is none.
-    fn show(&mut self, rectangle: &Rectangle, light: &PolygonLight) -> Result<LightTexture, &'static str> {
+    fn show(&mut self, rectangle: &Rectangle, light: &Light) -> Result<LightTexture, &'static str> {
         // Find the layer, or make one
         let mut key = rectangle.key();
         let (mut low, mut size) = (rectangle.low, rectangle.high - rectangle.low);
@@ -290,7 +266,7 @@ impl Layers {
         // Map the light onto it
         let uvs = rectangle.uvs.iter().map(|uv| ((*uv - low) / size).clamp(DVec2::ZERO, DVec2::ONE));
         let mut texture = LightTexture { layer: known.unwrap_or_default(), uvs: uvs.collect() };
-        let with_texture = PolygonLight { texture: Some(texture.clone()), ..light.clone() };
+        let with_texture = Light { texture: Some(texture.clone()), ..light.clone() };
         if with_texture.validate().is_err() {
             return Err("its texture cannot be mapped");
         }

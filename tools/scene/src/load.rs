@@ -65,9 +65,8 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let corners = scene.triangles.iter().flat_map(|t| t.positions);
     scene.bounds = corners.collect();
     if scene.bounds.is_empty() {
-        let polygons = scene.lights.iter().flat_map(|light| light.vertices.iter().copied());
-        let shapes = scene.shapes.iter().flat_map(|light| light.shape.bounds());
-        scene.bounds = polygons.chain(shapes).collect::<Bounds>();
+        let lights = scene.lights.iter().flat_map(|light| light.shape.bounds());
+        scene.bounds = lights.collect::<Bounds>();
     }
     nodes::add_cameras(&mut loader, &placed);
     warn_of_what_is_missing(&mut loader);
@@ -91,7 +90,7 @@ fn warn_of_what_is_missing(loader: &mut Loader) {
     if loader.scene.triangles.is_empty() {
         loader.warn(place, "has no triangles: there is no surface to light");
     }
-    if loader.scene.lights.is_empty() && loader.scene.shapes.is_empty() {
+    if loader.scene.lights.is_empty() {
         loader.warn(place, "has no area lights (emissive faces or EXT_lights_area): surfaces are black");
     }
 }

@@ -16,15 +16,7 @@ fn grid(width: u32, height: u32, keep: impl Fn(u32, u32) -> bool) -> (Vec<DVec3>
 
 /// Area times normal of all polygons.
 fn total_area(outlines: &Outlines) -> DVec3 {
-    let area = |vertices: &Vec<DVec3>| {
-        arealight::PolygonLight {
-            name: String::new(),
-            vertices: vertices.clone(),
-            radiance: glam::Vec3::ONE,
-            ..arealight::PolygonLight::default()
-        }
-        .area_vector()
-    };
+    let area = |vertices: &Vec<DVec3>| arealight::LightShape::Polygon(vertices.clone()).area_vector();
     outlines.polygons.iter().map(area).sum()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::{Camera, SceneError, SceneLightTexture};
 pub use arealight::texture_part::Wrap;
-use arealight::{Material, PolygonLight, ShapeLight};
+use arealight::{Light, Material};
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 
@@ -25,10 +25,8 @@ pub struct Scene {
     pub textures: Vec<Texture>,
     /// Images that the textures use.
     pub images: Vec<Image>,
-    /// Every light that is a polygon; each passes [`PolygonLight::validate`].
-    pub lights: Vec<PolygonLight>,
-    /// Every light that is a disk, sphere or tube; each passes [`ShapeLight::validate`].
-    pub shapes: Vec<ShapeLight>,
+    /// Every light; each passes [`Light::validate`].
+    pub lights: Vec<Light>,
     /// What the textured lights show, at most [`crate::MAX_LIGHT_TEXTURES`]: their layers, in order.
     pub light_textures: Vec<SceneLightTexture>,
     /// The file's cameras, in the order of its nodes.

@@ -1,11 +1,11 @@
 //! Emissive meshes that stand for a disk, a sphere or a tube, by a word in their node's `extras`.
 
-use crate::light_textures::{self, Owner, TexturedLight};
+use crate::light_textures::{self, TexturedLight};
 use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
 use crate::uv_map::{UvMap, UvTolerance};
-use arealight::{Shape, ShapeLight, TubeEnds};
+use arealight::{Light, LightShape, TubeEnds};
 use glam::{DAffine3, DVec2, DVec3};
 use serde::Deserialize;
 use serde_json::Value;
@@ -61,7 +61,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     let (double_sided, texture) = (material.double_sided, material.emission_texture);
     let shape = Said::deserialize(said).map_err(|error| error.to_string());
     let placed = shape.and_then(|said| said.placed(&node.world)).and_then(|shape| match texture {
-        Some(texture) if matches!(shape, Shape::Ellipse { .. }) => {
+        Some(texture) if matches!(shape, LightShape::Disk { .. }) => {
             let tolerance = UvTolerance {
                 uv: light_textures::tolerance(&loader.scene, texture),
                 position: instance.rounding,
@@ -72,20 +72,20 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     });
     let shape = placed.and_then(|(shape, image)| {
         // Solids shine outwards, whatever their material says
-        let two_sided = double_sided && matches!(shape, Shape::Ellipse { .. });
-        let light = ShapeLight { name: instance.name.clone(), radiance, two_sided, texture: None, shape };
+        let two_sided = double_sided && matches!(shape, LightShape::Disk { .. });
+        let light = Light { name: instance.name.clone(), radiance, two_sided, texture: None, shape };
         light.validate().map(|()| (light, image)).map_err(|error| error.to_string())
     });
     match shape {
         Ok((light, image)) => {
             if let Some((texture, uvs)) = image {
-                let owner = Owner::Shape(loader.scene.shapes.len());
+                let owner = loader.scene.lights.len();
                 loader.textured.push(TexturedLight { owner, texture, uvs: uvs.into() });
             } else if texture.is_some() {
-                loader.warn(place, "its texture is not shown in what it lights: only disks show images");
+                loader.warn(place, "its texture is not shown in what it lights: only disks are textured");
             }
             loader.shaped = Some((node.index, radiance));
-            loader.scene.shapes.push(light);
+            loader.scene.lights.push(light);
             true
         }
         Err(problem) => {
@@ -98,11 +98,11 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
 /// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture coordinates of the image's box around
 /// it: its corners, the first one first. Or why there is none.
 fn upright(
-    shape: &Shape,
+    shape: &LightShape,
     instance: &Instance,
     tolerance: UvTolerance,
-) -> Result<(Shape, [DVec2; 4]), String> {
-    let Shape::Ellipse { center, axis_u, axis_v } = *shape else { return Err("it is no disk".into()) };
+) -> Result<(LightShape, [DVec2; 4]), String> {
+    let LightShape::Disk { center, axis_u, axis_v } = *shape else { return Err("it is no disk".into()) };
     // One map for the whole mesh: that of its largest triangle
     let corners = |triangle: &[u32; 3]| triangle.map(|index| instance.positions[index as usize]);
     let uv = |index: u32| instance.uvs[index as usize].as_dvec2();
@@ -131,7 +131,7 @@ fn upright(
     if fall.perp_dot(turn) < 0.0 {
         return Err("its texture is mirrored".into());
     }
-    let turned = Shape::Ellipse {
+    let turned = LightShape::Disk {
         center,
         axis_u: axis_u * turn.x + axis_v * turn.y,
         axis_v: axis_v * turn.x - axis_u * turn.y,
@@ -145,17 +145,17 @@ const STRAIGHT: f64 = 1e-4;
 
 impl Said {
     /// The shape in the world, or why it is none there.
-    fn placed(&self, world: &DAffine3) -> Result<Shape, String> {
+    fn placed(&self, world: &DAffine3) -> Result<LightShape, String> {
         let center = world.translation;
         let [x, y, z] = [world.matrix3.x_axis, world.matrix3.y_axis, world.matrix3.z_axis];
         match *self {
             Self::Disk { radius } => {
                 // A mirror turns the order of the axes around, and not the front
                 let (u, v) = if world.matrix3.determinant() < 0.0 { (x, z) } else { (z, x) };
-                Ok(Shape::Ellipse { center, axis_u: u * radius, axis_v: v * radius })
+                Ok(LightShape::Disk { center, axis_u: u * radius, axis_v: v * radius })
             }
             Self::Sphere { radius } if is_rotation_and_scale([x, y, z], 3) => {
-                Ok(Shape::Sphere { center, radius: radius * y.length() })
+                Ok(LightShape::Sphere { center, radius: radius * y.length() })
             }
             Self::Cylinder { radius, height } => tube(world, radius, height, TubeEnds::Flat),
             Self::Pipe { radius, height } => tube(world, radius, height, TubeEnds::Open),
@@ -167,14 +167,14 @@ impl Said {
     }
 }
 
-fn tube(world: &DAffine3, radius: f64, height: f64, ends: TubeEnds) -> Result<Shape, String> {
+fn tube(world: &DAffine3, radius: f64, height: f64, ends: TubeEnds) -> Result<LightShape, String> {
     let [x, y, z] = [world.matrix3.x_axis, world.matrix3.y_axis, world.matrix3.z_axis];
     if !is_rotation_and_scale([x, z, y], 2) {
         return Err("its node's scale does not leave it round".into());
     }
     let half = y * (0.5 * height);
     let (p0, p1) = (world.translation - half, world.translation + half);
-    Ok(Shape::Tube { p0, p1, radius: radius * x.length(), ends })
+    Ok(LightShape::Tube { p0, p1, radius: radius * x.length(), ends })
 }
 
 /// Whether the axes are perpendicular and the first `equal` of them of one length, to what `f32` transforms are precise to.

@@ -83,24 +83,24 @@ fn layouts() -> [Layout; 17] {
             memory, memory_offset, staging_data, staging_size, staging_buffer, staging_offset, command_buffer,
         }
         ArealightPassOptions {
-            effects, form_factor, horizon, fresnel, lobes, footprint, position, output,
+            surfaces, form_factor, horizon, fresnel, lobes, footprint, position, output,
             radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
-            name, vertices, texture_coordinates, vertex_count, texture_layer, radiance, two_sided, hole_vertex_counts,
-            face_vertex_counts, hole_count, face_count,
+            name, kind, two_sided, radiance, textured, texture_layer, vertex_count, vertices, texture_coordinates,
+            hole_vertex_counts, face_vertex_counts, hole_count, face_count, center, axis_u, axis_v, radius, ends,
+            reserved,
         }
-        ArealightShape { name, kind, ends, center, axis_u, axis_v, radius, radiance, two_sided, textured, texture_layer }
-        ArealightPackedLights { lights, vertices, lights_size, vertices_size, quad_count, unused }
+        ArealightLightSummary { light_count, quad_count, shape_count, effects }
+        ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
             lights, light_vertices, shapes, position, normal, base_color, specular, light_textures, radiance,
             glossy, lobe_horizons, tile_lists,
         }
         ArealightFrame {
-            width, height, camera, light_count, shape_count, quad_count, unused, reserved, position_from_clip,
-            tile_lists,
+            width, height, camera, lights, reserved, position_from_clip, tile_lists,
         }
         ArealightTileMemory { size, usage, reserved }
         ArealightTextureOptions { width, height, layers, reserved }

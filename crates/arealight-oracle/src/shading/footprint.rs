@@ -29,7 +29,7 @@ pub struct SeenLight {
     pub texels: DVec2,
     /// Normals of half spaces outside of which nothing is seen, besides that of the lobe.
     pub horizons: Vec<DVec3>,
-    /// Whether the outline is a convex quad (`PolygonLight::is_convex_quad`); others are split into triangles.
+    /// Whether the outline is a convex quad (`LightShape::is_convex_quad`); others are split into triangles.
     pub convex_quad: bool,
 }
 

@@ -4,7 +4,7 @@
 use super::footprint::Filter;
 use crate::polygon::transformed_form_factor;
 use crate::stream::Stream;
-use arealight::{Footprint, LightTable, LightTexture, PolygonLight, Surface};
+use arealight::{Footprint, Light, LightShape, LightTable, LightTexture, Surface};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use serde::Serialize;
 
@@ -68,13 +68,13 @@ impl Pose {
     }
 
     /// The light, of radiance 1, with the whole of a layer.
-    pub fn light(&self, layer: u32) -> PolygonLight {
+    pub fn light(&self, layer: u32) -> Light {
         let uvs = vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];
-        PolygonLight {
-            vertices: self.vertices.to_vec(),
+        Light {
+            shape: LightShape::Polygon(self.vertices.to_vec()),
             radiance: Vec3::ONE,
             texture: Some(LightTexture { layer, uvs }),
-            ..PolygonLight::default()
+            ..Light::default()
         }
     }
 }

@@ -10,14 +10,14 @@ use crate::sphere::{self, Sphere};
 use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
 use arealight::table::share_above_surface;
-use arealight::{Horizon, LightTable, Quality, Shape, ShapeLight, Surface, TextureMap, TubeEnds};
-use glam::{DMat3, DVec2, DVec3};
+use arealight::{Horizon, Light, LightShape, LightTable, LightTexture, Quality, Surface, TubeEnds};
+use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_radiance`, as
 /// [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With [`Horizon::Both`] outlines are polygons of
-/// many sides, which are off by 1e-6.
+/// many sides, which are off by 1e-6. None for polygons and meshes.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn shape_ltc_on(
@@ -26,10 +26,10 @@ pub fn shape_ltc_on(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,
-    light: &ShapeLight,
-) -> DVec3 {
+    light: &Light,
+) -> Option<DVec3> {
     let frame = SurfaceFrame::new(normal, view);
-    let seen = SeenShape::new(light, &frame);
+    let seen = SeenShape::new(light, &frame)?;
     let both_horizons = quality.horizon == Horizon::Both;
     // Integrate the transformed cosine
     let lobe = |inverse: &DMat3| {
@@ -42,25 +42,25 @@ pub fn shape_ltc_on(
         DVec3::splat(form_factor.min(1.0))
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    light.radiance.as_dvec3() * (surface.diffuse_albedo * seen.lambert_form_factor() + glossy)
+    Some(light.radiance.as_dvec3() * (surface.diffuse_albedo * seen.lambert_form_factor() + glossy))
 }
 
 /// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the
 /// shading point.
 ///
 /// A silhouette is drawn as polygons of 48, 96 and 192 sides a rim, and what they lack is extrapolated away; [`Truth::error`] has
-/// what the last step changed, too.
+/// what the last step changed, too. None for polygons and meshes.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn shape_truth(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,
-    light: &ShapeLight,
+    light: &Light,
     settings: &Settings,
-) -> Truth {
+) -> Option<Truth> {
     let frame = SurfaceFrame::new(normal, view);
-    let seen = SeenShape::new(light, &frame);
+    let seen = SeenShape::new(light, &frame)?;
     let radiance = light.radiance.as_dvec3();
     let at = |count| {
         let signed = reflected(surface, frame.view(), &seen.region(count), settings, |_| DVec3::ONE);
@@ -71,11 +71,11 @@ pub fn shape_truth(
     let first = middle.radiance + (middle.radiance - coarse.radiance) / 3.0;
     let second = fine.radiance + (fine.radiance - middle.radiance) / 3.0;
     let step = (second - first) / 15.0;
-    Truth {
+    Some(Truth {
         radiance: second + step,
         error: fine.error + step.abs(),
         evaluations: coarse.evaluations + middle.evaluations + fine.evaluations,
-    }
+    })
 }
 
 /// A shape in the surface's frame.
@@ -86,17 +86,19 @@ enum SeenShape {
 }
 
 impl SeenShape {
-    fn new(light: &ShapeLight, frame: &SurfaceFrame) -> Self {
+    /// None for a polygon or mesh.
+    fn new(light: &Light, frame: &SurfaceFrame) -> Option<Self> {
         let two_sided = light.two_sided;
-        match light.shape {
-            Shape::Ellipse { center, axis_u, axis_v } => {
+        Some(match light.shape {
+            LightShape::Polygon(_) | LightShape::Mesh { .. } => return None,
+            LightShape::Disk { center, axis_u, axis_v } => {
                 let [center, axis_u, axis_v] = [center, axis_u, axis_v].map(|v| frame.to_surface(v));
                 Self::Ellipse { ellipse: Ellipse { center, axis_u, axis_v }, two_sided }
             }
-            Shape::Sphere { center, radius } => {
+            LightShape::Sphere { center, radius } => {
                 Self::Sphere { sphere: Sphere { center: frame.to_surface(center), radius }, two_sided }
             }
-            Shape::Tube { p0, p1, radius, ends } => {
+            LightShape::Tube { p0, p1, radius, ends } => {
                 let ends = match ends {
                     TubeEnds::Open => Ends::Open,
                     TubeEnds::Flat => Ends::Flat,
@@ -105,7 +107,7 @@ impl SeenShape {
                 let [start, end] = [p0, p1].map(|v| frame.to_surface(v));
                 Self::Tube(Tube { start, end, radius, ends })
             }
-        }
+        })
     }
 
     /// The directions that it covers where it shines to the point, by a polygon of `count` sides a rim.
@@ -176,20 +178,14 @@ fn outline_of_its_area(ellipse: &Ellipse, count: usize) -> Vec<DVec3> {
     grown.polygon(count)
 }
 
-/// An ellipse that shows `texture`, as a polygon of its area; what they differ in is 1e-5 of what it sends. None for other shapes.
-pub fn textured_ellipse(light: &ShapeLight, texture: Arc<Texture>) -> Option<RelativeLight> {
+/// A disk textured with `texture`, as a polygon of its area; what they differ in is 1e-5 of what it sends. None for other shapes.
+pub fn textured_ellipse(light: &Light, texture: Arc<Texture>) -> Option<RelativeLight> {
     const COUNT: usize = 64;
-    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { return None };
+    let LightShape::Disk { center, axis_u, axis_v } = light.shape else { return None };
     // Turned by half a side, the polygon stays within the image
     let (sin, cos) = (0.5 * TAU / COUNT as f64).sin_cos();
     let turned = Ellipse { center, axis_u: axis_u * cos + axis_v * sin, axis_v: axis_v * cos - axis_u * sin };
-    let map = TextureMap {
-        corner: center - axis_u + axis_v,
-        axis_u: axis_u * 2.0,
-        axis_v: axis_v * -2.0,
-        low: DVec2::ZERO,
-        size: DVec2::ONE,
-    };
+    let map = LightTexture { layer: 0, uvs: vec![] }.map(&light.shape).ok()?;
     Some(RelativeLight {
         vertices: outline_of_its_area(&turned, COUNT),
         radiance: light.radiance.as_dvec3(),

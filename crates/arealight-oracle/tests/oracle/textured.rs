@@ -1,7 +1,7 @@
-//! Lights that show images: the lobe's integral against cubature and closed forms, and the footprints against it.
+//! Textured lights: the lobe's integral against cubature and closed forms, and the footprints against it.
 
 use crate::common::{direction, lengths_through, matrix, star};
-use arealight::{LightTexture, PolygonLight};
+use arealight::{Light, LightShape, LightTexture};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use arealight_oracle::polygon::{above_horizon, transformed_form_factor};
@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// A light of any outline that shows `texture`: its box holds the image between `low` and `low + size`.
 fn showing(vertices: &[DVec3], texture: &Arc<Texture>, low: DVec2, size: DVec2) -> RelativeLight {
     let mut light =
-        PolygonLight { vertices: vertices.to_vec(), radiance: Vec3::ONE, ..PolygonLight::default() };
-    let normal = light.area_vector().normalize_or(DVec3::Z);
+        Light { shape: LightShape::Polygon(vertices.to_vec()), radiance: Vec3::ONE, ..Light::default() };
+    let normal = light.shape.area_vector().normalize_or(DVec3::Z);
     let u = (vertices[1] - vertices[0]).normalize_or(DVec3::X);
     let v = normal.cross(u);
     let flat: Vec<DVec2> = vertices.iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect();

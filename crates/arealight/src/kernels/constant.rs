@@ -20,7 +20,7 @@ pub const FOOTPRINT: u32 = 7;
 pub const RADIUS: u32 = 8;
 /// [`crate::gpu::TextureLoadConstants::called_for`].
 pub const CALLED_FOR: u32 = 9;
-/// [`crate::ShapeKind`].
+/// [`crate::gpu::GpuShape`]'s kinds, or [`crate::gpu::GpuShape::ANY`].
 pub const SHAPE: u32 = 10;
 /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
 pub const HAS_QUADS: u32 = 11;

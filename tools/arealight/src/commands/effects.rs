@@ -1,4 +1,4 @@
-//! `arealight effects`: what a scene calls for, and why.
+//! `arealight effects`: what a scene needs, and why.
 
 use crate::failure::Failure;
 use crate::output::print;
@@ -8,7 +8,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What a scene calls for, and why.
+/// What a scene needs, and why.
 ///
 /// Shaders are made for these effects alone; docs/effects.md says what that saves, docs/gpu.md what each costs a GPU.
 #[derive(clap::Args)]
@@ -30,7 +30,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     print(&if arguments.json { to_json(arguments, &calls) } else { to_text(&calls) })
 }
 
-/// Who calls for an effect, if anybody does.
+/// Who needs an effect, if anybody does.
 fn reason(calls: &[Call], effect: Effects) -> Option<&str> {
     calls.iter().find(|call| call.effect == effect).map(|call| call.reason.as_str())
 }

@@ -217,10 +217,10 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
             let shapes = answer_in_parallel(&shapes, |case| {
                 let ShapeCase { name, surface, normal, view, light, .. } = case;
                 let radiance = match textured(case) {
-                    Some(light) => ltc_on(quality, &table, surface, *normal, *view, &light),
+                    Some(light) => Some(ltc_on(quality, &table, surface, *normal, *view, &light)),
                     None => shape_ltc_on(quality, &table, surface, *normal, *view, light),
                 };
-                Answer::new(name, radiance)
+                radiance.map_or_else(|| no_shape(name), |radiance| Answer::new(name, radiance))
             });
             (polygons, shapes)
         }
@@ -233,10 +233,10 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
             let shapes = answer_in_parallel(&shapes, |case| {
                 let ShapeCase { name, surface, normal, view, light, .. } = case;
                 let found = match textured(case) {
-                    Some(light) => truth(surface, *normal, *view, &light, &settings),
+                    Some(light) => Some(truth(surface, *normal, *view, &light, &settings)),
                     None => shape_truth(surface, *normal, *view, light, &settings),
                 };
-                answer_by_cubature(name, found)
+                found.map_or_else(|| no_shape(name), |found| answer_by_cubature(name, found))
             });
             (polygons, shapes)
         }
@@ -255,7 +255,12 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     Ok(cases.iter().zip(&sorted).map(answer).collect())
 }
 
-/// The light of a case that shows an image, as the polygon that stands for it.
+/// The answer to a case whose light is a polygon after all.
+fn no_shape(name: &str) -> Answer {
+    Answer::none(name, "the light is no disk, sphere or tube")
+}
+
+/// The light of a textured case, as the polygon that stands for it.
 fn textured(case: &ShapeCase) -> Option<RelativeLight> {
     textured_ellipse(&case.light, Arc::clone(case.image.as_ref()?))
 }

@@ -8,7 +8,7 @@ use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
 use arealight::plan::{Output, ShadeOptions, TileOptions};
-use arealight::{Effects, Quality, UnknownEffect};
+use arealight::{Effects, Quality};
 use arealight_benches::budget::{FrameLoad, ProfileLevel};
 use arealight_benches::ladder::LevelNames;
 use arealight_engine::{Engine, EngineError, SceneRenderer, TileCounts};
@@ -49,10 +49,10 @@ pub struct Arguments {
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
-    /// The effects that the shader is made for: `required` (what the scene calls for), `all`, or a list such as
-    /// diffuse,glossy
+    /// What surfaces are shaded with: `required` (what the scene's need), or a list of `diffuse`, `glossy` and `specular_input`, such as
+    /// diffuse
     #[arg(long, value_name = "SET", default_value = "required")]
-    effects: EffectChoice,
+    surfaces: SurfaceChoice,
     /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1, without the lights that
     /// together contribute less than this fraction of what the others do
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
@@ -78,7 +78,7 @@ impl Arguments {
             reference: None,
             exposure: 0.0,
             supersample: 2,
-            effects: EffectChoice::Required,
+            surfaces: SurfaceChoice::Required,
             tiles: None,
             quality: QualityArguments::default(),
             budget: BudgetArguments::default(),
@@ -90,7 +90,7 @@ impl Arguments {
     fn load(&self, scene: &Scene) -> FrameLoad {
         let pixels: f64 = self.size.map(|side| f64::from(side * self.supersample)).iter().product();
         FrameLoad {
-            lights: (scene.lights.len() + scene.shapes.len()) as u32,
+            lights: scene.lights.len() as u32,
             megapixels: pixels * 1e-6,
             textured: scene.effects().intersects(Effects::IMAGES),
         }
@@ -118,43 +118,46 @@ impl Arguments {
     }
 }
 
-/// Whose word it is what the shader is made for.
+/// Whose word it is what surfaces need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum EffectChoice {
+enum SurfaceChoice {
     /// The scan's.
     Required,
     /// The user's.
     Stated(Effects),
 }
 
-impl std::str::FromStr for EffectChoice {
+impl std::str::FromStr for SurfaceChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
             "required" => Ok(Self::Required),
-            "all" => Ok(Self::Stated(Effects::all())),
-            list => list.parse().map(Self::Stated).map_err(|error: UnknownEffect| error.to_string()),
+            list => match list.parse::<Effects>() {
+                Ok(effects) if Effects::SURFACES.contains(effects) => Ok(Self::Stated(effects)),
+                Ok(effects) => Err(format!("{} depends on the lights alone", effects - Effects::SURFACES)),
+                Err(error) => Err(error.to_string()),
+            },
         }
     }
 }
 
-impl EffectChoice {
+impl SurfaceChoice {
     /// The set for `scene`. One that a surface needs more than gives another picture than the scene's: it is for the
     /// user to state, and said.
-    fn effects(self, scene: &Scene, path: &Path) -> Effects {
-        let Self::Stated(effects) = self else { return scene.effects() };
+    fn surfaces(self, scene: &Scene, path: &Path) -> Effects {
+        let required = scene.effects() & Effects::SURFACES;
+        let Self::Stated(surfaces) = self else { return required };
         for call in arealight_scene::required_effects(scene) {
-            // Lights that need more are refused by the engine
-            if !effects.contains(call.effect) {
-                eprintln!("warning: {}: --effects is without {call}", path.display());
+            if (required - surfaces).contains(call.effect) {
+                eprintln!("warning: {}: --surfaces is without {call}", path.display());
             }
         }
-        effects
+        surfaces
     }
 }
 
-/// A profile's times are of quads with one side, and of those that show images.
+/// A profile's times are of quads with one side, and of textured ones.
 fn warn_of_dearer_lights(effects: Effects, path: &Path) {
     let measured = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::TEXTURED;
     let dearer = effects - measured;
@@ -197,13 +200,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let table = arguments.quality.table()?;
     let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
     engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
-    let effects = arguments.effects.effects(&scene, &path);
+    let surfaces = arguments.surfaces.surfaces(&scene, &path);
     let picked = arguments.budget.pick(arguments.load(&scene), &engine.host().device_name())?;
     if picked.is_some() {
-        warn_of_dearer_lights(effects, &path);
+        warn_of_dearer_lights(scene.effects(), &path);
     }
     let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |level| level.quality);
-    let mut outcome = render(&engine, &scene, &camera, samples, (effects, quality), arguments)
+    let mut outcome = render(&engine, &scene, &camera, samples, (surfaces, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picked = picked;
     outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
@@ -211,7 +214,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let summary = Summary {
         arguments,
         scene: &scene,
-        effects,
+        surfaces,
         camera: &camera,
         device,
         outcome: &outcome,
@@ -225,23 +228,22 @@ fn render(
     scene: &Scene,
     camera: &Camera,
     size: [u32; 2],
-    (effects, quality): (Effects, Quality),
+    (surfaces, quality): (Effects, Quality),
     arguments: &Arguments,
 ) -> Result<Outcome, EngineError> {
     // Everything on the GPU is relative to the camera
     let buffers = SceneBuffers::new(scene, camera.position)?;
     let constants = buffers.constants(camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
-    renderer = renderer.with_shapes(&scene.shapes)?;
     let visibility = renderer.visibility()?;
     let mut tiles = None;
     let shading = match (arguments.reference, arguments.tiles) {
-        (None, None) => renderer.shade(effects, quality)?,
+        (None, None) => renderer.shade(surfaces, quality)?,
         (None, Some(cull_threshold)) => {
-            let options = ShadeOptions { effects, quality, output: Output::Add, ..ShadeOptions::all() };
+            let options = ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() };
             let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;
             let took = renderer.shade_tiled(&view)?;
-            tiles = Some(view.counts(scene.lights.len() + scene.shapes.len())?);
+            tiles = Some(view.counts(scene.lights.len())?);
             took
         }
         (Some(samples), _) => {
@@ -312,7 +314,7 @@ fn prepare(output: &Path) -> Result<(), Failure> {
 struct Summary<'a> {
     arguments: &'a Arguments,
     scene: &'a Scene,
-    effects: Effects,
+    surfaces: Effects,
     camera: &'a Camera,
     device: String,
     outcome: &'a Outcome,
@@ -321,9 +323,9 @@ struct Summary<'a> {
 
 impl Summary<'_> {
     fn to_text(&self) -> String {
-        let Self { arguments, scene, effects, camera, device, outcome, output } = self;
+        let Self { arguments, scene, surfaces, camera, device, outcome, output } = self;
         let (width, height) = (arguments.size[0], arguments.size[1]);
-        let vertices: usize = scene.lights.iter().map(|light| light.vertices.len()).sum();
+        let vertices: usize = scene.lights.iter().map(|light| light.shape.vertices().len()).sum();
         let mut lines = vec![format!(
             "scene    {}: {} triangles, {} lights ({vertices} vertices), camera '{}'",
             arguments.scene_name().display(),
@@ -334,8 +336,8 @@ impl Summary<'_> {
         for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
             lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
         }
-        if arguments.effects != EffectChoice::Required {
-            lines.push(format!("stated   {effects}"));
+        if arguments.surfaces != SurfaceChoice::Required {
+            lines.push(format!("surfaces {surfaces}"));
         }
         lines.push(format!("device   {device}"));
         let method = match arguments.reference_samples() {
@@ -375,7 +377,7 @@ impl Summary<'_> {
     }
 
     fn to_json(&self) -> String {
-        let Self { arguments, scene, effects: set, camera, device, outcome, output } = self;
+        let Self { arguments, scene, surfaces, camera, device, outcome, output } = self;
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let calls = arealight_scene::required_effects(scene);
         let effects: Vec<_> = calls
@@ -388,7 +390,7 @@ impl Summary<'_> {
             "lights": scene.lights.len(),
             "camera": camera.name,
             "effects": effects,
-            "effects_shaded_with": set.names(),
+            "surfaces_shaded_with": surfaces.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
             "picked": outcome.picked.map(|level| json!({
@@ -422,11 +424,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn effects_are_stated_or_required() {
-        assert_eq!("required".parse(), Ok(EffectChoice::Required));
-        assert_eq!("all".parse(), Ok(EffectChoice::Stated(Effects::all())));
-        assert_eq!("glossy,tube".parse(), Ok(EffectChoice::Stated(Effects::GLOSSY | Effects::TUBE)));
-        assert!("shiny".parse::<EffectChoice>().unwrap_err().contains("'shiny' is no effect"));
+    fn surfaces_are_stated_or_required() {
+        assert_eq!("required".parse(), Ok(SurfaceChoice::Required));
+        assert_eq!("glossy".parse(), Ok(SurfaceChoice::Stated(Effects::GLOSSY)));
+        assert!("shiny".parse::<SurfaceChoice>().unwrap_err().contains("'shiny' is no effect"));
+        let message = "glossy,tube".parse::<SurfaceChoice>().unwrap_err();
+        assert_eq!(message, "tube depends on the lights alone");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{LightTexture, PolygonLight, Quality};
+use arealight::{Light, LightShape, LightTexture, Quality};
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
 use arealight_engine::{Engine, EngineError, EvalPoint};
@@ -53,16 +53,15 @@ fn point(case: &SupportedCase, images: &mut Images) -> EvalPoint {
         position: DVec3::ZERO,
         normal: case.normal,
         view: case.view,
-        light: PolygonLight {
+        light: Light {
             name: case.name.clone(),
-            vertices: case.light.vertices.clone(),
+            shape: LightShape::Polygon(case.light.vertices.clone()),
             radiance: case.light.radiance.as_vec3(),
             two_sided: case.light.two_sided,
             texture: shown.map(|(image, texture)| LightTexture {
                 layer: images.layer(&image.texture),
                 uvs: texture.uv.clone(),
             }),
-            ..PolygonLight::default()
         },
     }
 }

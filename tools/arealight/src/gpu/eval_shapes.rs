@@ -3,10 +3,10 @@
 use super::eval::Images;
 use super::{LazyEngine, failure};
 use crate::failure::Failure;
-use arealight::{Quality, ShapeLight};
+use arealight::{Light, LightTexture, Quality};
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::ShapeCase;
-use arealight_engine::ShapePoint;
+use arealight_engine::EvalPoint;
 use glam::DVec3;
 use std::path::Path;
 
@@ -22,7 +22,7 @@ pub fn answer(
         return Ok(Vec::new());
     }
     let mut images = Images::default();
-    let points: Vec<ShapePoint> = cases.iter().map(|case| point(case, &mut images)).collect();
+    let points: Vec<EvalPoint> = cases.iter().map(|case| point(case, &mut images)).collect();
     let engine = engine.get()?;
     images.load(engine).map_err(|error| failure(error, input))?;
     let radiance = engine.eval_shapes(&points, quality).map_err(|error| failure(error, input))?;
@@ -31,13 +31,13 @@ pub fn answer(
 }
 
 /// A case's light is relative to its shading point already.
-fn point(case: &ShapeCase, images: &mut Images) -> ShapePoint {
-    let texture = case.image.as_ref().map(|image| images.layer(image));
-    ShapePoint {
+fn point(case: &ShapeCase, images: &mut Images) -> EvalPoint {
+    let texture = case.image.as_ref().map(|image| LightTexture { layer: images.layer(image), uvs: vec![] });
+    EvalPoint {
         surface: case.surface,
         position: DVec3::ZERO,
         normal: case.normal,
         view: case.view,
-        light: ShapeLight { texture, ..case.light.clone() },
+        light: Light { texture, ..case.light.clone() },
     }
 }

@@ -44,10 +44,6 @@ impl<'a> LazyEngine<'a> {
 pub fn failure(error: EngineError, input: &Path) -> Failure {
     match error {
         EngineError::Recorder(arealight_vk::Error::Light(error)) => Failure::input(input, error),
-        error @ EngineError::Recorder(arealight_vk::Error::EffectsTooSmall { .. }) => {
-            Failure::Argument { argument: "--effects", message: error.to_string() }
-        }
-        EngineError::Shape(error) => Failure::input(input, error),
         error @ (EngineError::BufferTooLarge { .. } | EngineError::Scene(_)) => Failure::input(input, error),
         error => Failure::Device(error.to_string()),
     }

@@ -91,34 +91,35 @@ fn other_lights_become_shapes_relative_to_the_point() {
     let disk =
         shape(r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#).unwrap();
     let (center, axis_u, axis_v) = (DVec3::new(-1.0, -2.0, 2.0), DVec3::X, DVec3::Y * 2.0);
-    assert_eq!(disk.light.shape, Shape::Ellipse { center, axis_u, axis_v });
+    assert_eq!(disk.light.shape, LightShape::Disk { center, axis_u, axis_v });
     assert_eq!((disk.surface.alpha, disk.light.two_sided), (0.25, false));
     let sphere = shape(r#""type": "sphere", "center": [0, 0, 5], "radius": 0.5"#).unwrap();
-    assert_eq!(sphere.light.shape, Shape::Sphere { center, radius: 0.5 });
+    assert_eq!(sphere.light.shape, LightShape::Sphere { center, radius: 0.5 });
     // What its ends are
     let cylinder = |more: &str, radius: f64| {
         format!(r#""type": "cylinder", "p0": [1, 2, 2], "p1": [1, 2, 5], "radius": {radius} {more}"#)
     };
     let ends = |more: &str| match shape(&cylinder(more, 0.5)).map(|case| case.light.shape) {
-        Ok(Shape::Tube { ends, .. }) => ends,
+        Ok(LightShape::Tube { ends, .. }) => ends,
         other => panic!("{other:?}"),
     };
     assert_eq!((ends(""), ends(r#", "caps": true"#)), (TubeEnds::Open, TubeEnds::Flat));
     // It emits outwards
     assert_eq!(ends(r#", "two_sided": true"#), TubeEnds::Open);
-    // A disk may show an image
+    // A disk may be textured
     let showing = |file: &str| {
         let axes = r#""center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [0, 2, 0]"#;
         format!(r#""type": "disk", {axes}, "texture": "{file}""#)
     };
     let shown = shape(&showing("white.exr")).unwrap();
-    assert_eq!((shown.light.texture, shown.image), (Some(0), Some(white.clone())));
+    let layer = shown.light.texture.map(|texture| texture.layer);
+    assert_eq!((layer, shown.image), (Some(0), Some(white.clone())));
     assert_eq!((disk.light.texture, disk.image), (None, None));
     assert_eq!(shape_reason(&showing("red.exr")), "light.texture: red.exr: no such file");
     // What is wrong
     assert_eq!(shape_reason(QUAD), "the light is a polygon");
     let flat = r#""type": "disk", "center": [0, 0, 5], "axis_u": [1, 0, 0], "axis_v": [2, 0, 0]"#;
-    assert!(shape_reason(flat).starts_with("light 'a case': axis_u and axis_v: "));
+    assert!(shape_reason(flat).starts_with("axis_u and axis_v: "));
 }
 
 #[test]

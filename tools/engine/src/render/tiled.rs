@@ -119,7 +119,7 @@ impl SceneRenderer<'_> {
     /// Makes what shading this view by tiles needs.
     ///
     /// # Errors
-    /// [`EngineError`] names a light that needs more than the options' effects, or the reason why the device fails.
+    /// [`EngineError`] says why the device fails.
     ///
     /// # Panics
     /// Never: the pass was made with tiles.
@@ -129,8 +129,6 @@ impl SceneRenderer<'_> {
         // SAFETY: As in Engine::pass.
         let pass = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) }?;
         let pass = Kept::new(host, pass);
-        pass.check_lights(self.lights)?;
-        pass.check_shapes(self.shapes)?;
         let lobe_horizons = engine.storage("lobe horizons", engine.lobe_horizons())?;
         let tile_lists = engine.tile_lists(pass.tile_memory(self.size).expect("the pass has tiles"))?;
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;

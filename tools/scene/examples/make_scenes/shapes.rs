@@ -67,15 +67,11 @@ pub fn floor(width: f64, depth: f64, tile: f64) -> Shape {
 /// A flat polygon in the plane z = 0 that faces +Z; counter-clockwise.
 pub fn polygon(outline: &[[f64; 2]]) -> Shape {
     let vertices: Vec<DVec3> = outline.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
-    let light = arealight::PolygonLight {
-        name: String::new(),
-        vertices,
-        radiance: glam::Vec3::ONE,
-        ..arealight::PolygonLight::default()
-    };
+    let outline = arealight::LightShape::Polygon(vertices);
+    let light = arealight::Light { shape: outline, ..arealight::Light::default() };
     let mut shape =
         Shape { indices: arealight_tool_kernels::light_sampling::triangles(&light), ..Shape::default() };
-    for vertex in light.vertices {
+    for &vertex in light.shape.vertices() {
         shape.vertex(vertex, DVec3::Z, vertex.truncate());
     }
     shape

@@ -74,7 +74,7 @@ fn strips_and_fans_are_triangles_and_lines_are_not() {
         writer.root["meshes"][0]["primitives"][0]["mode"] = json!(mode);
         let scene = load(writer);
         assert_eq!(scene.triangles.len(), 2);
-        assert_eq!(scene.lights[0].area_vector(), DVec3::Z, "mode {mode} keeps its orientation");
+        assert_eq!(scene.lights[0].shape.area_vector(), DVec3::Z, "mode {mode} keeps its orientation");
     }
     let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
     writer.root["meshes"][0]["primitives"][0]["mode"] = json!(1);
@@ -222,7 +222,7 @@ fn buffers_may_be_data_uris() {
     let uri = format!("data:application/octet-stream;base64,{}", base64(&writer.buffer));
     writer.root["buffers"] = json!([{ "uri": uri, "byteLength": writer.buffer.len() }]);
     let scene = Scene::from_bytes(writer.root.to_string().as_bytes(), "data").unwrap();
-    assert_eq!(scene.lights[0].vertices.len(), 4);
+    assert_eq!(scene.lights[0].shape.vertices().len(), 4);
 }
 
 fn base64(bytes: &[u8]) -> String {
@@ -255,7 +255,7 @@ fn sparse_accessors_are_filled_in() {
         "min": [0, 0, 0], "max": [2, 3, 0],
         "sparse": { "count": 3, "indices": { "bufferView": places, "componentType": 5121 },
                     "values": { "bufferView": values } } });
-    assert_eq!(load(writer).lights[0].area_vector(), DVec3::Z * 6.0);
+    assert_eq!(load(writer).lights[0].shape.area_vector(), DVec3::Z * 6.0);
 }
 
 #[test]
@@ -278,6 +278,6 @@ fn strides_and_normalised_coordinates_are_read() {
     writer.root["accessors"][2] = json!({ "bufferView": view, "byteOffset": 12, "componentType": 5123,
         "normalized": true, "count": 4, "type": "VEC2" });
     let scene = load(writer);
-    assert_eq!(scene.lights[0].area_vector(), DVec3::Z);
+    assert_eq!(scene.lights[0].shape.area_vector(), DVec3::Z);
     assert_eq!(scene.triangles[0].uvs, [Vec2::new(1.0, 0.0), Vec2::new(1.0, 0.2), Vec2::new(1.0, 0.4)]);
 }

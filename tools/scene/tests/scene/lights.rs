@@ -3,7 +3,7 @@
 use crate::shapes::{floor, panel, polygon, rounded_box, sphere, star};
 use crate::writer::Shape;
 use crate::{emitter_with, load, warnings};
-use arealight::{Effects, PolygonLight};
+use arealight::{Effects, Light, LightShape};
 use arealight_scene::{LUMENS_PER_WATT, Scene, required_effects};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -17,11 +17,11 @@ fn near(a: DVec3, b: DVec3) -> bool {
 fn a_quad_is_one_light_of_four_vertices() {
     let scene = load(emitter_with(&panel(2.0, 1.0), json!({ "translation": [0, 5, 0] })));
     let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
-    assert_eq!((light.name.as_str(), light.vertices.len(), light.two_sided), ("lamp", 4, false));
-    assert_eq!(light.area_vector(), DVec3::Z * 2.0);
+    assert_eq!((light.name.as_str(), light.shape.vertices().len(), light.two_sided), ("lamp", 4, false));
+    assert_eq!(light.shape.area_vector(), DVec3::Z * 2.0);
     // emissiveFactor (1, 2/3, 1/3) times a strength of 3
     assert!((light.radiance - Vec3::new(3.0, 2.0, 1.0)).length() < 1e-6);
-    assert!(light.vertices.iter().all(|v| v.y > 4.0));
+    assert!(light.shape.vertices().iter().all(|v| v.y > 4.0));
     assert_eq!(warnings(&scene), [""; 0]);
     // It is visible, too
     assert_eq!(scene.triangles.len(), 2);
@@ -40,14 +40,14 @@ fn concave_outlines_are_one_light() {
     let corner = polygon(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 3.0], [0.0, 3.0]]);
     for (shape, count) in [(corner, 6), (star(10, 1.0, 0.4), 10)] {
         let scene = load(emitter_with(&shape, json!({ "rotation": [0.6, 0, 0, 0.8] })));
-        assert_eq!((scene.lights.len(), scene.lights[0].vertices.len()), (1, count));
+        assert_eq!((scene.lights.len(), scene.lights[0].shape.vertices().len()), (1, count));
         assert_eq!(warnings(&scene), [""; 0]);
     }
 }
 
 /// How many vertices each face of a light has.
-fn faces(light: &PolygonLight) -> Vec<usize> {
-    light.outlines().map(<[DVec3]>::len).collect()
+fn faces(light: &Light) -> Vec<usize> {
+    light.shape.outlines().map(<[DVec3]>::len).collect()
 }
 
 #[test]
@@ -67,7 +67,9 @@ fn islands_are_faces_of_one_light() {
     assert_eq!(call.to_string(), "mesh: light 'lamp'");
     // The twin: one of them is a polygon without faces
     let scene = load(emitter_with(&panel(1.0, 1.0), json!({})));
-    assert!(scene.lights[0].faces.is_empty() && !scene.effects().contains(Effects::MESH));
+    assert!(
+        matches!(scene.lights[0].shape, LightShape::Polygon(_)) && !scene.effects().contains(Effects::MESH)
+    );
 }
 
 #[test]
@@ -82,7 +84,7 @@ fn a_bent_emitter_is_one_light_of_its_flat_parts() {
     let count = faces(&scene.lights[0]).len();
     assert!((96..=168).contains(&count) && scene.lights.len() == 1, "{count}");
     // A closed surface's areas add up to zero
-    let sum = scene.lights[0].area_vector();
+    let sum = scene.lights[0].shape.area_vector();
     assert!(sum.length() < 1e-4, "{sum}");
 }
 
@@ -94,8 +96,8 @@ fn a_light_with_a_hole_is_one_light() {
     let side = |i: u32| [[i, (i + 1) % 4, (i + 1) % 4 + 4], [i, (i + 1) % 4 + 4, i + 4]].concat();
     let ring = Shape { positions, indices: (0..4).flat_map(side).collect(), ..Shape::default() };
     let scene = load(emitter_with(&ring, json!({})));
-    assert_eq!((scene.lights.len(), scene.lights[0].vertices.len()), (1, 4 + 4 + 2));
-    assert_eq!(scene.lights[0].area_vector(), DVec3::Z * 12.0);
+    assert_eq!((scene.lights.len(), scene.lights[0].shape.vertices().len()), (1, 4 + 4 + 2));
+    assert_eq!(scene.lights[0].shape.area_vector(), DVec3::Z * 12.0);
     assert_eq!(warnings(&scene), [""; 0]);
 }
 
@@ -106,7 +108,7 @@ fn mirrors_keep_the_front_in_front() {
         [([-1.0, 1.0, 1.0], DVec3::Z), ([1.0, -2.0, 1.0], DVec3::Z * 2.0), ([1.0, 1.0, -1.0], DVec3::NEG_Z)]
     {
         let scene = load(emitter_with(&panel(1.0, 1.0), json!({ "scale": scale })));
-        assert!(near(scene.lights[0].area_vector(), front), "{scale:?}");
+        assert!(near(scene.lights[0].shape.area_vector(), front), "{scale:?}");
         for triangle in &scene.triangles {
             let [p, q, r] = triangle.positions;
             let normal = (q - p).cross(r - p);
@@ -145,7 +147,7 @@ fn area_lights_have_the_extensions_defaults() {
     let scene = area_light(&json!({}), &json!({}));
     let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
     assert_eq!((light.name.as_str(), light.two_sided), ("area light 0", false));
-    assert_eq!(light.area_vector(), DVec3::NEG_Z, "one by one, along -Z");
+    assert_eq!(light.shape.area_vector(), DVec3::NEG_Z, "one by one, along -Z");
     assert!((light.radiance - Vec3::splat((1000.0 / LUMENS_PER_WATT) as f32)).length() < 1e-6);
     assert_eq!(scene.triangles.len(), 2, "it has no geometry of its own");
     assert_eq!(warnings(&scene), [""; 0]);
@@ -161,11 +163,11 @@ fn area_lights_scale_by_the_largest_component() {
     assert_eq!(light.radiance, Vec3::new(1.0, 0.5, 0.25));
     // The largest is 1.5: width 1.5 × 2 × 3 along x, height 1.5 × 2 along y, still along -Z
     let extent = |axis: usize| {
-        let along = || light.vertices.iter().map(|v| v[axis]);
+        let along = || light.shape.vertices().iter().map(|v| v[axis]);
         (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max))
     };
     assert_eq!((extent(0), extent(1), extent(2)), ((2.5, 11.5), (6.5, 9.5), (9.0, 9.0)));
-    assert!(light.area_vector().z < 0.0);
+    assert!(light.shape.area_vector().z < 0.0);
 }
 
 #[test]
@@ -174,10 +176,14 @@ fn area_lights_turn_with_their_node() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let light = json!({ "size": 2, "rect": { "aspect": 0.5 } });
     let scene = area_light(&light, &json!({ "rotation": [half, 0, 0, half] }));
-    assert!(near(scene.lights[0].area_vector(), DVec3::Y * 2.0), "{}", scene.lights[0].area_vector());
+    assert!(
+        near(scene.lights[0].shape.area_vector(), DVec3::Y * 2.0),
+        "{}",
+        scene.lights[0].shape.area_vector()
+    );
     // A mirror in z turns the light around with the node
     let scene = area_light(&light, &json!({ "scale": [1, 1, -1] }));
-    assert!(near(scene.lights[0].area_vector(), DVec3::Z * 2.0));
+    assert!(near(scene.lights[0].shape.area_vector(), DVec3::Z * 2.0));
 }
 
 #[test]
@@ -192,7 +198,7 @@ fn area_lights_that_cannot_be_are_left_out() {
         (json!({ "intensity": -1 }), json!({}), "must be finite and not negative: left out"),
     ] {
         let scene = area_light(&light, &node);
-        assert!(scene.lights.is_empty() && scene.shapes.is_empty());
+        assert!(scene.lights.is_empty());
         assert!(warnings(&scene)[0].ends_with(text), "{:?} should end with {text:?}", warnings(&scene));
     }
 }

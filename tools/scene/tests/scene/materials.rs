@@ -186,7 +186,7 @@ fn effects_are_what_the_scene_calls_for() {
                         "extensions": { "KHR_materials_specular": { "specularFactor": 0 } } });
     let matte = load(panel_with(matte));
     assert_eq!(calls(&matte), ["diffuse: material 'matte'", "specular_input: material 'matte'"]);
-    assert_eq!(SceneBuffers::new(&matte, DVec3::ZERO).unwrap().unused, Effects::GLOSSY);
+    assert_eq!(Effects::SURFACES - matte.effects(), Effects::GLOSSY);
     let black = json!({ "name": "black", "pbrMetallicRoughness": {
         "metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1] } });
     assert_eq!(calls(&load(panel_with(black.clone()))), ["glossy: material 'black'"]);

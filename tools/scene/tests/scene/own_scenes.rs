@@ -53,15 +53,15 @@ fn the_sweep_covers_roughness_and_metalness_under_one_rectangle() {
             assert!(scene.materials.iter().any(|m| is_it(&m.material)), "{roughness} {metalness}");
         }
     }
-    assert_eq!((scene.lights.len(), scene.lights[0].vertices.len()), (1, 4));
+    assert_eq!((scene.lights.len(), scene.lights[0].shape.vertices().len()), (1, 4));
     assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY);
 }
 
 /// Whether an outline turns both ways.
-fn is_concave(light: &arealight::PolygonLight) -> bool {
-    let normal = light.area_vector();
-    let corners = light.vertices.iter().zip(light.vertices.iter().cycle().skip(1));
-    let corners = corners.zip(light.vertices.iter().cycle().skip(2));
+fn is_concave(light: &arealight::Light) -> bool {
+    let normal = light.shape.area_vector();
+    let corners = light.shape.vertices().iter().zip(light.shape.vertices().iter().cycle().skip(1));
+    let corners = corners.zip(light.shape.vertices().iter().cycle().skip(2));
     corners.into_iter().any(|((a, b), c)| (*b - *a).cross(*c - *b).dot(normal) < 0.0)
 }
 
@@ -69,15 +69,15 @@ fn is_concave(light: &arealight::PolygonLight) -> bool {
 fn the_room_has_outlines_of_many_kinds() {
     let scene = load("room.glb");
     let named = |name: &str| scene.lights.iter().find(|light| light.name == name).unwrap();
-    let counts: Vec<usize> = scene.lights.iter().map(|light| light.vertices.len()).collect();
+    let counts: Vec<usize> = scene.lights.iter().map(|light| light.shape.vertices().len()).collect();
     assert_eq!(counts, [8, 10, 7, 3, 4, 5]);
     assert!(is_concave(named("star")) && is_concave(named("arrow")) && !is_concave(named("octagon")));
     let two_sided = scene.lights.iter().filter(|light| light.two_sided);
     assert_eq!(two_sided.map(|light| light.name.as_str()).collect::<Vec<_>>(), ["two-sided panel"]);
     // The platform's top cuts the sunken panel, and is there
     let sunken = named("sunken panel");
-    assert!(sunken.vertices.iter().any(|v| v.y < room::PLATFORM - 0.2));
-    assert!(sunken.vertices.iter().any(|v| v.y > room::PLATFORM + 0.2));
+    assert!(sunken.shape.vertices().iter().any(|v| v.y < room::PLATFORM - 0.2));
+    assert!(sunken.shape.vertices().iter().any(|v| v.y > room::PLATFORM + 0.2));
     let top = DVec3::new(1.35, room::PLATFORM + 0.1, -0.7);
     let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
     let hit = buffers.closest_hit(top, DVec3::NEG_Y).unwrap();
@@ -110,7 +110,7 @@ fn the_demo_shows_what_there_is() {
 #[test]
 fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let scene = load("screen.glb");
-    let others = Effects::SPECULAR_INPUT | Effects::OF_SHAPES | Effects::MESH;
+    let others = Effects::SPECULAR_INPUT | Effects::SHAPES | Effects::TEXTURED_ELLIPSE | Effects::MESH;
     assert_eq!(scene.effects(), Effects::all() - others);
     let layer = |name: &str| {
         let light = scene.lights.iter().find(|light| light.name == name).unwrap();
@@ -124,8 +124,8 @@ fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let camera = scene.camera(None, 16.0 / 9.0).unwrap();
     let screen = &scene.lights.iter().find(|light| light.name == "television").unwrap();
     let right = camera.forward.cross(DVec3::Y);
-    for (vertex, uv) in screen.vertices.iter().zip(&screen.texture.as_ref().unwrap().uvs) {
-        let offset = *vertex - screen.center();
+    for (vertex, uv) in screen.shape.vertices().iter().zip(&screen.texture.as_ref().unwrap().uvs) {
+        let offset = *vertex - screen.shape.center();
         assert_eq!((offset.dot(right) > 0.0, offset.y < 0.0), (uv.x > 0.5, uv.y > 0.5));
     }
     assert_eq!(card.texels[2].to_le_bytes()[..3], [225, 30, 25]);
@@ -148,9 +148,10 @@ fn the_clock_is_a_disk_that_shows_its_face_upright() {
         lobes | Effects::TWO_SIDED | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE,
         "no polygon shows anything"
     );
-    let [clock] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
-    assert_eq!((clock.texture, clock.two_sided), (Some(0), true));
-    let arealight::Shape::Ellipse { axis_u, axis_v, .. } = clock.shape else { panic!("{clock:?}") };
+    let disks: Vec<_> = scene.lights.iter().filter(|light| !light.shape.is_polygonal()).collect();
+    let [clock] = disks[..] else { panic!("{} disks", disks.len()) };
+    assert_eq!((clock.texture.as_ref().unwrap().layer, clock.two_sided), (0, true));
+    let arealight::LightShape::Disk { axis_u, axis_v, .. } = clock.shape else { panic!("{clock:?}") };
     // From the camera, its rows run to the right and its top is up
     let camera = scene.camera(None, 16.0 / 9.0).unwrap();
     let right = camera.forward.cross(DVec3::Y).normalize_or_zero();
@@ -164,20 +165,20 @@ fn the_clock_is_a_disk_that_shows_its_face_upright() {
 
 #[test]
 fn the_lamps_are_of_every_shape() {
-    use arealight::{ShapeKind, TubeEnds};
+    use arealight::TubeEnds;
     let scene = load("shapes.glb");
-    let kinds = |kind| scene.shapes.iter().filter(|light| light.shape.kind() == kind).count();
-    assert_eq!([ShapeKind::Ellipse, ShapeKind::Sphere, ShapeKind::Tube].map(kinds), [3, 2, 3]);
-    assert!(scene.lights.is_empty(), "no lamp is shaded as its mesh");
-    let ends = |light: &arealight::ShapeLight| match light.shape {
-        arealight::Shape::Tube { ends, .. } => Some(ends),
+    let kinds = |kind| scene.lights.iter().filter(|light| light.effects().contains(kind)).count();
+    assert_eq!([Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE].map(kinds), [3, 2, 3]);
+    assert!(scene.lights.iter().all(|light| !light.shape.is_polygonal()), "no lamp is shaded as its mesh");
+    let ends = |light: &arealight::Light| match light.shape {
+        arealight::LightShape::Tube { ends, .. } => Some(ends),
         _ => None,
     };
-    let ends: Vec<TubeEnds> = scene.shapes.iter().filter_map(ends).collect();
+    let ends: Vec<TubeEnds> = scene.lights.iter().filter_map(ends).collect();
     assert_eq!(ends, [TubeEnds::Flat, TubeEnds::Round, TubeEnds::Open]);
     assert!(scene.effects().contains(Effects::SHAPES));
     // One of them is cut by the floor
-    assert!(scene.shapes.iter().any(|light| light.shape.bounds()[0].y < -0.2));
+    assert!(scene.lights.iter().any(|light| light.shape.bounds()[0].y < -0.2));
     for roughness in lamps::ROUGHNESS {
         assert!(
             scene.materials.iter().any(|m| f64::from(m.material.roughness) == f64::from(roughness as f32))

@@ -3,7 +3,7 @@
 use crate::shapes::{disk, floor, sphere};
 use crate::writer::Writer;
 use crate::{emitter_with, load, warnings};
-use arealight::{Effects, Shape, TubeEnds};
+use arealight::{Effects, LightShape, TubeEnds};
 use arealight_scene::{Scene, required_effects};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -21,9 +21,9 @@ fn area_lights_may_be_disks() {
                         "extensions": { "EXT_lights_area": { "light": 0 } } }));
     let scene = load(writer);
     assert_eq!(warnings(&scene), [""; 0]);
-    let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+    let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
     assert_eq!((light.name.as_str(), light.radiance, light.two_sided), ("round", Vec3::ONE, false));
-    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
+    let LightShape::Disk { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
     assert_eq!(center, DVec3::new(7.0, 8.0, 9.0));
     assert_eq!((axis_u.length(), axis_v.length(), axis_u.dot(axis_v)), (3.0, 3.0, 0.0));
     assert_eq!(axis_u.cross(axis_v), DVec3::NEG_Z * 9.0);
@@ -45,7 +45,7 @@ fn emissive_meshes_may_stand_for_shapes() {
     // A quarter turn about X takes Y to Z
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let node = || json!({ "translation": [1, 2, 3], "rotation": [half, 0, 0, half], "scale": [2, 2, 2] });
-    let tube = |ends| Shape::Tube {
+    let tube = |ends| LightShape::Tube {
         p0: DVec3::new(1.0, 2.0, 1.0),
         p1: DVec3::new(1.0, 2.0, 5.0),
         radius: 0.5,
@@ -53,20 +53,20 @@ fn emissive_meshes_may_stand_for_shapes() {
     };
     let center = DVec3::new(1.0, 2.0, 3.0);
     for (said, expected) in [
-        (json!({ "shape": "sphere", "radius": 0.5 }), Shape::Sphere { center, radius: 1.0 }),
+        (json!({ "shape": "sphere", "radius": 0.5 }), LightShape::Sphere { center, radius: 1.0 }),
         (json!({ "shape": "cylinder", "radius": 0.25, "height": 2 }), tube(TubeEnds::Flat)),
         (json!({ "shape": "pipe", "radius": 0.25, "height": 2 }), tube(TubeEnds::Open)),
         (json!({ "shape": "capsule", "radius": 0.25, "height": 2 }), tube(TubeEnds::Round)),
     ] {
         let scene = emitter(&said, node(), true);
         assert_eq!(warnings(&scene), [""; 0], "{said}");
-        let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
+        let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
         assert_eq!(light.radiance, Vec3::new(3.0, 2.0, 1.0));
         assert!(!light.two_sided, "solids shine outwards");
-        let [found, expected] = [light.shape, expected].map(|shape| shape.bounds());
+        let [found, expected] = [light.shape.clone(), expected].map(|shape| shape.bounds());
         assert!((found[0] - expected[0]).length() < 1e-6 && (found[1] - expected[1]).length() < 1e-6);
         // The mesh is drawn, and is no light besides
-        assert!(scene.lights.is_empty() && scene.triangles.len() > 32);
+        assert!(scene.triangles.len() > 32);
     }
 }
 
@@ -82,9 +82,9 @@ fn a_mesh_of_two_materials_is_one_shape() {
         load(writer)
     };
     let scene = two(1.0);
-    assert_eq!((scene.shapes.len(), scene.lights.len(), warnings(&scene).len()), (1, 0, 0));
+    assert_eq!((scene.lights.len(), warnings(&scene).len()), (1, 0));
     let scene = two(0.5);
-    assert_eq!((scene.shapes.len(), scene.shapes[0].radiance), (1, Vec3::new(3.0, 2.0, 1.0)));
+    assert_eq!((scene.lights.len(), scene.lights[0].radiance), (1, Vec3::new(3.0, 2.0, 1.0)));
     assert!(warnings(&scene)[0].contains("shines with the emission of its first primitive"));
 }
 
@@ -95,9 +95,9 @@ fn disks_face_up_and_take_any_scale() {
         [([1.0, 5.0, 3.0], DVec3::Y), ([-1.0, 5.0, 3.0], DVec3::Y), ([1.0, -5.0, 3.0], DVec3::NEG_Y)]
     {
         let scene = emitter(&said, json!({ "scale": scale }), true);
-        let Shape::Ellipse { axis_u, axis_v, .. } = scene.shapes[0].shape else { panic!("no disk") };
+        let LightShape::Disk { axis_u, axis_v, .. } = scene.lights[0].shape else { panic!("no disk") };
         assert_eq!(axis_u.cross(axis_v), front * 12.0, "{scale:?}");
-        assert!(scene.shapes[0].two_sided);
+        assert!(scene.lights[0].two_sided);
     }
 }
 
@@ -118,7 +118,7 @@ fn words_that_do_not_hold_leave_the_mesh_as_it_is() {
         (json!(7), &plain, "invalid type"),
     ] {
         let scene = emitter(&said, node.clone(), false);
-        assert!(scene.shapes.is_empty() && !scene.lights.is_empty(), "{said}");
+        assert!(is_of_polygons(&scene), "{said}");
         let warnings = warnings(&scene);
         assert!(
             warnings[0].contains("extras.arealight: ") && warnings[0].contains(text),
@@ -128,7 +128,7 @@ fn words_that_do_not_hold_leave_the_mesh_as_it_is() {
     // The twin: a cylinder may be longer
     let longer = json!({ "scale": [1, 2, 1] });
     let said = json!({ "shape": "cylinder", "radius": 1, "height": 1 });
-    assert_eq!(emitter(&said, longer, false).shapes.len(), 1);
+    assert_eq!(emitter(&said, longer, false).lights.len(), 1);
 }
 
 /// A disk of radius 1 whose uv is this function of its place in x and z.
@@ -152,9 +152,10 @@ fn disks_show_what_their_meshes_show() {
     let uv = |x: f32, z: f32| [0.25 + 0.25 * (cos * x + sin * z), 0.75 + 0.25 * (cos * z - sin * x)];
     let scene = disk_showing(uv, json!({ "scale": [2, 1, 1] }));
     assert_eq!(warnings(&scene), [""; 0]);
-    let [light] = &scene.shapes[..] else { panic!("{} shapes", scene.shapes.len()) };
-    assert_eq!((light.texture, light.radiance), (Some(0), Vec3::new(3.0, 2.0, 1.0)));
-    let Shape::Ellipse { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
+    let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
+    let texture = light.texture.as_ref().unwrap();
+    assert_eq!((texture.layer, texture.uvs.len(), light.radiance), (0, 0, Vec3::new(3.0, 2.0, 1.0)));
+    let LightShape::Disk { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
     // What is at the ends of the axes is at the middles of the box's edges
     let (sin, cos) = (f64::from(sin), f64::from(cos));
     let near = |a: DVec3, b: DVec3| (a - b).length() < 1e-4;
@@ -177,7 +178,7 @@ fn what_a_disk_cannot_show_its_mesh_does() {
         (Box::new(|_, _| [0.5, 0.5]), "a line"),
     ] {
         let scene = disk_showing(uv, json!({}));
-        assert!(scene.shapes.is_empty() && !scene.lights.is_empty(), "{text}");
+        assert!(is_of_polygons(&scene), "{text}");
         let warnings = warnings(&scene);
         assert!(
             warnings[0].contains("the mesh's own polygons shine") && warnings[0].contains(text),
@@ -185,7 +186,7 @@ fn what_a_disk_cannot_show_its_mesh_does() {
         );
     }
     // The twin
-    assert_eq!(disk_showing(place, json!({})).shapes.len(), 1);
+    assert_eq!(disk_showing(place, json!({})).lights.len(), 1);
     // Spheres have one colour
     let said = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
     let mut writer = Writer::new();
@@ -193,6 +194,11 @@ fn what_a_disk_cannot_show_its_mesh_does() {
     let material = writer.emitter_of_image("glow", [3.0, 2.0, 1.0], texture, false);
     writer.object("ball", &sphere(1.0, 8, 4), material, json!({ "extras": said }));
     let scene = load(writer);
-    assert_eq!(scene.shapes[0].texture, None);
-    assert!(warnings(&scene)[0].contains("only disks show images"));
+    assert_eq!(scene.lights[0].texture, None);
+    assert!(warnings(&scene)[0].contains("only disks are textured"));
+}
+
+/// Whether a scene has lights, all of them polygons or meshes.
+fn is_of_polygons(scene: &Scene) -> bool {
+    !scene.lights.is_empty() && scene.lights.iter().all(|light| light.shape.is_polygonal())
 }

@@ -3,7 +3,7 @@
 use crate::shapes::{panel, polygon};
 use crate::writer::{Shape, Writer};
 use crate::{load, warnings};
-use arealight::{Effects, PolygonLight, TexturePart};
+use arealight::{Effects, Light, TexturePart};
 use arealight_scene::{MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, Scene, Wrap, required_effects};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgb, RgbImage};
@@ -51,7 +51,7 @@ fn one(shape: Shape) -> Scene {
 }
 
 /// The texture coordinate that a light shows at each vertex, in its image.
-fn shown(scene: &Scene, light: &PolygonLight) -> Vec<DVec2> {
+fn shown(scene: &Scene, light: &Light) -> Vec<DVec2> {
     let texture = light.texture.as_ref().expect("a texture");
     let layer = scene.light_textures[texture.layer as usize];
     texture.uvs.iter().map(|uv| layer.low + layer.size * *uv).collect()
@@ -71,7 +71,7 @@ fn a_screen_shows_its_whole_image() {
     let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
     assert!((light.radiance - Vec3::new(3.0, 2.0, 1.0)).length() < 1e-6, "the texture is not in it");
     // The image's upper left corner is the panel's, seen from the front
-    for (vertex, uv) in light.vertices.iter().zip(&light.texture.as_ref().unwrap().uvs) {
+    for (vertex, uv) in light.shape.vertices().iter().zip(&light.texture.as_ref().unwrap().uvs) {
         assert!(near(*uv, DVec2::new(vertex.x * 0.5 + 0.5, 0.5 - vertex.y)), "{vertex}: {uv}");
     }
     // What to load
@@ -96,7 +96,7 @@ fn a_turned_image_keeps_its_box() {
     let turn = |uv: DVec2| DVec2::from_angle(std::f64::consts::FRAC_PI_6).rotate((uv - 0.5) * 0.4) + 0.5;
     let scene = one(screen(turn));
     let light = &scene.lights[0];
-    for (vertex, uv) in light.vertices.iter().zip(shown(&scene, light)) {
+    for (vertex, uv) in light.shape.vertices().iter().zip(shown(&scene, light)) {
         assert!(near(uv, turn(DVec2::new(vertex.x * 0.5 + 0.5, 0.5 - vertex.y))), "{vertex}: {uv}");
     }
     let layer = scene.light_textures[0];
@@ -119,7 +119,7 @@ fn repeats_are_a_rectangle_beyond_the_image() {
     let layer = scene.light_textures[0];
     assert!(near(layer.low, DVec2::new(-1.5, 0.0)) && near(layer.size, DVec2::ONE), "{layer:?}");
     assert_eq!(scene.light_texture_source(0).unwrap().part.wrap, [Wrap::Clamp, Wrap::Mirror]);
-    for (vertex, uv) in scene.lights[0].vertices.iter().zip(shown(&scene, &scene.lights[0])) {
+    for (vertex, uv) in scene.lights[0].shape.vertices().iter().zip(shown(&scene, &scene.lights[0])) {
         // v = 3.5 - y before, of which 3 to 4 is the image from its lower edge up
         assert!(near(uv, DVec2::new(vertex.x * 0.5 - 1.0, 0.5 + vertex.y)), "{vertex}: {uv}");
     }
@@ -229,7 +229,7 @@ fn black_parts_are_no_lights() {
     let shapes = [quarter(0.0, 0.0), quarter(0.51, 0.0), quarter(0.51, 0.51), screen(|_| DVec2::splat(0.2))];
     let scene = scene_of(&corner, &shapes, &json!({}));
     assert_eq!((scene.lights.len(), scene.light_textures.len()), (1, 1));
-    assert!(scene.lights[0].center().x > 5.0, "the third");
+    assert!(scene.lights[0].shape.center().x > 5.0, "the third");
     assert_eq!(scene.triangles.len(), 8, "all are seen");
 }
 
@@ -239,7 +239,7 @@ fn a_mapping_that_bends_is_a_light_a_triangle() {
     shape.uvs = vec![[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
     let scene = one(shape);
     assert_eq!((scene.lights.len(), scene.light_textures.len()), (2, 1));
-    assert!(scene.lights.iter().all(|light| light.vertices.len() == 3));
+    assert!(scene.lights.iter().all(|light| light.shape.vertices().len() == 3));
     assert!(warnings(&scene)[0].contains("seams or bends"), "{:?}", warnings(&scene));
 }
 

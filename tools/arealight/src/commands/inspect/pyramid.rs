@@ -93,9 +93,8 @@ fn layer_name(path: &Path, scene: &Scene, layer: u32) -> Result<String, Failure>
         return Err(Failure::Argument { argument: "--layer", message });
     };
     let image = &scene.images[scene.textures[shown.texture as usize].image as usize].name;
-    let shows = |light: &&arealight::PolygonLight| {
-        light.texture.as_ref().is_some_and(|texture| texture.layer == layer)
-    };
+    let shows =
+        |light: &&arealight::Light| light.texture.as_ref().is_some_and(|texture| texture.layer == layer);
     let lights: Vec<&str> = scene.lights.iter().filter(shows).map(|light| light.name.as_str()).collect();
     let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
     let light = lights.first().copied().unwrap_or_default();

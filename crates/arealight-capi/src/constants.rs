@@ -1,0 +1,113 @@
+//! What numbers in structs mean.
+
+/// The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
+pub const AREALIGHT_EFFECT_DIFFUSE: u32 = 1;
+/// The GGX lobe: some surface reflects specularly.
+pub const AREALIGHT_EFFECT_GLOSSY: u32 = 2;
+/// Some light lights both of its sides.
+pub const AREALIGHT_EFFECT_TWO_SIDED: u32 = 4;
+/// Some surface has a dielectric reflectance of its own: ArealightResources.specular is read.
+pub const AREALIGHT_EFFECT_SPECULAR_INPUT: u32 = 8;
+/// Some light is concave, not quite flat, or has more than four vertices.
+pub const AREALIGHT_EFFECT_POLYGON: u32 = 16;
+/// Some polygon is textured: ArealightResources.light_textures is read.
+pub const AREALIGHT_EFFECT_TEXTURED: u32 = 32;
+/// Some light is a disk or an ellipse.
+pub const AREALIGHT_EFFECT_ELLIPSE: u32 = 256;
+/// Some light is a sphere.
+pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
+/// Some light is a cylinder or a capsule.
+pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
+/// Some light has several faces: a mesh.
+pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
+/// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
+/// Form factors to float32's own precision, 1e-6.
+pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
+/// As EXACT, and relative precision for lights that look small.
+pub const AREALIGHT_FORM_FACTOR_DIFFERENCE: u32 = 1;
+
+/// Polygons are clipped at the horizon of the lobe's cosine space.
+pub const AREALIGHT_HORIZON_COSINE: u32 = 0;
+/// And at the surface's horizon: nothing leaks from behind the surface.
+pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
+
+/// One integral a glossy lobe.
+pub const AREALIGHT_FRESNEL_BY_F0: u32 = 0;
+/// Two: exact in the reflectance and its colour.
+pub const AREALIGHT_FRESNEL_SPLIT: u32 = 1;
+
+/// The glossy lobe is the table's.
+pub const AREALIGHT_LOBES_TABLE: u32 = 0;
+/// Formulas instead, without a texture, at 1.2 to 1.35 times the error.
+pub const AREALIGHT_LOBES_FORMULA: u32 = 1;
+
+/// A light's image is looked up with one round fetch a lobe.
+pub const AREALIGHT_FOOTPRINT_ROUND: u32 = 0;
+/// With four along the longer axis.
+pub const AREALIGHT_FOOTPRINT_ELLIPSE: u32 = 1;
+/// With four by four parts of the light, a form factor and two fetches each.
+pub const AREALIGHT_FOOTPRINT_SPLIT: u32 = 2;
+
+/// ArealightResources.position holds positions; w = 0 where there is no surface.
+pub const AREALIGHT_POSITION_IMAGE: u32 = 0;
+/// It holds depth as stored; exactly 0 or 1 where there is no surface.
+pub const AREALIGHT_POSITION_DEPTH: u32 = 1;
+
+/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
+/// F0 and F90.
+pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;
+/// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
+pub const AREALIGHT_G_BUFFER_UNREAL: u32 = 1;
+/// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
+pub const AREALIGHT_G_BUFFER_UNITY: u32 = 2;
+/// A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
+pub const AREALIGHT_G_BUFFER_OCTAHEDRAL: u32 = 3;
+
+/// Radiance replaces what is in the image.
+pub const AREALIGHT_OUTPUT_OVERWRITE: u32 = 0;
+/// Radiance is added to it.
+pub const AREALIGHT_OUTPUT_ADD: u32 = 1;
+
+/// The radiance of both lobes goes to ArealightResources.radiance.
+pub const AREALIGHT_IMAGES_COMBINED: u32 = 0;
+/// That of the glossy lobe goes to ArealightResources.glossy instead.
+pub const AREALIGHT_IMAGES_SEPARATE: u32 = 1;
+
+/// Radiance is stored in 32-bit floats.
+pub const AREALIGHT_RADIANCE_RGBA32F: u32 = 0;
+/// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
+pub const AREALIGHT_RADIANCE_RGBA16F: u32 = 1;
+
+/// The table is kept in 32-bit floats, 16 bytes a texel.
+pub const AREALIGHT_TABLE_RGBA32F: u32 = 0;
+/// In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.
+pub const AREALIGHT_TABLE_RGBA16F: u32 = 1;
+
+/// A flat polygon, convex or concave, without crossing edges; with holes, if it has any.
+pub const AREALIGHT_LIGHT_POLYGON: u32 = 0;
+/// Several flat faces.
+pub const AREALIGHT_LIGHT_MESH: u32 = 1;
+/// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
+pub const AREALIGHT_LIGHT_DISK: u32 = 2;
+/// A sphere about `center`.
+pub const AREALIGHT_LIGHT_SPHERE: u32 = 3;
+/// A tube about `center`, whose axis goes from `center - axis_u` to `center + axis_u`.
+pub const AREALIGHT_LIGHT_TUBE: u32 = 4;
+
+/// The lateral surface of a tube alone shines.
+pub const AREALIGHT_TUBE_OPEN: u32 = 0;
+/// Flat caps shine too.
+pub const AREALIGHT_TUBE_FLAT: u32 = 1;
+/// Half spheres about both ends do: a capsule.
+pub const AREALIGHT_TUBE_ROUND: u32 = 2;
+
+/// Beyond the image is its edge.
+pub const AREALIGHT_WRAP_CLAMP: u32 = 0;
+/// The image again.
+pub const AREALIGHT_WRAP_REPEAT: u32 = 1;
+/// The image again, every other one mirrored.
+pub const AREALIGHT_WRAP_MIRROR: u32 = 2;
+
+/// The range of an ArealightBuffer from its offset to its end.
+pub const AREALIGHT_WHOLE_SIZE: u64 = u64::MAX;
