@@ -51,7 +51,7 @@ fn draws(engine: &TestEngine, polygons: &[Polygon]) -> Vec<Vec<(DVec3, f64)>> {
 
 /// How far a direction is outside of a polygon, as a sine.
 fn outside(polygon: &Polygon, direction: DVec3) -> f64 {
-    let middle: DVec3 = polygon.iter().map(|vertex| vertex.normalize()).sum();
+    let middle: DVec3 = polygon.iter().map(|vertex| vertex.normalize_or_zero()).sum();
     let edge = |i: usize| {
         let normal = polygon[i].cross(polygon[(i + 1) % polygon.len()]).normalize_or_zero();
         -normal.dot(direction) * normal.dot(middle).signum()
@@ -108,8 +108,8 @@ fn the_density_is_the_clamped_cosine() {
         let (mut square, mut twin, mut worst) = (0.0, 0.0, 0.0_f64);
         for (polygon, draws) in polygons.iter().zip(draws(&engine, &polygons)) {
             // Cut the polygon by a plane through the point and its middle
-            let middle: DVec3 = polygon.iter().map(|vertex| vertex.normalize()).sum();
-            let normal = middle.cross(random.direction()).normalize();
+            let middle: DVec3 = polygon.iter().map(|vertex| vertex.normalize_or_zero()).sum();
+            let normal = middle.cross(random.direction()).normalize_or_zero();
             let expected = form_factor(&cut(polygon, normal)) / form_factor(polygon);
             let inside = draws.iter().filter(|(direction, _)| normal.dot(*direction) >= 0.0).count();
             let share = inside as f64 / draws.len() as f64;

@@ -342,13 +342,13 @@ fn shadow_rays_start_above_the_surface_that_they_leave() {
     for index in 0..20_000 {
         // A point of the plane at a height of -1.5, rounded; moved by up to `step` away from it
         let normal = wide(narrow(random.direction(), 0.0));
-        let tangent = normal.cross(random.direction()).normalize();
+        let tangent = normal.cross(random.direction()).normalize_or_zero();
         let distance = 10.0_f64.powf(random.between(-3.0, 2.5));
         let step = if index % 2 == 0 { 0.0 } else { 1e-4 * distance };
         let point = tangent * distance - normal * 1.5;
         let moved = point + random.direction() * step * 0.99;
         given.push([narrow(moved, 0.0), narrow(normal, step), [0.0; 4]]);
-        planes.push((normal.normalize(), point, step));
+        planes.push((normal.normalize_or_zero(), point, step));
     }
     let found = engine.probe(Function::RayOrigin, &given);
     let mut below = 0;

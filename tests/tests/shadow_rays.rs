@@ -1,13 +1,13 @@
 //! Shadow rays drawn by the GLSL library, for the reference's shading points behind triangles: their mean visibility is the exact one's.
 
-use arealight::{LightTable, PolygonLight, Quality};
+use arealight::{LightTable, Quality};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{SupportedCase, read_cases};
 use arealight_oracle::shading::ltc_on;
 use arealight_oracle::visibility::is_hidden;
 use arealight_tests::TestEngine;
 use arealight_tests::kernel::SHADOW_RAYS;
-use arealight_tool_kernels::light_sampling::triangles;
+use arealight_tool_kernels::light_sampling::triangles_of;
 use arealight_vk::Resource;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -28,13 +28,12 @@ fn rays(engine: &TestEngine, cases: &[SupportedCase], count: usize) -> Vec<Vec<R
     let (mut points, mut corners) = (Vec::<[f32; 20]>::new(), Vec::<[f32; 4]>::new());
     for case in cases {
         let vertices = &case.light.vertices;
-        let light = PolygonLight { vertices: vertices.clone(), ..PolygonLight::default() };
-        let indices = triangles(&light);
+        let indices = triangles_of(vertices);
         let first = f32::from_bits(corners.len() as u32 / 3);
         let number = f32::from_bits(indices.len() as u32 / 3);
         corners.extend(indices.iter().map(|i| vertices[*i as usize].as_vec3().extend(0.0).to_array()));
         let surface = &case.surface;
-        let [n, v] = [case.normal, case.view].map(|direction| direction.normalize().as_vec3());
+        let [n, v] = [case.normal, case.view].map(|direction| direction.normalize_or_zero().as_vec3());
         let [d, f] = [surface.diffuse_albedo, surface.f0].map(DVec3::as_vec3);
         let (l, roughness) = (case.light.radiance.as_vec3(), surface.alpha.sqrt() as f32);
         points.push([

@@ -148,7 +148,7 @@ mod tests {
             // Before the light, and some of them through its plane or behind it
             let distance = if index % 4 == 3 { 2.2 } else { 1.0 };
             let blockers: Vec<Blocker> =
-                (0..1 + index % 5).map(|_| triangle(&mut stream, distance, 0.6)).collect();
+                (0..=index % 5).map(|_| triangle(&mut stream, distance, 0.6)).collect();
             let parts = visible_parts(&quad, &blockers);
             let share = parts.iter().map(|part| area(part)).sum::<f64>() / area(&quad);
             let mut visible = 0;

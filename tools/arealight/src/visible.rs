@@ -1,10 +1,9 @@
 //! Cases whose light is partly hidden, as cases of what is visible of it.
 
-use arealight::PolygonLight;
 use arealight_cases::answers::Answer;
 use arealight_cases::cases::SupportedCase;
 use arealight_oracle::visibility::visible_parts;
-use arealight_tool_kernels::light_sampling::triangles;
+use arealight_tool_kernels::light_sampling::triangles_of;
 use glam::DVec3;
 
 /// Parts smaller than this share of a light are left out: what rounding leaves where blockers touch.
@@ -17,9 +16,8 @@ pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
     }
     let vertices = &case.light.vertices;
     let whole = area(vertices);
-    let light = PolygonLight { vertices: vertices.clone(), ..PolygonLight::default() };
     let mut parts = Vec::new();
-    for triangle in triangles(&light).chunks_exact(3) {
+    for triangle in triangles_of(vertices).chunks_exact(3) {
         let triangle: Vec<DVec3> = triangle.iter().map(|index| vertices[*index as usize]).collect();
         parts.extend(visible_parts(&triangle, &case.blockers));
     }
