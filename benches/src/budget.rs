@@ -7,7 +7,7 @@ use arealight::Quality;
 pub struct ProfileLevel {
     /// The levels.
     pub quality: Quality,
-    /// Whether it was measured with lights that show images ([`arealight::Effects::TEXTURED`]).
+    /// Whether it was measured with textured lights ([`arealight::Effects::TEXTURED`]).
     pub textured: bool,
     /// The error: root of the mean square over the mean.
     pub error: f64,
@@ -40,7 +40,7 @@ pub struct FrameLoad {
     pub lights: u32,
     /// Pixels, in millions.
     pub megapixels: f64,
-    /// Whether some light shows an image.
+    /// Whether some light is textured.
     pub textured: bool,
 }
 
@@ -75,11 +75,11 @@ pub enum BudgetError {
         value: f64,
     },
     /// Nothing was measured for such lights.
-    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that show images" } else { "of one colour" })]
+    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that are textured" } else { "of one colour" })]
     NoLevel {
         /// The device.
         device: String,
-        /// Whether some light shows an image.
+        /// Whether some light is textured.
         textured: bool,
     },
     /// Even the fastest level takes longer.
@@ -256,7 +256,7 @@ mod tests {
         let mut plain = profile();
         plain.levels.pop();
         let error = plain.within(load).unwrap_err();
-        assert!(error.to_string().contains("no level for lights that show images"), "{error}");
+        assert!(error.to_string().contains("no level for lights that are textured"), "{error}");
         assert!(matches!(
             Profile::default().within(budget(1, Limit::Error(0.1))),
             Err(BudgetError::NoLevel { .. })

@@ -125,9 +125,9 @@ pub struct Samples {
 pub struct EffectCost {
     /// Its name.
     pub effect: String,
-    /// Time of a pipeline with it over one without, of a frame in which nothing calls for it; of a lobe, where all does.
+    /// Time of a pipeline with it over one without, of a frame in which nothing needs it; of a lobe, where all does.
     pub on: Spread,
-    /// Time of a frame of lights that call for it, over one of quads.
+    /// Time of a frame of lights that need it, over one of quads.
     pub used: Option<Spread>,
 }
 
@@ -163,7 +163,7 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over lights that show images. One
+    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over textured lights. One
     /// that gave no number, or was judged nowhere, is none of them.
     ///
     /// # Errors
@@ -247,7 +247,7 @@ pub fn run(
         // Without a lobe it is the other way round
         let on = if LOBES.contains(*effect) { default.ratio(clock) } else { clock.ratio(default) };
         let calls = |named: &Named| matches!(named.method, Method::Level { effects, .. } if effects - LOBES == *effect);
-        // Nothing calls for it in the first
+        // Nothing needs it in the first
         let all = workloads.iter().flat_map(|workload| &workload.methods).zip(&timed.methods);
         let mut others = all.skip(workloads[0].methods.len());
         let used = others.find(|(named, _)| calls(named)).map(|(_, clock)| clock.ratio(default));

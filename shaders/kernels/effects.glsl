@@ -13,14 +13,14 @@ const uint EFFECT_TWO_SIDED = 4u;
 const uint EFFECT_SPECULAR_INPUT = 8u;
 // Some light is concave, not quite flat, or has more than four vertices.
 const uint EFFECT_POLYGON = 16u;
-// Some polygon light shows an image.
+// Some polygon light is textured.
 const uint EFFECT_TEXTURED = 32u;
 const uint EFFECT_ELLIPSE = 256u;
 const uint EFFECT_SPHERE = 512u;
 const uint EFFECT_TUBE = 1024u;
 // Some light has several faces.
 const uint EFFECT_MESH = 2048u;
-// Some disk shows an image; EFFECT_ELLIPSE is set then, too.
+// Some disk is textured; EFFECT_ELLIPSE is set then, too.
 const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.

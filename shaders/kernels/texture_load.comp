@@ -21,7 +21,7 @@ layout(push_constant, std430) uniform TextureLoadConstants {
     uint layer;
 } constants;
 
-// What the pipeline can do beside copying texels one to one, by bits; what is not called for costs nothing.
+// What the pipeline can do beside copying texels one to one, by bits; what is not needed costs nothing.
 layout(constant_id = 9) const uint CALLED_FOR = 3u;
 const uint CALLED_FOR_RESAMPLING = 1u;
 const uint CALLED_FOR_DECODING = 2u;

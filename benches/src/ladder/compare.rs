@@ -82,7 +82,7 @@ pub fn compare(a: &Ladder, b: &Ladder) -> Comparison {
         };
         found.spread(what("turned on"), &effect.on, &other.on);
         if let (Some(a), Some(b)) = (&effect.used, &other.used) {
-            found.spread(what("called for"), a, b);
+            found.spread(what("needed"), a, b);
         }
     }
     found

@@ -190,7 +190,7 @@ impl Known {
         }
     }
 
-    /// What lobes give at every point, integrated in float64. Once for all methods: of lights that show images it takes long.
+    /// What lobes give at every point, integrated in float64. Once for all methods: of textured lights it takes long.
     fn integrals(&mut self, of: Integrand, table: &LightTable) -> &[DVec3] {
         let done = self.integrals.iter().position(|(done, _)| *done == of);
         let index = done.unwrap_or_else(|| {

@@ -63,7 +63,7 @@ pub struct Workload {
     pub share: f64,
 }
 
-/// What points of the workloads call for, beside their lights.
+/// What points of the workloads need, beside their lights.
 pub const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
 
 /// The level that every host starts from.
@@ -79,7 +79,7 @@ pub const SPHERE_PUBLISHED: &str = "sphere horizon, published quality";
 /// As [`CLIPLESS_PUBLISHED`].
 pub const CASES_PUBLISHED: &str = "clip by cases, published quality";
 
-/// The name of the lights that show images.
+/// The name of the textured lights.
 pub const TEXTURED: &str = "textured";
 
 /// Monte Carlo's numbers of samples.
@@ -167,7 +167,7 @@ pub fn workloads() -> Vec<Workload> {
         },
         Workload {
             name: TEXTURED,
-            description: "quads that show an image",
+            description: "textured quads",
             lights: LightKind::Textured,
             methods: vec![
                 textured("round", "one fetch", Footprint::Round),

@@ -43,7 +43,7 @@ pub enum LightKind {
     TwoSided,
     /// Stars of ten vertices.
     Stars,
-    /// Quads that show an image each.
+    /// Textured quads.
     Textured,
 }
 

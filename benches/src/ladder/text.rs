@@ -121,7 +121,7 @@ impl Ladder {
             vec![effect.effect.clone(), spread(&effect.on), used]
         };
         table(
-            &["effect", "turned on, time without it = 1", "lights that call for it, quads = 1"],
+            &["effect", "turned on, time without it = 1", "lights that need it, quads = 1"],
             self.effects.iter().map(row).collect(),
         )
     }

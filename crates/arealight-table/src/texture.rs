@@ -19,7 +19,7 @@ pub struct Texture<'a> {
     /// Texels a side.
     pub size: u32,
     pub layers: u32,
-    /// Just as long as the above call for.
+    /// Just as long as the above need.
     pub texels: &'a [u8],
     /// Key/value data as KTX2 has it.
     pub key_values: &'a [u8],
@@ -126,6 +126,6 @@ pub fn field(format: Format, field: &'static str, found: u32, expected: &'static
 
 /// The error for a file that ends too early, or goes on.
 pub fn length(format: Format, part: &'static str, needed: u64, found: u64) -> ReadError {
-    let reason = format!("{needed} bytes are called for, {found} are there");
+    let reason = format!("{needed} bytes are needed, {found} are there");
     ReadError::Damaged { format, part, reason }
 }

@@ -64,7 +64,7 @@ pub struct LightTextures {
     context: Context,
     size: PyramidSize,
     layers: u32,
-    /// By what is called for. Their layouts are alike, so that a set made for one is for all.
+    /// By what is needed. Their layouts are alike, so that a set made for one is for all.
     load: [ComputePass; 4],
     /// By [`plan::BLUR_RADII`]. Likewise.
     blur: [ComputePass; 3],

@@ -1,7 +1,7 @@
 //! Leaves out of a SPIR-V module what its specialisation constants rule out.
 //!
 //! Drivers find that out as well, but some do so late: Mesa copies every function to where it is called, with all of its branches,
-//! before it looks at a condition. What a scene doesn't call for then costs nothing to shade, and much to compile
+//! before it looks at a condition. What a scene does not need then costs nothing to shade, and much to compile
 //! (docs/decisions/0009-pruned-modules.md).
 
 use constants::{Known, Value};

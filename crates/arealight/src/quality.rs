@@ -34,7 +34,7 @@ pub enum Horizon {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Fresnel {
-    /// One integral, of the lobe between the table's two that the reflectance calls for. A colour counts by the
+    /// One integral, of the lobe between the table's two that the reflectance asks for. A colour counts by the
     /// mean of its channels; the specular albedo stays exact in each.
     #[default]
     ByF0 = 0,

@@ -76,7 +76,7 @@ pub enum TableError {
         /// The size given.
         size: u32,
     },
-    /// A layer has another number of texels than the size calls for.
+    /// A layer has another number of texels than its size says.
     #[error("{layer}: {count} texels, but {size} nodes a side need {}", u64::from(*size) * u64::from(*size))]
     TexelCount {
         /// The layer.

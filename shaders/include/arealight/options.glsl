@@ -38,7 +38,7 @@
 #define AREALIGHT_DIFFERENCE 0
 #endif
 
-// Some light of these kinds shows an image (with AREALIGHT_LIGHT_TEXTURES): those whose record says so.
+// Some light of these kinds is textured (with AREALIGHT_LIGHT_TEXTURES): those whose record says so.
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS 1
 #endif
@@ -53,7 +53,7 @@
 
 // The remaining options are 0 or 1, and nothing else: they decide which bridges a host has to define.
 
-// Lights may show images: textures/footprint.glsl declares the bridges.
+// Lights may be textured: textures/footprint.glsl declares the bridges.
 #ifndef AREALIGHT_LIGHT_TEXTURES
 #define AREALIGHT_LIGHT_TEXTURES 0
 #endif

@@ -1,5 +1,5 @@
 //! glTF scenes for Arealight: lights, materials, triangles, cameras, and the scan that says which
-//! effects they call for.
+//! effects that they need.
 //!
 //! [`Scene::load`] reads a `.gltf` or `.glb` file. Files are not trusted: whatever is in them gives a scene,
 //! perhaps with [`Warning`]s about what was left out, or a [`SceneError`] that names the file and the field,

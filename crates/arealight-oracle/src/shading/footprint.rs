@@ -16,7 +16,7 @@ pub enum Filter {
     Level(Footprint),
 }
 
-/// A light that shows an image, in the cosine space of a lobe.
+/// A textured light, in the cosine space of a lobe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeenLight {
     /// The outline, not clipped.

@@ -1,4 +1,4 @@
-//! Families of poses of a light that shows an image, and how far off a footprint may be on them: what tests and
+//! Families of poses of a textured light, and how far off a footprint may be on them: what tests and
 //! `arealight bench textures` judge by.
 
 use super::footprint::Filter;
@@ -37,7 +37,7 @@ impl Family {
     }
 }
 
-/// A rectangle that shows an image, and a surface at the origin, in the surface frame: the normal is z.
+/// A textured rectangle, and a surface at the origin, in the surface frame: the normal is z.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose {
     /// Lambert of albedo 1, or GGX of F0 = F90 = 1: one lobe and no Fresnel term.

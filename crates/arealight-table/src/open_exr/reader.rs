@@ -32,7 +32,7 @@ pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
         check_layer(header, &SCHLICK_MATRIX, Some(size), &[SampleType::F32])?;
     }
 
-    // Read the texels into what the headers call for
+    // Read the texels into what the headers announce
     let mut matrix = Texels::<4>::new(&MATRIX, matrix_header, size);
     let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_header, size);
     let mut schlick = schlick.map(|(index, header)| (index, Texels::<4>::new(&SCHLICK_MATRIX, header, size)));

@@ -1,4 +1,4 @@
-//! A station's clock that hangs over a floor which is a mirror on the left and rough on the right: a disk that shows an image, on
+//! A station's clock that hangs over a floor which is a mirror on the left and rough on the right: a textured disk, on
 //! both sides.
 
 use crate::screen::{ground, texture};

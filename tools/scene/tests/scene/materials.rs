@@ -1,4 +1,4 @@
-//! Materials, textures, and the effects that they call for.
+//! Materials, textures, and the effects that they need.
 
 use crate::shapes::panel;
 use crate::writer::Writer;

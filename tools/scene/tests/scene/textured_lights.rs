@@ -81,7 +81,7 @@ fn a_screen_shows_its_whole_image() {
     assert_eq!(source.part, part);
     assert_eq!(source.texels[64 * 3 + 5].to_le_bytes(), [20, 24, 40, 255]);
     assert_eq!(scene.light_texture_source(1), None);
-    // And what it calls for
+    // And what it needs
     let calls = required_effects(&scene);
     assert!(calls.iter().any(|c| c.to_string() == "textured: light 'tv'"), "{calls:?}");
 }

@@ -147,8 +147,8 @@ fn says_parts(found: &Ladder) -> String {
 }
 
 fn says_effects() -> &'static str {
-    "Blue: the time that an effect adds to the default level by being in the set, on a frame in which no light calls for it; of a \
-     lobe, which every pixel has, what it adds. Orange: lights that call for it, beside quads. What is not in the set costs nothing, \
+    "Blue: the time that an effect adds to the default level by being in the set, on a frame in which no light needs it; of a \
+     lobe, which every pixel has, what it adds. Orange: lights that need it, beside quads. What is not in the set costs nothing, \
      so blue is what a set that is too large costs. Instructions are of the shade kernel's SPIR-V, specialised and optimised."
 }
 

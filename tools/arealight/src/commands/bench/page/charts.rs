@@ -169,7 +169,7 @@ pub fn effects(found: &Ladder) -> String {
         }
     }
     let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>in the set (of a lobe: what it adds)</span>\
-        <span><i style=\"background:var(--theirs)\"></i>lights that call for it</span></div>";
+        <span><i style=\"background:var(--theirs)\"></i>lights that need it</span></div>";
     drawing.into_html() + key
 }
 
