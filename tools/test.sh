@@ -57,7 +57,7 @@ run_tests() {
 # out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too.
 batteries='bits|effects|footprints|guard|properties|shading|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
 run_assisted() {
-    local left_out="binary(/^($batteries)\$/)"
+    local left_out="test(/^($batteries)::/)"
     if [[ "${AREALIGHT_ASSISTED:-}" == all ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
