@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the C library to a scratch folder, and builds and runs the host in C++ against it: found by pkg-config and by CMake,
-# shared and static. All must draw the same picture. (That it is the one that Rust draws, tests/tests/cpp_host.rs shows.)
+# shared and static. All must draw the same picture. (That it is the one that Rust draws, tests/tests/gpu/cpp_host.rs shows.)
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 scratch="$(mktemp -d)"

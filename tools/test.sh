@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every check of the project: installs what is missing, then formatting, lints, tests, documentation, shaders.
+# Every check of the project: installs what is missing, then formatting, dependencies, lints, tests, documentation, shaders.
 # Goes on after a step that fails, ends with a summary, and fails if any step did.
 #
 # With AREALIGHT_REQUIRE_GPU=1 (as in CI) a test without a Vulkan device fails. Otherwise it is skipped and listed.
@@ -57,7 +57,7 @@ run_tests() {
 # out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too.
 batteries='bits|effects|footprints|guard|properties|shading|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
 run_assisted() {
-    local left_out="binary(/^($batteries)\$/)"
+    local left_out="test(/^($batteries)::/)"
     if [[ "${AREALIGHT_ASSISTED:-}" == all ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
@@ -100,6 +100,7 @@ if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 step "format" cargo fmt --all --check
 step "links of documents" check_links
 step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
+step "the product depends on no laboratory" cargo run --locked --quiet -p xtask -- dependencies
 # With the window of an example, which nothing below builds: tools/test-window.sh runs it
 step "lints" cargo clippy --workspace --features arealight-examples/window --all-targets --locked --quiet -- -D warnings
 step "tests" run_tests

@@ -9,7 +9,7 @@ use ash::vk;
 /// The texel format of the table on the GPU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum TableFormat {
-    /// Eight bytes a texel. What that costs is tested: see `tests/tests/shading.rs`.
+    /// Eight bytes a texel. What that costs is tested: see `tests/tests/gpu/shading.rs`.
     Rgba16Float,
     /// Sixteen bytes a texel, the fit as it is.
     #[default]

@@ -14,7 +14,7 @@
 //!   `f64` here and `f32` relative to that origin on the GPU.
 //! - Table axes: roughness, and `sqrt(1 - cos theta_view)`; see [`LightTable`].
 //!
-//! # The rooms
+//! # Modules
 //! | module | holds |
 //! |---|---|
 //! | [`light`] | lights, of which a host has one list |

@@ -19,7 +19,7 @@
 //! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a Gaussian than
 //!   mixing by the logarithm of the blur.
 //!
-//! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/pyramid.rs`).
+//! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/gpu/pyramid.rs`).
 
 /// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask for more get
 /// this.

@@ -1,4 +1,4 @@
-//! Project tasks that need a shader compiler. Run them from anywhere in the checkout:
+//! Project tasks. Most need a shader compiler. Run them from anywhere in the checkout:
 //!
 //! ```text
 //! export SHADERC_LIB_DIR="$(tools/shaderc.sh)"   # where xtask is not built yet
@@ -10,9 +10,12 @@
 //! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
 //! cargo run -p xtask -- quotes                   # put the code that documents show into them
 //! cargo run -p xtask -- packages                 # is what would be published whole?
+//! cargo run -p xtask -- dependencies             # does the product stand without the laboratory?
 //! ```
 
+mod cargo;
 mod compile;
+mod dependencies;
 mod header;
 mod includes;
 mod library;
@@ -47,6 +50,8 @@ enum Task {
     Quotes(quotes::Arguments),
     /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer Rust.
     Packages,
+    /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines on those for fitting.
+    Dependencies,
 }
 
 /// A task that cannot be carried out. Its text says what is wrong, where, and what to do.
@@ -56,6 +61,8 @@ pub(crate) enum TaskError {
     File { path: PathBuf, source: std::io::Error },
     #[error("{}: {source}; delete the file and run: cargo run -p xtask -- shaders", path.display())]
     Manifest { path: PathBuf, source: serde_json::Error },
+    #[error("what cargo metadata prints is not what was expected: {0}")]
+    Metadata(serde_json::Error),
     #[error("the shader compiler cannot start: {0}")]
     Compiler(shaderc::Error),
     #[error("there is no kernel {name} (there are: {available})")]
@@ -86,6 +93,7 @@ fn main() -> ExitCode {
         Task::Matrix(arguments) => matrix::run(&root, &arguments),
         Task::Quotes(arguments) => quotes::run(&root, &arguments),
         Task::Packages => packages::run(&root),
+        Task::Dependencies => dependencies::run(&root),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

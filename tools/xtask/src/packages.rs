@@ -1,10 +1,10 @@
 //! `packages`: what would be published is whole, and nothing that it is built from asks for a newer Rust than is promised.
 
 use crate::TaskError;
+use crate::cargo::{cargo, metadata};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::process::Command;
 
 /// What packages must hold beside their sources, which compiling would not miss everywhere.
 const NEEDED: [(&str, &[&str]); 3] = [
@@ -77,9 +77,7 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
         );
         return Ok(true);
     }
-    let metadata = cargo(root, &["metadata", "--format-version", "1", "--locked"])?;
-    let metadata: Metadata = serde_json::from_str(&metadata)
-        .map_err(|source| TaskError::Manifest { path: root.join("Cargo.toml"), source })?;
+    let metadata: Metadata = metadata(root, &[])?;
     let published: Vec<&Package> = metadata.published().collect();
     let mut wrong = metadata.too_new();
 
@@ -164,18 +162,6 @@ fn version(text: &str) -> Vec<u32> {
     let mut numbers: Vec<u32> = text.split('.').map(|part| part.parse().unwrap_or(0)).collect();
     numbers.resize(3, 0);
     numbers
-}
-
-/// What cargo prints.
-fn cargo(root: &Path, arguments: &[&str]) -> Result<String, TaskError> {
-    let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let failed = |source| TaskError::Program { program: "cargo", package: "cargo", source };
-    let output = Command::new(program).args(arguments).current_dir(root).output().map_err(failed)?;
-    if output.status.success() {
-        return Ok(String::from_utf8_lossy(&output.stdout).into_owned());
-    }
-    let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    Err(TaskError::Cargo { arguments: arguments.join(" "), message })
 }
 
 #[cfg(test)]

@@ -12,11 +12,11 @@ use arealight_tests::{Comparison, TestEngine};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
-const CASES: &str = include_str!("../data/reference/cases.json");
+const CASES: &str = include_str!("../../data/reference/cases.json");
 /// What `tube.glsl` and `tube_horizons.glsl` allow, which is more than the others do.
 const ROUNDING: f64 = 3e-6;
 
-const TRUTH: &str = include_str!("../data/reference/truth.json");
+const TRUTH: &str = include_str!("../../data/reference/truth.json");
 
 /// The reference's shapes, and whether their surfaces are diffuse.
 fn cases() -> Vec<(ShapeCase, bool)> {

@@ -1,7 +1,7 @@
 //! Where one form gives way to another: the light stays as it is, and only the center moves that its vertices are offsets from, so
 //! that the form changes, and nothing else but rounding.
 
-use crate::{COUNT, PATHS, lambert, outline};
+use super::{COUNT, PATHS, lambert, outline};
 use arealight::gpu::GpuLight;
 use arealight::{FormFactor, Horizon};
 use arealight_engine::EvalPoint;

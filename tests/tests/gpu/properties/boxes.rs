@@ -1,6 +1,6 @@
 //! The inside of a box.
 
-use crate::{COUNT, lambert, view};
+use super::{COUNT, lambert, view};
 use arealight::LightTable;
 use arealight_engine::EvalPoint;
 use arealight_tests::{Comparison, Level, Property, Random, TestEngine, glossy_surface, point};

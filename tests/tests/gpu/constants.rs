@@ -31,19 +31,20 @@ fn assert_constants(source: &str, prefix: &str, expected: &[(&str, f64)]) {
     assert_eq!(glsl_constants(source, prefix), expected, "{prefix}*");
 }
 
-const EFFECTS_GLSL: &str = include_str!("../../shaders/kernels/effects.glsl");
-const OPTIONS_GLSL: &str = include_str!("../../shaders/include/arealight/options.glsl");
-const COMMON_GLSL: &str = include_str!("../../shaders/include/arealight/common.glsl");
-const FOOTPRINT_GLSL: &str = include_str!("../../shaders/include/arealight/textures/footprint.glsl");
-const LIGHT_RECORDS_GLSL: &str = include_str!("../../shaders/kernels/light_records.glsl");
-const TUBE_OUTLINE_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/tube_outline.glsl");
-const SCENE_GLSL: &str = include_str!("../../tools/kernels/shaders/scene.glsl");
-const TEXTURE_LOAD_COMP: &str = include_str!("../../shaders/kernels/texture_load.comp");
-const TEXTURE_BLUR_COMP: &str = include_str!("../../shaders/kernels/texture_blur.comp");
-const G_BUFFER_GLSL: &str = include_str!("../../shaders/kernels/g_buffer.glsl");
-const OUTPUT_GLSL: &str = include_str!("../../shaders/kernels/output.glsl");
-const POSITION_GLSL: &str = include_str!("../../shaders/kernels/position.glsl");
-const TILES_GLSL: &str = include_str!("../../shaders/kernels/tiles.glsl");
+const EFFECTS_GLSL: &str = include_str!("../../../shaders/kernels/effects.glsl");
+const OPTIONS_GLSL: &str = include_str!("../../../shaders/include/arealight/options.glsl");
+const COMMON_GLSL: &str = include_str!("../../../shaders/include/arealight/common.glsl");
+const FOOTPRINT_GLSL: &str = include_str!("../../../shaders/include/arealight/textures/footprint.glsl");
+const LIGHT_RECORDS_GLSL: &str = include_str!("../../../shaders/kernels/light_records.glsl");
+const TUBE_OUTLINE_GLSL: &str =
+    include_str!("../../../shaders/include/arealight/form_factor/tube_outline.glsl");
+const SCENE_GLSL: &str = include_str!("../../../tools/kernels/shaders/scene.glsl");
+const TEXTURE_LOAD_COMP: &str = include_str!("../../../shaders/kernels/texture_load.comp");
+const TEXTURE_BLUR_COMP: &str = include_str!("../../../shaders/kernels/texture_blur.comp");
+const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl");
+const OUTPUT_GLSL: &str = include_str!("../../../shaders/kernels/output.glsl");
+const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
+const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
 
 #[test]
 fn effects_have_the_same_bits_in_glsl() {

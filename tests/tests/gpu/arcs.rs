@@ -1,8 +1,8 @@
 //! The rational functions of `arc.glsl` and `difference.glsl`, evaluated in float64 from the GLSL's own text, have the errors that their comments
 //! state.
 
-const ARC_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/arc.glsl");
-const DIFFERENCE_GLSL: &str = include_str!("../../shaders/include/arealight/form_factor/difference.glsl");
+const ARC_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/arc.glsl");
+const DIFFERENCE_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/difference.glsl");
 
 /// Evaluates a GLSL expression of numbers, names, `+ - * /` and parentheses.
 struct Expression<'a> {

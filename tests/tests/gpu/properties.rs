@@ -4,13 +4,9 @@
 //!
 //! A test takes many properties: with a software driver a pipeline costs more than all that it computes here.
 
-#[path = "properties/boxes.rs"]
 mod boxes;
-#[path = "properties/horizons.rs"]
 mod horizons;
-#[path = "properties/relations.rs"]
 mod relations;
-#[path = "properties/switches.rs"]
 mod switches;
 
 use arealight::{Effects, Horizon, LightTable};

@@ -1,6 +1,6 @@
 //! Lights at the horizons, and the level that has none.
 
-use crate::{COUNT, PATHS, TABLE, lambert, outline, view};
+use super::{COUNT, PATHS, TABLE, lambert, outline, view};
 use arealight::gpu::GpuLight;
 use arealight::{Effects, Horizon};
 use arealight_tests::{Cases, Comparison, Level, Path, Property, Random, TestEngine, glossy_surface, point};

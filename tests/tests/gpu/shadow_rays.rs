@@ -12,8 +12,8 @@ use arealight_vk::Resource;
 use glam::DVec3;
 use std::collections::HashMap;
 
-const CASES: &str = include_str!("../data/reference/shadows.json");
-const TRUTH: &str = include_str!("../data/reference/shadows-truth.json");
+const CASES: &str = include_str!("../../data/reference/shadows.json");
+const TRUTH: &str = include_str!("../../data/reference/shadows-truth.json");
 
 /// A ray as the kernel writes it.
 type Ray = [[f32; 4]; 2];

@@ -1,6 +1,6 @@
 //! What relates the form factors of an outline and of others that are made of it.
 
-use crate::{outline, with_outline};
+use super::{outline, with_outline};
 use arealight_engine::EvalPoint;
 use arealight_tests::{Path, Random, glossy_surface, lambert_surface, point};
 use glam::{DQuat, DVec3};
