@@ -30,7 +30,7 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness);
+                            given.roughness, ArealightCoat(vec3(0.0), 0.0, 0.0));
 }
 
 #endif
