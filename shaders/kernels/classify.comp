@@ -21,9 +21,10 @@ layout(constant_id = 14) const uint CULL = 0u;
 #define G_BUFFER_BINDING 3
 #define G_BUFFER_LAYOUT LAYOUT
 #define SHAPES_BINDING 9
-#define TILE_LISTS_BINDING 11
+#define COAT_BINDING 11
+#define TILE_LISTS_BINDING 12
 #define TILE_LISTS_ACCESS
-#define LOBE_HORIZONS_BINDING 12
+#define LOBE_HORIZONS_BINDING 13
 #define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
@@ -39,6 +40,8 @@ const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & EFFECT_GLOSSY) != 0u;
 // Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula.
 const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA;
+// Likewise that of the coat's.
+const bool HAS_COAT_HORIZON = AREALIGHT_HAS_COAT && !AREALIGHT_USES_FORMULA;
 
 #include "classify_lights.glsl"
 

@@ -3,7 +3,7 @@
 
 // Tests lights against the bounds of a tile. What is found holds for every pixel:
 //
-// - A light is left out where it contributes to neither lobe: it is wholly below the lobe's horizon, or the pixel is behind
+// - A light is left out where it contributes to no lobe: it is wholly below the lobe's horizon, or the pixel is behind
 //   a flat light of one side.
 // - With CULL its contribution has bounds (tile_contribution.glsl).
 //
@@ -101,6 +101,11 @@ vec2 contribution(uint index) {
         bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe();
         is_below = is_below && (is_below_lobe || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
     }
+    if (tile_coat_spread() >= 0.0) {
+        heights.coat.x = tile_heights(tile_planes(COAT_PAIR), light).y;
+        bool is_below_coat = heights.coat.x < 0.0 && tile_has_coat_horizon();
+        is_below = is_below && (is_below_coat || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
+    }
     bool is_dark = light.radiance == 0.0;
     if (tile_is_known() && (is_behind || is_below || is_dark)) {
         return vec2(0.0, -1.0);
@@ -109,9 +114,11 @@ vec2 contribution(uint index) {
     vec2 sent = vec2(0.0, TILE_FAR);
     if (CULL != 0u) {
         heights.mirror = HAS_HORIZON ? tile_heights(tile_planes(MIRROR_PAIR), light).y : 0.0;
+        heights.coat.y = tile_coat_spread() >= 0.0 ? tile_heights(tile_planes(COAT_MIRROR_PAIR), light).y : 0.0;
         vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
         // NaN is neither little nor much
-        bool is_sure = light.is_bounded && tile_is_known() && tile_has_lobe() && bounds.x >= 0.0 && bounds.y < TILE_FAR;
+        bool is_known = tile_is_known() && tile_has_lobe() && tile_has_coat_horizon();
+        bool is_sure = light.is_bounded && is_known && bounds.x >= 0.0 && bounds.y < TILE_FAR;
         sent = is_sure ? bounds : sent;
     }
     return sent;

@@ -12,7 +12,7 @@
 // LobeHorizons holds the least and the largest p of each cell of the table for both of its lobes; a mixture of the two, by
 // the reflectance, has a weighted mean of theirs. So the table is not read here. The planes of a tile are held by the box of
 // their normals and by the range of their offsets, which makes them sharp on a flat floor however far it extends; the range of p
-// is a spread of the normals.
+// is a spread of the normals. A coat's lobe is that of the table without Fresnel term, about the coat's own normal.
 
 #include "tile_bounds.glsl"
 #include "tile_contribution.glsl"
@@ -40,11 +40,15 @@ const int LOBE_PAIR = 1;       // of the horizons of the glossy lobes, likewise
 const int POSITION_PAIR = 2;   // position and distance, negative position and the spread of the lobes' horizons
 const int REFLECTION_PAIR = 3; // whether some diffuse albedo is not zero; TileReflection's
 const int MIRROR_PAIR = 4;     // of the planes whose normals are the mirror directions of the view, with CULL
+// With coats: as LOBE_PAIR and MIRROR_PAIR; and the spread of the horizons and TileReflection's. Pixels without a coat have none.
+const int COAT_PAIR = 5;
+const int COAT_MIRROR_PAIR = 6;
+const int COAT_REFLECTION_PAIR = 7;
 
-// The cell of the table that a surface is looked up in.
-ArealightGpuLobeHorizon lobe_horizon(ArealightSurface surface, float cosine) {
+// The cell of the table that a roughness and a view are looked up in.
+ArealightGpuLobeHorizon lobe_horizon(float roughness, float cosine) {
     float smallest = sqrt(AREALIGHT_MIN_ALPHA);
-    float roughness = surface.roughness > smallest ? min(surface.roughness, 1.0) : smallest;
+    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
     vec2 place = vec2(roughness, sqrt(max(1.0 - cosine, 0.0))) * float(constants.horizon_cells);
     // Of whole numbers, so that NaN is a cell too
     uvec2 cell = min(uvec2(place), uvec2(constants.horizon_cells - 1u));
@@ -69,6 +73,48 @@ void reduce_planes(int pair, vec3 normal, vec3 position, bool has_surface) {
     tile_reduce(pair, has_surface ? plane : vec4(-TILE_FAR), has_surface ? -plane : vec4(-TILE_FAR));
 }
 
+// A fitted lobe at a pixel.
+struct PixelLobe {
+    vec3 horizon;  // the normal of its horizon, unit
+    float spread;  // that may differ by as much; TILE_FAR where nothing is known of it
+    vec3 mirror;   // the mirror direction of the view
+    vec2 envelope; // TileReflection's
+};
+
+// `range`: that of p, of a lobe of the cell about a normal, `cosine` from the view.
+PixelLobe pixel_lobe(vec3 normal, vec3 view, float cosine, ArealightGpuLobeHorizon cell, vec2 range) {
+    float p = 0.5 * (range.x + range.y);
+    float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float scale = inversesqrt(1.0 + p * p * sine * sine);
+    vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0)) * scale;
+    // The cells do not hold for views from below. NaN, of a cell without a horizon, fails every comparison
+    float spread = cosine > 0.0 && range.y - range.x < TILE_FAR ? 0.5 * (range.y - range.x) * sine : TILE_FAR;
+    // What is left of a lobe above the surface is more than half of it, and has all of its albedo
+    float gain = AREALIGHT_CLIPS_AT_SURFACE ? 2.0 : 1.0;
+    return PixelLobe(horizon, spread, 2.0 * cosine * normal - view, vec2(cell.envelope.x * gain, cell.envelope.y));
+}
+
+// Finds the bounds of a coat's lobe, and takes from the lobes below what the coat reflects. `cosine`: of the surface's normal.
+void reduce_coat(inout ArealightSurface surface, vec3 normal, vec3 view, float cosine, vec3 position, bool has_surface) {
+    vec3 own_normal = AREALIGHT_HAS_COAT_NORMAL ? arealight_normalize_or(surface.coat.normal, normal) : normal;
+    float own_cosine = dot(own_normal, view);
+    float share = arealight_coat_share(surface.coat, own_cosine);
+    bool has_coat = has_surface && surface.coat.weight != 0.0;
+    ArealightGpuLobeHorizon cell = lobe_horizon(surface.coat.roughness, own_cosine);
+    PixelLobe lobe = pixel_lobe(own_normal, view, own_cosine, cell, cell.lobe);
+    // A view from below the surface counts as grazing, for the coat too
+    float spread = HAS_COAT_HORIZON && cosine > 0.0 ? lobe.spread : TILE_FAR;
+    reduce_planes(COAT_PAIR, lobe.horizon, position, has_coat);
+    if (CULL != 0u) {
+        reduce_planes(COAT_MIRROR_PAIR, lobe.mirror, position, has_coat);
+        surface.diffuse_albedo *= 1.0 - share;
+        surface.f0 *= 1.0 - share;
+        surface.f90 *= 1.0 - share;
+    }
+    vec4 reflection = vec4(spread, lobe.envelope.x, -lobe.envelope.y, share);
+    tile_reduce(COAT_REFLECTION_PAIR, has_coat ? reflection : vec4(-TILE_FAR), vec4(-TILE_FAR));
+}
+
 // Finds the bounds. They are there after the next barrier.
 void reduce_pixels(ivec2 pixel) {
     vec3 position;
@@ -83,29 +129,26 @@ void reduce_pixels(ivec2 pixel) {
     float known_distance = distance > 0.0 && distance < TILE_FAR ? distance : TILE_FAR;
     reduce_planes(SURFACE_PAIR, normal, position, has_surface);
 
+    vec3 view = surface.view / distance;
+    float cosine = dot(normal, view);
+    if (AREALIGHT_HAS_COAT) {
+        reduce_coat(surface, normal, view, cosine, position, has_surface);
+    }
+
     // The glossy lobe: its horizon, and what it reflects at most
     float spread = 0.0;
     vec3 reflection = vec3(0.0, -TILE_FAR, 0.0);
     if (HAS_HORIZON) {
-        vec3 view = surface.view / distance;
-        float cosine = dot(normal, view);
-        ArealightGpuLobeHorizon cell = lobe_horizon(surface, cosine);
-        vec2 range = horizon_range(surface, cell);
-        float p = 0.5 * (range.x + range.y);
-        float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-        float scale = inversesqrt(1.0 + p * p * sine * sine);
-        vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0)) * scale;
-        // The cells do not hold for views from below. NaN, of a cell without a horizon, fails every comparison
-        spread = cosine > 0.0 && range.y - range.x < TILE_FAR ? 0.5 * (range.y - range.x) * sine : TILE_FAR;
-        reduce_planes(LOBE_PAIR, horizon, position, has_surface);
+        ArealightGpuLobeHorizon cell = lobe_horizon(surface.roughness, cosine);
+        PixelLobe lobe = pixel_lobe(normal, view, cosine, cell, horizon_range(surface, cell));
+        spread = lobe.spread;
+        reduce_planes(LOBE_PAIR, lobe.horizon, position, has_surface);
 
         if (CULL != 0u) {
-            reduce_planes(MIRROR_PAIR, 2.0 * cosine * normal - view, position, has_surface);
-            // What is left of a lobe above the surface is more than half of it, and has all of its albedo
-            float gain = AREALIGHT_CLIPS_AT_SURFACE ? 2.0 : 1.0;
+            reduce_planes(MIRROR_PAIR, lobe.mirror, position, has_surface);
             // The F0 part's albedo is at most 1
             vec3 albedo = surface.f0 + max(vec3(surface.f90) - surface.f0, vec3(0.0)) * cell.schlick_albedo;
-            reflection = vec3(cell.envelope.x * gain, -cell.envelope.y, arealight_max_component(albedo));
+            reflection = vec3(lobe.envelope.x, -lobe.envelope.y, arealight_max_component(albedo));
         }
     }
     tile_reduce(POSITION_PAIR, has_surface ? vec4(position, known_distance) : vec4(-TILE_FAR),
@@ -135,6 +178,16 @@ bool tile_has_lobe() {
     return HAS_HORIZON ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
 }
 
+// The spread of the horizons of the coats: negative where no pixel has a coat.
+float tile_coat_spread() {
+    return AREALIGHT_HAS_COAT ? tile_maxima[2 * COAT_REFLECTION_PAIR].x : -TILE_FAR;
+}
+
+// Whether they are known of every pixel that has a coat.
+bool tile_has_coat_horizon() {
+    return tile_coat_spread() < TILE_FAR;
+}
+
 bool tile_is_diffuse() {
     return HAS_DIFFUSE && tile_maxima[2 * REFLECTION_PAIR].x > 0.0;
 }
@@ -146,14 +199,19 @@ TileBox tile_position() {
 TilePlanes tile_planes(int pair) {
     vec4 high = tile_maxima[2 * pair];
     vec4 low = -tile_maxima[2 * pair + 1];
-    float spread = pair == LOBE_PAIR ? tile_maxima[2 * POSITION_PAIR + 1].w : 0.0;
+    float spread = pair == LOBE_PAIR ? tile_maxima[2 * POSITION_PAIR + 1].w : pair == COAT_PAIR ? tile_coat_spread() : 0.0;
     return TilePlanes(TileBox(low.xyz, high.xyz), vec2(low.w, high.w), spread);
 }
 
 TileReflection tile_reflection() {
     vec4 glossy = tile_maxima[2 * REFLECTION_PAIR];
     vec2 diffuse = tile_maxima[2 * REFLECTION_PAIR + 1].xy;
-    return TileReflection(vec2(glossy.y, -glossy.z), vec2(-diffuse.x, diffuse.y), glossy.w);
+    TileLobe coat = TileLobe(vec2(0.0), 0.0);
+    if (tile_coat_spread() >= 0.0) {
+        vec4 most = tile_maxima[2 * COAT_REFLECTION_PAIR];
+        coat = TileLobe(vec2(most.y, -most.z), most.w);
+    }
+    return TileReflection(vec2(-diffuse.x, diffuse.y), TileLobe(vec2(glossy.y, -glossy.z), glossy.w), coat);
 }
 
 #endif

@@ -22,6 +22,10 @@ const uint EFFECT_TUBE = 1024u;
 const uint EFFECT_MESH = 2048u;
 // Some disk is textured; EFFECT_ELLIPSE is set then, too.
 const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
+// Some surface has a clear coat.
+const uint EFFECT_COAT = 8192u;
+// Some coat has a normal of its own; EFFECT_COAT is set then, too.
+const uint EFFECT_COAT_NORMAL = 16384u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -36,6 +40,8 @@ const int LOBES_FORMULA = 1;
 
 #define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
+#define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
+#define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS ((EFFECTS & EFFECT_TEXTURED) != 0u)

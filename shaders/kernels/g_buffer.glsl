@@ -1,9 +1,11 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, and G_BUFFER_LAYOUT where it knows
-// other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING where it shades coats, and
+// G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
+// its own.
 
+#include "arealight/options.glsl"
 #include "arealight/surface.glsl"
 
 // How surfaces are stored: the same as arealight::plan::GBufferLayout, which says what each image holds.
@@ -25,8 +27,8 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
 
-// Of the host: declares the images of the next three bindings as it likes, and defines arealight_bridge_surface, which sets
-// all but position and view of the surface that a pixel sees. It lies in an include folder of the host's compiler.
+// Of the host: declares the images of the next three bindings and of COAT_BINDING as it likes, and defines arealight_bridge_surface,
+// which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT alone. It lies in an include folder of the host's compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -42,6 +44,9 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
 layout(set = 0, binding = G_BUFFER_BINDING + 1) uniform texture2D g_normal;
 layout(set = 0, binding = G_BUFFER_BINDING + 2) uniform texture2D g_base_color;
 layout(set = 0, binding = G_BUFFER_BINDING + 3) uniform texture2D g_specular;
+#ifdef COAT_BINDING
+layout(set = 0, binding = COAT_BINDING) uniform texture2D g_coat;
+#endif
 
 // A direction, of any length, from its place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
 vec3 from_octahedron(vec2 place) {
@@ -50,6 +55,18 @@ vec3 from_octahedron(vec2 place) {
     direction.x += direction.x >= 0.0 ? -below : below;
     direction.y += direction.y >= 0.0 ? -below : below;
     return direction;
+}
+
+// The coat that a pixel sees, in every layout: its weight, its roughness, and its own normal's place on the octahedron.
+ArealightCoat load_coat(ivec2 pixel) {
+    ArealightCoat coat = ArealightCoat(vec3(0.0), 0.0, 0.0);
+#ifdef COAT_BINDING
+    if (AREALIGHT_HAS_COAT) {
+        vec4 texel = texelFetch(g_coat, pixel, 0);
+        coat = ArealightCoat(AREALIGHT_HAS_COAT_NORMAL ? from_octahedron(texel.ba) : vec3(0.0), texel.r, texel.g);
+    }
+#endif
+    return coat;
 }
 
 // The surface that a pixel sees from `camera`, at `position`.
@@ -63,6 +80,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     ArealightSurface surface;
     surface.position = position;
     surface.view = camera - position;
+    surface.coat = load_coat(pixel);
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
         surface.roughness = specular.b;

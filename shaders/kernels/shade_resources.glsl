@@ -22,6 +22,7 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9
 #define GLOSSY_BINDING 10
+#define COAT_BINDING 11
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "table_image.glsl"

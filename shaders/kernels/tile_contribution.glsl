@@ -18,11 +18,17 @@
 // which is that of its area: 1 / x^2 is convex (Jensen's inequality), and the mean of d^2 is D^2 and that of the squares about the center.
 // A sphere's is r^2 h / D^3, with the height of its center.
 
+// Bounds of the pixels' fitted lobes.
+struct TileLobe {
+    vec2 envelope; // a and b
+    float albedo;  // no channel of an albedo is larger
+};
+
 // Bounds of the pixels' reflection.
 struct TileReflection {
-    vec2 envelope; // a and b
-    vec2 diffuse;  // the least and the largest channel of the diffuse albedos
-    float glossy;  // no channel of a glossy albedo is larger
+    vec2 diffuse; // the least and the largest channel of the diffuse albedos
+    TileLobe glossy;
+    TileLobe coat; // an albedo of 0 where no pixel has a coat
 };
 
 // How bounds are rounded, generously.
@@ -31,12 +37,20 @@ const float TILE_ROUNDING = 1.001;
 const float TILE_PI = 3.1415927;
 
 // The heights of a light above the planes of a tile: the least and the largest above the surfaces, the largest above the horizons of the
-// glossy lobes and along their mirror directions.
+// glossy lobes and along their mirror directions, and of the coats'.
 struct TileLightHeights {
     vec2 surface;
     float lobe;
     float mirror;
+    vec2 coat;
 };
+
+// The most that a fitted lobe reflects of a light of this solid angle whose points have no larger cosines to the normal of the lobe's
+// horizon (x) and to its mirror direction (y).
+float lobe_contribution(TileLobe lobe, float solid_angle, vec2 cosines) {
+    float fall = lobe.envelope.y + 1.0 - cosines.y;
+    return lobe.albedo * min(solid_angle * lobe.envelope.x / (fall * fall) * cosines.x, 1.0);
+}
 
 // The least and the largest contribution of a light with bounds; `behind` is the range of how far the pixels are behind its center,
 // along its normal: negative in front of it.
@@ -58,10 +72,13 @@ vec2 tile_contribution(TileReflection reflection, TileBox position, TileLight li
     solid_angle = is_apart ? solid_angle : 2.0 * TILE_PI;
     vec3 cosines = clamp(vec3(heights.surface.y, heights.lobe, heights.mirror) * per_distance, 0.0, 1.0);
     cosines = is_apart ? cosines : vec3(1.0);
-    float fall = reflection.envelope.y + 1.0 - cosines.z;
-    float glossy = min(solid_angle * reflection.envelope.x / (fall * fall) * cosines.y, 1.0);
-    float diffuse = min(solid_angle * cosines.x / TILE_PI, 1.0);
-    float most = light.radiance * (reflection.diffuse.y * diffuse + reflection.glossy * glossy) * TILE_ROUNDING;
+    float reflected = reflection.diffuse.y * min(solid_angle * cosines.x / TILE_PI, 1.0)
+                    + lobe_contribution(reflection.glossy, solid_angle, cosines.yz);
+    if (AREALIGHT_HAS_COAT && reflection.coat.albedo != 0.0) {
+        vec2 coat_cosines = is_apart ? clamp(heights.coat * per_distance, 0.0, 1.0) : vec2(1.0);
+        reflected += lobe_contribution(reflection.coat, solid_angle, coat_cosines);
+    }
+    float most = light.radiance * reflected * TILE_ROUNDING;
 
     // Below
     float front = light.two_sided ? max(max(behind.x, -behind.y), 0.0) : max(-behind.y, 0.0);

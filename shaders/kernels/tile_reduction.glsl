@@ -9,8 +9,8 @@ const uint TILE_PIXELS = 64u;
 shared vec4 tile_scratch[2u * TILE_PIXELS];
 shared float tile_parts[TILE_PIXELS];
 
-// The maxima, in pairs of vectors.
-const int TILE_PAIRS = 5;
+// The maxima, in pairs of vectors: those of coats are the last.
+const int TILE_PAIRS = AREALIGHT_HAS_COAT ? 8 : 5;
 shared vec4 tile_maxima[2 * TILE_PAIRS];
 
 // Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after the next barrier.

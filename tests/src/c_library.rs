@@ -289,6 +289,7 @@ impl<'a> CLibrary<'a> {
             normal: image(&pixel.normal, Usage::COMPUTE_READ),
             base_color: image(&pixel.base_color, Usage::COMPUTE_READ),
             specular: image(&pixel.specular, Usage::COMPUTE_READ),
+            coat: image(&pixel.coat, Usage::COMPUTE_READ),
             light_textures,
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()

@@ -25,12 +25,14 @@ pub struct OnePixel<'a> {
     pub base_color: Image,
     /// At `g_specular`.
     pub specular: Image,
+    /// At `g_coat`.
+    pub coat: Image,
     /// Of a host that reads them in its own way.
     pub module: Option<Vec<u32>>,
 }
 
 impl<'a> OnePixel<'a> {
-    /// A grey, half rough, a quarter metallic surface that looks up, at `position` (w = 0: none), and what the depth buffer says of it.
+    /// A grey, half rough, a quarter metallic surface without a coat that looks up, at `position` (w = 0: none), and what the depth buffer says of it.
     ///
     /// # Panics
     /// Where the device fails.
@@ -43,6 +45,7 @@ impl<'a> OnePixel<'a> {
             normal: sampled(engine, float, [0.0_f32, 0.0, 2.0, 0.5]),
             base_color: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
             specular: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
+            coat: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
     }
@@ -98,6 +101,7 @@ impl<'a> OnePixel<'a> {
                 normal: sampled(&self.normal),
                 base_color: sampled(&self.base_color),
                 specular: Some(sampled(&self.specular)),
+                coat: Some(sampled(&self.coat)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),

@@ -19,6 +19,7 @@ pub const YARDSTICK: &str = "shade_yardstick: quads, clipless";
 pub const DEFERRED_YARDSTICK: &str = "deferred_yardstick: quads, clipless";
 
 const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY);
+const COATS: Effects = Effects::COAT.union(Effects::COAT_NORMAL);
 
 /// The README's pixel: the GLSL library in a deferred engine's own shader.
 static DEFERRED: &[u8] = include_bytes!("../../spirv/examples/deferred.spv");
@@ -103,6 +104,7 @@ pub fn rows() -> Vec<Row> {
     let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
+    let every_kind = Effects::all() - LOBES - COATS;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
@@ -125,6 +127,10 @@ pub fn rows() -> Vec<Row> {
         // Quads and nothing else, with more asked of them or of the surface
         quads("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, exact),
         quads("quads", "exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
+        // Quads on coated surfaces
+        quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
+        quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
+        quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),
@@ -141,13 +147,15 @@ pub fn rows() -> Vec<Row> {
         // Several kinds
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
-        shade("every kind", "exact", Effects::all(), true, exact),
+        shade("every kind", "exact", LOBES | every_kind, true, exact),
+        shade("every kind", "exact, coat with its own normal", Effects::all(), true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),
-        classify("every kind", "culling", Effects::all() - LOBES, 0.01),
+        classify("quads", "culling, coat with its own normal", COATS, 0.01),
+        classify("every kind", "culling", every_kind, 0.01),
         tiles("quads", "exact", TileClass::Quads, none),
-        tiles("every kind", "exact", TileClass::Any, Effects::all() - LOBES),
+        tiles("every kind", "exact", TileClass::Any, every_kind),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),

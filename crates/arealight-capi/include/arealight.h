@@ -56,6 +56,12 @@
 // Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
 
+// Some surface has a clear coat: ArealightResources.coat is read.
+#define AREALIGHT_EFFECT_COAT 8192
+
+// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
+#define AREALIGHT_EFFECT_COAT_NORMAL 16384
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -347,7 +353,7 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY and _SPECULAR_INPUT. 0 is DIFFUSE and GLOSSY. What lights need is known
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT and _COAT_NORMAL. 0 is DIFFUSE and GLOSSY. What lights need is known
     // from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
@@ -432,6 +438,9 @@ typedef struct ArealightResources {
     // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
     // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
+    // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
+    // normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
+    struct ArealightImage coat;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -833,7 +842,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 232);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 248);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -841,11 +850,12 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, position) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightResources, normal) == 88);
 AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 136);
-AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 152);
-AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 208);
+AREALIGHT_ASSERT(offsetof(ArealightResources, coat) == 136);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 152);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 200);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 224);
 AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);

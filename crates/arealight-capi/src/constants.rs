@@ -22,6 +22,10 @@ pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
 pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
 /// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
 pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
+/// Some surface has a clear coat: ArealightResources.coat is read.
+pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
+/// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
+pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -227,6 +227,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             normal: sampled(resources.normal),
             base_color: sampled(resources.base_color),
             specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
+            coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
             radiance: stored(resources.radiance),
             glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
             tiles: pass.tiles().map(|_| TileResources {
@@ -372,6 +373,8 @@ mod tests {
             (c::AREALIGHT_EFFECT_TUBE, Effects::TUBE),
             (c::AREALIGHT_EFFECT_MESH, Effects::MESH),
             (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
+            (c::AREALIGHT_EFFECT_COAT, Effects::COAT),
+            (c::AREALIGHT_EFFECT_COAT_NORMAL, Effects::COAT_NORMAL),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -1,6 +1,7 @@
 //! A polygon light on a surface: the truth by cubature of the true BRDF, and the answer of the fitted table
 //! in float64, the twin of the GLSL.
 
+mod coat;
 pub mod footprint;
 pub mod poses;
 mod shapes;
@@ -17,8 +18,10 @@ use crate::ggx::Ggx;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
 use arealight::table::{ggx_formula, share_above_surface};
-use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality, Surface, TextureError};
+use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality, Surface, TableSample, TextureError};
+use coat::CoatLobe;
 use glam::{DMat3, DVec3};
+use std::convert::Infallible;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -72,8 +75,8 @@ pub struct Truth {
     pub evaluations: usize,
 }
 
-/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, times what the light
-/// shows.
+/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, below a coat where the
+/// surface has one, times what the light shows.
 ///
 /// An image is cut where it bends, at its texels' centres, as long as a two-hundredth of the evaluations reach for that: up to
 /// 141 by 141 texels with the default settings. A larger one converges more slowly.
@@ -81,6 +84,19 @@ pub struct Truth {
 /// `normal` and `view`, the direction to the viewer, have any length above zero; a view below the surface
 /// counts as grazing.
 pub fn truth(
+    surface: &Surface,
+    normal: DVec3,
+    view: DVec3,
+    light: &RelativeLight,
+    settings: &Settings,
+) -> Truth {
+    let Ok(truth) = coat::layered::<Infallible>(surface, normal, view, |surface, normal, view| {
+        Ok(uncoated_truth(surface, normal, view, light, settings))
+    });
+    truth
+}
+
+fn uncoated_truth(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,
@@ -241,9 +257,9 @@ pub fn ltc_on(
     let both_horizons = quality.horizon == Horizon::Both;
     let visible = if both_horizons { above_horizon(&vertices) } else { vertices.clone() };
     let image = light.image.as_ref().map(|image| image.in_frame(&frame));
-    let lobe = |inverse: &DMat3| {
+    let lobe = |inverse: &DMat3, above_surface: f64| {
         // What is clipped at the surface's horizon is made up for, so that the albedo stays
-        let share = if both_horizons { share_above_surface(inverse) } else { 1.0 };
+        let share = if both_horizons { above_surface } else { 1.0 };
         match &image {
             None => {
                 let form_factor = emitted(transformed_form_factor(inverse, &visible), light.two_sided);
@@ -266,22 +282,42 @@ pub fn ltc_on(
         }
     };
     let diffuse = surface.diffuse_albedo * shown;
-    light.radiance * (diffuse + glossy)
+    light.radiance * coated(quality, table, surface, &frame, diffuse + glossy, lobe)
 }
 
-/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel.
+/// What is left of what the lobes below reflect, with what the coat does, `lobe` being as for [`glossy_part`].
+fn coated(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+    below: DVec3,
+    lobe: impl Fn(&DMat3, f64) -> DVec3,
+) -> DVec3 {
+    let Some(coat) = &surface.coat else { return below };
+    let coat = CoatLobe::new(quality, table, coat, frame);
+    below.lerp(coat.albedo * lobe(&coat.inverse, coat.above_surface), coat.share)
+}
+
+/// What the table or the formula holds for a lobe.
+fn fitted_sample(quality: Quality, table: &LightTable, alpha: f64, cos_view: f64) -> TableSample {
+    match quality.lobes {
+        Lobes::Table => table.lookup(alpha.sqrt(), cos_view),
+        Lobes::Formula => ggx_formula(alpha.sqrt(), cos_view),
+    }
+}
+
+/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel, of which a part
+/// lies above the surface.
 fn glossy_part(
     quality: Quality,
     table: &LightTable,
     surface: &Surface,
     frame: &SurfaceFrame,
-    lobe: impl Fn(&DMat3) -> DVec3,
+    lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
-    let roughness = surface.alpha.sqrt();
-    let sample = match quality.lobes {
-        Lobes::Table => table.lookup(roughness, frame.cos_view()),
-        Lobes::Formula => ggx_formula(roughness, frame.cos_view()),
-    };
+    let sample = fitted_sample(quality, table, surface.alpha, frame.cos_view());
+    let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
     match quality.fresnel {

@@ -1,6 +1,7 @@
 //! Which formats the images of a host may have.
 
 use crate::error::Error;
+use arealight::Effects;
 use arealight::plan::{GBufferLayout, PositionSource, RadianceFormat, ShadeOptions};
 use ash::vk::Format;
 
@@ -16,6 +17,7 @@ use ash::vk::Format;
 ///     normal: Format::R16G16B16A16_SFLOAT,
 ///     base_color: Format::R8G8B8A8_SRGB,
 ///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
+///     coat: Format::UNDEFINED, // not read without Effects::COAT
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
 /// let options = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
@@ -32,6 +34,9 @@ pub struct ShadeFormats {
     pub base_color: Format,
     /// Of [`crate::ShadeResources::specular`], where [`ShadeOptions::reads_specular`].
     pub specular: Format,
+    /// Of [`crate::ShadeResources::coat`], where [`ShadeOptions::reads_coat`]: two channels, or with [`Effects::COAT_NORMAL`] four,
+    /// signed.
+    pub coat: Format,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
 }
@@ -82,6 +87,23 @@ const COLOR: &[Format] = &[
     Format::R16G16B16A16_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
 ];
+const COAT: &[Format] = &[
+    Format::R8G8_UNORM,
+    Format::R16G16_UNORM,
+    Format::R16G16_SFLOAT,
+    Format::R8G8B8A8_UNORM,
+    Format::R8G8B8A8_SNORM,
+    Format::R16G16B16A16_UNORM,
+    Format::R16G16B16A16_SNORM,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R32G32B32A32_SFLOAT,
+];
+const COAT_NORMAL: &[Format] = &[
+    Format::R8G8B8A8_SNORM,
+    Format::R16G16B16A16_SNORM,
+    Format::R16G16B16A16_SFLOAT,
+    Format::R32G32B32A32_SFLOAT,
+];
 const RADIANCE: &[Format] = &[Format::R32G32B32A32_SFLOAT];
 const RADIANCE_HALF: &[Format] = &[Format::R16G16B16A16_SFLOAT];
 
@@ -105,11 +127,13 @@ impl ShadeFormats {
             GBufferLayout::Unity => NORMAL_UNITY,
             GBufferLayout::Octahedral => OCTAHEDRAL,
         };
+        let coat = if options.surfaces.contains(Effects::COAT_NORMAL) { COAT_NORMAL } else { COAT };
         let images = [
             ("position", self.position, position, true),
             ("normal", self.normal, normal, true),
             ("base_color", self.base_color, COLOR, true),
             ("specular", self.specular, COLOR, options.reads_specular()),
+            ("coat", self.coat, coat, options.reads_coat()),
             ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {
@@ -124,13 +148,13 @@ impl ShadeFormats {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::Effects;
 
     const RIGHT: ShadeFormats = ShadeFormats {
         position: Format::R32G32B32A32_SFLOAT,
         normal: Format::R16G16B16A16_SFLOAT,
         base_color: Format::R8G8B8A8_SRGB,
         specular: Format::R8G8B8A8_UNORM,
+        coat: Format::R16G16B16A16_SFLOAT,
         radiance: Format::R32G32B32A32_SFLOAT,
     };
 
@@ -147,7 +171,10 @@ mod tests {
         RIGHT.check(all).unwrap();
         let depth = ShadeOptions { position: PositionSource::Depth, ..all };
         ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
-        ShadeFormats { specular: Format::UNDEFINED, ..RIGHT }.check(ShadeOptions::default()).unwrap();
+        let unread = ShadeFormats { specular: Format::UNDEFINED, coat: Format::UNDEFINED, ..RIGHT };
+        unread.check(ShadeOptions::default()).unwrap();
+        let flat_coats = ShadeOptions { surfaces: Effects::COAT, ..ShadeOptions::default() };
+        ShadeFormats { coat: Format::R8G8_UNORM, ..RIGHT }.check(flat_coats).unwrap();
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..all };
         ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }.check(half).unwrap();
     }
@@ -162,6 +189,7 @@ mod tests {
             (ShadeFormats { normal: Format::R8G8B8A8_UNORM, ..RIGHT }, "normal"),
             (ShadeFormats { base_color: Format::R8G8B8A8_UINT, ..RIGHT }, "base_color"),
             (ShadeFormats { specular: Format::B10G11R11_UFLOAT_PACK32, ..RIGHT }, "specular"),
+            (ShadeFormats { coat: Format::R8G8_UNORM, ..RIGHT }, "coat"),
             (ShadeFormats { radiance: Format::R16G16B16A16_SFLOAT, ..RIGHT }, "radiance"),
         ] {
             assert_eq!(field(formats, options), expected);

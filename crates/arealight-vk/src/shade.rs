@@ -38,6 +38,8 @@ pub struct ShadeResources {
     pub base_color: Resource,
     /// Dielectric reflectance, or the third image of another layout; none without [`ShadeOptions::reads_specular`].
     pub specular: Option<Resource>,
+    /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
+    pub coat: Option<Resource>,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Separate`] that of the diffuse lobe.
     pub radiance: Resource,
     /// Where the glossy lobe's goes with [`RadianceImages::Separate`]: another image of that format. Else none.
@@ -224,6 +226,10 @@ impl ShadePass {
             let message = "is missing, but the pass reads it: see ShadeOptions::reads_specular".into();
             return Err(Error::InvalidArgument { field: "specular", message });
         }
+        if resources.coat.is_none() && self.options.reads_coat() {
+            let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
+            return Err(Error::InvalidArgument { field: "coat", message });
+        }
         let textures_place = match resources.table {
             Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
             other => other,
@@ -240,6 +246,7 @@ impl ShadePass {
             resources.light_textures.unwrap_or(textures_place),
             resources.shapes.unwrap_or(resources.lights),
             self.glossy_image(resources)?,
+            resources.coat.unwrap_or(resources.base_color),
         ];
         if self.tiles.is_some() {
             let Some(tiles) = resources.tiles else {

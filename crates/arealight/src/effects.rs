@@ -34,6 +34,10 @@ bitflags::bitflags! {
         /// Some disk or ellipse is textured ([`Light::texture`](crate::Light::texture)). Such a light needs
         /// [`Effects::ELLIPSE`], too.
         const TEXTURED_ELLIPSE = 1 << 12;
+        /// Some surface has a clear coat ([`Material::coat`](crate::Material::coat)), so the G-buffer's image of coats is read.
+        const COAT = 1 << 13;
+        /// Some coat has a normal of its own, other than its surface's. Such a surface needs [`Effects::COAT`], too.
+        const COAT_NORMAL = 1 << 14;
     }
 }
 
@@ -53,7 +57,11 @@ impl Effects {
     pub const IMAGES: Self = Self::TEXTURED.union(Self::TEXTURED_ELLIPSE);
 
     /// What surfaces need, whatever the lights.
-    pub const SURFACES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::SPECULAR_INPUT);
+    pub const SURFACES: Self = Self::DIFFUSE
+        .union(Self::GLOSSY)
+        .union(Self::SPECULAR_INPUT)
+        .union(Self::COAT)
+        .union(Self::COAT_NORMAL);
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -69,6 +77,8 @@ impl Effects {
             (Self::TUBE, "tube"),
             (Self::MESH, "mesh"),
             (Self::TEXTURED_ELLIPSE, "textured_ellipse"),
+            (Self::COAT, "coat"),
+            (Self::COAT_NORMAL, "coat_normal"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

@@ -130,6 +130,14 @@ pub const G_SPECULAR: Binding = read(
      else bind any image; the shade kernel: by GBufferLayout",
 );
 
+/// A G-buffer's coats.
+pub const G_COAT: Binding = read(
+    "g_coat",
+    BindingKind::SampledImage,
+    "weight of the coat in r, its perceptual roughness in g; with Effects::COAT_NORMAL its normal's place on the octahedron, \
+     in [-1, 1], in ba (rgba16f; rg8 unorm without normals); read only with Effects::COAT, else bind any image",
+);
+
 /// Lights' textures.
 pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
@@ -177,6 +185,7 @@ pub static SHADE: Kernel = Kernel {
         LIGHT_TEXTURES,
         SHAPES,
         GLOSSY,
+        G_COAT,
     ],
     constants: &[
         constant::EFFECTS,
@@ -220,6 +229,7 @@ pub static CLASSIFY: Kernel = Kernel {
         LIGHT_TEXTURES.unused(),
         SHAPES,
         GLOSSY.unused(),
+        G_COAT,
         TILE_LISTS,
         LOBE_HORIZONS,
     ],
@@ -253,6 +263,7 @@ pub static SHADE_TILES: Kernel = Kernel {
         LIGHT_TEXTURES,
         SHAPES,
         GLOSSY,
+        G_COAT,
         Binding { access: Access::Read, ..TILE_LISTS },
         LOBE_HORIZONS.unused(),
     ],

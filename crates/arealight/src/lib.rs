@@ -58,7 +58,7 @@ pub use holes::HoleError;
 pub use light::{Light, LightError, LightFault};
 pub use light_shape::{LightShape, TubeEnds};
 pub use light_texture::{LightTexture, TextureError, TextureMap};
-pub use material::{Material, Surface};
+pub use material::{Coat, Material, Surface};
 pub use mesh::FaceError;
 pub use packed_lights::{LightSummary, PackedLights};
 pub use pyramid::PyramidSize;

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-/// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior` and
-/// `KHR_materials_specular`). Textures belong to the scene that samples them.
+/// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior`,
+/// `KHR_materials_specular` and `KHR_materials_clearcoat`). Textures belong to the scene that samples them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Linear Rec. 709 colour in [0, 1]: the Lambert albedo of a dielectric, F0 of a metal.
@@ -16,10 +16,14 @@ pub struct Material {
     pub dielectric_f0: Vec3,
     /// Reflectance of the dielectric at grazing incidence (the weight of `KHR_materials_specular`), in [0, 1].
     pub dielectric_f90: f32,
+    /// Weight of a clear coat in [0, 1]; 0 for none ([`Effects::COAT`](crate::Effects::COAT)).
+    pub coat: f32,
+    /// Perceptual roughness of the coat, in [0, 1].
+    pub coat_roughness: f32,
 }
 
 impl Default for Material {
-    /// A white, rough dielectric of index 1.5.
+    /// A white, rough dielectric of index 1.5, without a coat.
     fn default() -> Self {
         Self {
             base_color: Vec3::ONE,
@@ -27,11 +31,13 @@ impl Default for Material {
             roughness: 1.0,
             dielectric_f0: Vec3::splat(0.04),
             dielectric_f90: 1.0,
+            coat: 0.0,
+            coat_roughness: 0.0,
         }
     }
 }
 
-/// What the two lobes need to know of a surface: a Lambert lobe and a GGX lobe, added.
+/// What the lobes need to know of a surface: a Lambert lobe and a GGX lobe, added, and a coat above both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Lambert albedo in [0, 1]; the lobe is `albedo / pi`.
@@ -42,22 +48,49 @@ pub struct Surface {
     pub f90: f64,
     /// GGX alpha, not below [`crate::MIN_ALPHA`].
     pub alpha: f64,
+    /// What lies above both lobes.
+    pub coat: Option<Coat>,
+}
+
+/// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel term. It reflects the part
+/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coat {
+    /// How much of the surface it covers, in (0, 1].
+    pub weight: f64,
+    /// GGX alpha, not below [`crate::MIN_ALPHA`].
+    pub alpha: f64,
+    /// Its normal, of any length above zero; `None` where it is the surface's.
+    pub normal: Option<DVec3>,
+}
+
+impl Coat {
+    /// Reflectance at normal incidence: that of an index of refraction of 1.5.
+    pub const F0: f64 = 0.04;
+
+    /// The part of the light that it reflects instead of what is below, in [0, weight]: Schlick's term of the view.
+    /// `cos_view` is the cosine between the coat's normal and the direction to the viewer; its sign does not count.
+    pub fn share(&self, cos_view: f64) -> f64 {
+        self.weight * (Self::F0 + (1.0 - Self::F0) * (1.0 - cos_view.abs()).powi(5))
+    }
 }
 
 impl Material {
     /// The surface of this material: what `arealight_surface_from_metalness` does in GLSL.
     ///
     /// The Lambert albedo is `base_color (1 - metalness)`; the lobes are added without Fresnel coupling, as
-    /// in most real-time engines.
+    /// in most real-time engines. The coat has the surface's normal.
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
         let base = self.base_color.as_dvec3();
-        let roughness = f64::from(self.roughness);
+        let alpha = |roughness: f32| (f64::from(roughness) * f64::from(roughness)).max(crate::MIN_ALPHA);
+        let weight = f64::from(self.coat);
         Surface {
             diffuse_albedo: base * (1.0 - metalness),
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
-            alpha: (roughness * roughness).max(crate::MIN_ALPHA),
+            alpha: alpha(self.roughness),
+            coat: (weight > 0.0).then(|| Coat { weight, alpha: alpha(self.coat_roughness), normal: None }),
         }
     }
 }
@@ -81,5 +114,15 @@ mod tests {
         assert_eq!(material.surface().alpha, 0.25);
         let mirror = Material { roughness: 0.0, ..Material::default() };
         assert_eq!(mirror.surface().alpha, crate::MIN_ALPHA);
+    }
+
+    #[test]
+    fn a_coat_reflects_more_at_grazing_angles_and_never_more_than_its_weight() {
+        assert_eq!(Material::default().surface().coat, None);
+        let lacquer = Material { coat: 0.5, coat_roughness: 0.1, ..Material::default() };
+        let coat = lacquer.surface().coat.unwrap();
+        assert!((coat.alpha - 0.01).abs() < 1e-8);
+        assert_eq!((coat.share(1.0), coat.share(0.0)), (0.5 * 0.04, 0.5));
+        assert_eq!(coat.share(-0.3), coat.share(0.3));
     }
 }

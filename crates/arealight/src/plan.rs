@@ -19,7 +19,7 @@ pub enum PositionSource {
 }
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
-/// when they are read: in images of sRGB formats they are stored as sRGB. A G-buffer of any other layout is read by a
+/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, alike in every layout. A G-buffer of any other layout is read by a
 /// bridge function in GLSL of the host's (docs/embedding.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -116,6 +116,11 @@ impl ShadeOptions {
     /// Whether the image at the binding `g_specular` is read.
     pub fn reads_specular(self) -> bool {
         self.g_buffer != GBufferLayout::Arealight || self.surfaces.contains(Effects::SPECULAR_INPUT)
+    }
+
+    /// Whether the image at the binding `g_coat` is read.
+    pub fn reads_coat(self) -> bool {
+        self.surfaces.contains(Effects::COAT)
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::images`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.

@@ -351,9 +351,10 @@ pub fn mirror_frame(cos_view: f64) -> DMat3 {
 /// this, it keeps the albedo. The half space above the surface is one in cosine space too, and the lune between
 /// it and the upper one at an angle `a` between their normals holds `(1 + cos a) / 2` of a cosine.
 pub fn share_above_surface(inverse: &DMat3) -> f64 {
-    let x = inverse.x_axis;
-    let length = x.x.hypot(x.z);
-    if length > 0.0 { (0.5 + 0.5 * x.x / length).max(1e-6) } else { 1.0 }
+    // The normal of the surface's horizon in cosine space
+    let horizon = inverse.x_axis.cross(inverse.y_axis);
+    let length = horizon.length();
+    if length > 0.0 { (0.5 + 0.5 * horizon.z / length).max(1e-6) } else { 1.0 }
 }
 
 fn invertible(layer: &'static str, x: u32, y: u32, texel: &[f32; 4]) -> Result<(), TableError> {

@@ -168,6 +168,7 @@ impl<'a> Deferred<'a> {
                 normal: sampled(&g_buffer.normal_roughness, read_only),
                 base_color: sampled(&g_buffer.base_color_metalness, read_only),
                 specular: None, // without Effects::SPECULAR_INPUT
+                coat: None,     // without Effects::COAT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
                 glossy: None, // its radiance is in that image too, without RadianceImages::Separate
                 tiles: Some(TileResources {

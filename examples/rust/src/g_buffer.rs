@@ -44,6 +44,7 @@ impl<'a> GBuffer<'a> {
             normal: self.normal_roughness.format,
             base_color: self.base_color_metalness.format,
             specular: vk::Format::UNDEFINED,
+            coat: vk::Format::UNDEFINED,
             radiance: self.radiance.format,
         }
     }

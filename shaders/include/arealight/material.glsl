@@ -1,6 +1,7 @@
 #ifndef AREALIGHT_MATERIAL_GLSL
 #define AREALIGHT_MATERIAL_GLSL
 
+#include "arealight/lobes/coat.glsl"
 #include "arealight/lobes/diffuse.glsl"
 #include "arealight/lobes/specular.glsl"
 
@@ -9,7 +10,11 @@
 const int AREALIGHT_LOBE_DIFFUSE = 0;
 const int AREALIGHT_LOBE_SPECULAR = 1;
 const int AREALIGHT_LOBE_SCHLICK = 2; // with AREALIGHT_FRESNEL_SPLIT alone
-const int AREALIGHT_LOBES = 3;
+const int AREALIGHT_LOBE_COAT = 3;
+const int AREALIGHT_LOBES = 4;
+
+// The lobes before this one may be there: what a loop over them goes through.
+const int AREALIGHT_LOBE_END = AREALIGHT_HAS_COAT ? AREALIGHT_LOBES : AREALIGHT_LOBE_COAT;
 
 // A surface made ready for any number of lights: all that does not depend on the light.
 struct ArealightPoint {
@@ -18,9 +23,10 @@ struct ArealightPoint {
     ArealightLobe lobes[AREALIGHT_LOBES];
 };
 
-// Whether surfaces have a lobe: constant for a literal `lobe`.
+// Whether surfaces have a lobe before AREALIGHT_LOBE_END: constant for a literal `lobe`.
 bool arealight_has_lobe(int lobe) {
     return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
+         : AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT ? true
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_SPLITS_FRESNEL);
 }
 
@@ -40,6 +46,13 @@ ArealightPoint arealight_point(ArealightSurface surface) {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
         }
     }
+    if (AREALIGHT_HAS_COAT) {
+        ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
+        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= coat.base;
+        point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= coat.base;
+        point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= coat.base;
+        point.lobes[AREALIGHT_LOBE_COAT] = coat.lobe;
+    }
     return point;
 }
 
@@ -48,15 +61,22 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
     vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);       \
+    vec3 coat = vec3(0.0);                                                            \
+    if (AREALIGHT_HAS_COAT) {                                                         \
+        coat = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
+    }                                                                                 \
     sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
     if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
         sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo;        \
     }                                                                                 \
     if (arealight_has_lobe(AREALIGHT_LOBE_SCHLICK)) {                                 \
         sum.specular += schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;         \
+    }                                                                                 \
+    if (AREALIGHT_HAS_COAT) {                                                         \
+        sum.specular += coat * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \
     }
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
-    for (int i = 0; i < AREALIGHT_LOBES; i++) {                                       \
+    for (int i = 0; i < AREALIGHT_LOBE_END; i++) {                                    \
         if (!arealight_has_lobe(i)) {                                                 \
             continue;                                                                 \
         }                                                                             \

@@ -11,6 +11,13 @@
 #ifndef AREALIGHT_SPECULAR
 #define AREALIGHT_SPECULAR 1
 #endif
+// A clear coat above both, ArealightSurface.coat; and with a normal of its own.
+#ifndef AREALIGHT_COAT
+#define AREALIGHT_COAT 0
+#endif
+#ifndef AREALIGHT_COAT_NORMAL
+#define AREALIGHT_COAT_NORMAL 0
+#endif
 
 // Some light emits from both sides: those whose record says so.
 #ifndef AREALIGHT_TWO_SIDED
@@ -80,6 +87,8 @@
 
 const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
 const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
+const bool AREALIGHT_HAS_COAT = bool(AREALIGHT_COAT);
+const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);

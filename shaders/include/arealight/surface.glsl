@@ -3,7 +3,14 @@
 
 #include "arealight/common.glsl"
 
-// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added.
+// A clear coat above a surface (with AREALIGHT_COAT).
+struct ArealightCoat {
+    vec3 normal;     // its own, of any length; zero: the surface's (with AREALIGHT_COAT_NORMAL)
+    float weight;    // in [0, 1]; 0: none
+    float roughness; // perceptual, in [0, 1]
+};
+
+// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added; and what lies on them.
 struct ArealightSurface {
     vec3 position;       // relative to the host's origin, in the lights' unit of length
     vec3 normal;         // shading normal, of any length
@@ -12,6 +19,7 @@ struct ArealightSurface {
     vec3 f0;             // reflectance at normal incidence, in [0, 1]
     float f90;           // reflectance at grazing incidence, in [0, 1]
     float roughness;     // perceptual, in [0, 1]
+    ArealightCoat coat;  // read with AREALIGHT_COAT alone
 };
 
 // The shading frame: the normal, the view's projection onto the surface, and their cross product.
@@ -30,6 +38,17 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.diffuse_albedo = base_color * (1.0 - metalness);
     surface.f0 = mix(dielectric_f0, base_color, metalness);
     surface.f90 = mix(dielectric_f90, 1.0, metalness);
+}
+
+// What a coat reflects at normal incidence: that of an index of refraction of 1.5.
+const float AREALIGHT_COAT_F0 = 0.04;
+
+// The part of the light that a coat reflects instead of what is below, in [0, weight]: Schlick's term of the view, `cos_view` being the
+// cosine between the view and the coat's normal, on either side. What is below gets the rest: multiply emission by it.
+float arealight_coat_share(ArealightCoat coat, float cos_view) {
+    float from_normal = 1.0 - abs(cos_view);
+    float square = from_normal * from_normal;
+    return coat.weight * (AREALIGHT_COAT_F0 + (1.0 - AREALIGHT_COAT_F0) * (square * square * from_normal));
 }
 
 // The frame of a normal and a view, of any length. Orthonormal to 3e-7 for every input, also a view parallel

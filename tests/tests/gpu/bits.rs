@@ -129,7 +129,9 @@ fn buffers() -> Buffers {
             diffuse_albedo: [1.0 - glossy; 3],
             light: index as u32,
             f0: [glossy; 3],
-            reserved: 0,
+            coat_weight: 0.5 * glossy,
+            coat_normal: surface.vector(&mut random),
+            coat_roughness: surface.number(&mut random),
         });
     }
     buffers

@@ -4,18 +4,19 @@
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, Light, LightFault, LightShape, LightTexture, TexturePart, Wrap};
 use arealight_capi::{
-    AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight,
-    ArealightMemory, ArealightResult, ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions,
-    ArealightTextureSetup, ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy,
-    arealight_textures_check_lights, arealight_textures_create, arealight_textures_destroy,
-    arealight_textures_image, arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
+    AREALIGHT_EFFECT_COAT, AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH,
+    AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight, ArealightMemory, ArealightResult,
+    ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
+    ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights,
+    arealight_textures_create, arealight_textures_destroy, arealight_textures_image,
+    arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
     arealight_textures_write_source_set,
 };
 use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_LIGHT, good, refused};
-use arealight_tests::one_pixel::{OnePixel, lamp};
+use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
 use ash::vk::{self, Handle as _};
 use glam::{DVec2, DVec3, Vec3, Vec4};
 use std::ffi::c_void;
@@ -305,6 +306,19 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     assert_eq!(c, rust);
     assert!(c.min_element() > 0.05 && c.is_finite(), "{c}");
 
+    // With a coat, whose image is one more
+    let mut coated = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+    coated.coat = sampled(&engine, vk::Format::R32G32B32A32_SFLOAT, [0.75_f32, 0.3, 0.2, -0.1]);
+    let options =
+        ShadeOptions { surfaces: Effects::DIFFUSE | Effects::COAT | Effects::COAT_NORMAL, ..options };
+    let rust = coated.shade(options, &lights(HOLES).unwrap(), CAMERA, None);
+    let coats = AREALIGHT_EFFECT_COAT | AREALIGHT_EFFECT_COAT_NORMAL;
+    let coating = library.pass(AREALIGHT_EFFECT_DIFFUSE | coats);
+    let given = CLights::new(HOLES);
+    let c_coated = library.shade(coating, &coated, &given.lights, textures.image(), CAMERA);
+    assert_eq!(c_coated, rust);
+    assert_ne!(c_coated, c);
+
     // The twins: before the image was loaded, with another one, with other holes, and with faces shared out otherwise
     assert!((dark - c).truncate().max_element() < 0.0, "{dark} {c}");
     assert!(shade([0.99, HOLES[1]]) != c && shade([HOLES[0], 0.24]) != c);
@@ -326,4 +340,6 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     refused(result, ArealightResult::ErrorLight, "lights[1]: texture: layer 2");
     // SAFETY: nothing is pending.
     good(unsafe { arealight_pass_destroy(pass) });
+    // SAFETY: likewise.
+    good(unsafe { arealight_pass_destroy(coating) });
 }

@@ -170,6 +170,7 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         normal: of(&normal),
         base_color: of(&base_color),
         specular: None,
+        coat: None,
         radiance: Resource::StorageImage { view: radiance.view() },
         glossy: None,
         light_textures: None,

@@ -1,7 +1,7 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
 use arealight::plan::{PositionSource, ShadeOptions};
-use arealight::{Effects, Light, Quality};
+use arealight::{Coat, Effects, Light, Quality, Surface};
 use arealight_engine::host::{Image, Usage};
 use arealight_engine::{EvalPoint, SceneRenderer};
 use arealight_oracle::cubature::Settings;
@@ -45,11 +45,19 @@ fn half_texels(image: &Image) -> Vec<Vec4> {
     texels.into_iter().map(|t| Vec4::from_array(t.map(|bits| f16::from_bits(bits).to_f32()))).collect()
 }
 
+/// A direction, of any length, from its place on an unfolded octahedron.
+fn from_octahedron(x: f64, y: f64) -> DVec3 {
+    let z = 1.0 - x.abs() - y.abs();
+    let below = (-z).max(0.0);
+    DVec3::new(x - below.copysign(x), y - below.copysign(y), z)
+}
+
 /// What the G-buffer says of each pixel that has a surface, as points for eval, with `light`.
 fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let g_buffer = view.renderer.g_buffer();
     let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
     let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
+    let coats = texels(&g_buffer.coat);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
         let material = arealight::Material {
@@ -58,9 +66,13 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             roughness: normals[i].w,
             dielectric_f0: speculars[i].truncate(),
             dielectric_f90: speculars[i].w,
+            coat: coats[i].x,
+            coat_roughness: coats[i].y,
         };
+        let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
+        let surface = material.surface();
         EvalPoint {
-            surface: material.surface(),
+            surface: Surface { coat: surface.coat.map(|coat| Coat { normal, ..coat }), ..surface },
             position: position + view.buffers.origin,
             normal: normals[i].truncate().as_dvec3(),
             view: -position,
@@ -104,7 +116,7 @@ fn visibility_finds_what_a_float64_walk_finds() {
 #[test]
 fn the_shade_pass_equals_eval_at_every_pixel() {
     let Some(engine) = TestEngine::new() else { return };
-    for name in ["room.glb", "sweep.glb"] {
+    for name in ["room.glb", "sweep.glb", "coats.glb"] {
         let scene = scene(name);
         let mut view = view(&engine, &scene);
         // Emission alone, then with the light that surfaces reflect
@@ -125,7 +137,10 @@ fn the_shade_pass_equals_eval_at_every_pixel() {
         }
         let alphas: Vec<f64> = points(&view, &scene.lights[0])
             .iter()
-            .map(|point| point.as_ref().map_or(1.0, |point| point.surface.alpha))
+            .map(|point| {
+                let Some(EvalPoint { surface, .. }) = point else { return 1.0 };
+                surface.coat.map_or(surface.alpha, |coat| surface.alpha.min(coat.alpha))
+            })
             .collect();
         let radiance = scene.lights.iter().map(|light| light.radiance.max_element()).fold(0.0, f32::max);
         let brightest = expected.iter().map(|e| e.max_element()).fold(0.0, f64::max);
@@ -151,8 +166,14 @@ fn the_shade_pass_equals_eval_at_every_pixel() {
 #[test]
 fn the_reference_converges_to_the_truth() {
     let Some(engine) = TestEngine::new() else { return };
-    let scene = scene("room.glb");
-    let mut view = view(&engine, &scene);
+    for name in ["room.glb", "coats.glb"] {
+        reference_converges(&engine, name);
+    }
+}
+
+fn reference_converges(engine: &TestEngine, name: &str) {
+    let scene = scene(name);
+    let mut view = view(engine, &scene);
     let emitted = view.renderer.radiance().unwrap();
     let samples = 256;
     view.renderer.reference(samples, 7, |_| {}).unwrap();
@@ -183,7 +204,7 @@ fn the_reference_converges_to_the_truth() {
     // around its mean / sqrt(256), of the mean of 50 pixels a seventh of that, 1 %: three of those
     for channel in 0..3 {
         let bias = (difference[channel] / total[channel]).abs();
-        assert!(bias < 0.03, "channel {channel}: {bias} of the light is missing or too much");
+        assert!(bias < 0.03, "{name}, channel {channel}: {bias} of the light is missing or too much");
     }
 }
 
@@ -193,7 +214,7 @@ fn the_fitted_lobes_look_like_the_reference() {
     // A smoke test of the mean reflected light. The fit errs by a few per cent of it (at 1,024 samples a pixel: 1 % in
     // the room, 0.5 % in the sweep), and most where a dielectric floor is seen at 75 to 88 degrees, since one matrix
     // serves every F0: 6.6 % in the demo. A lobe that is lost or counted twice changes it by tens of per cent.
-    for (name, bound) in [("room.glb", 0.05), ("sweep.glb", 0.05), ("demo.glb", 0.1)] {
+    for (name, bound) in [("room.glb", 0.05), ("sweep.glb", 0.05), ("demo.glb", 0.1), ("coats.glb", 0.05)] {
         let scene = scene(name);
         let mut fitted = view(&engine, &scene);
         let emitted = fitted.renderer.radiance().unwrap();

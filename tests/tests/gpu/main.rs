@@ -6,6 +6,8 @@ mod arcs;
 mod bits;
 mod c_api;
 mod c_pictures;
+mod coat;
+mod coat_tiles;
 mod constants;
 mod cpp_host;
 mod effects;

@@ -271,8 +271,19 @@ fn every_structure_has_the_same_offsets() {
         (
             &eval,
             "ArealightGpuCase",
-            layout!(tool::gpu::GpuCase, normal, roughness, view, f90, diffuse_albedo, light, f0,
-                                            reserved as "reserved0"),
+            layout!(
+                tool::gpu::GpuCase,
+                normal,
+                roughness,
+                view,
+                f90,
+                diffuse_albedo,
+                light,
+                f0,
+                coat_weight,
+                coat_normal,
+                coat_roughness
+            ),
         ),
         (
             &visibility,
@@ -304,7 +315,14 @@ fn every_structure_has_the_same_offsets() {
                 flags,
                 alpha_cutoff,
                 base_alpha,
-                emission_texture
+                emission_texture,
+                coat,
+                coat_roughness,
+                coat_texture,
+                coat_roughness_texture,
+                coat_normal_texture,
+                coat_normal_scale,
+                reserved as "reserved0"
             ),
         ),
         (

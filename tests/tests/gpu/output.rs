@@ -110,6 +110,7 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         normal: image,
         base_color: image,
         specular: None,
+        coat: None,
         radiance: view(7),
         glossy: None,
         light_textures: None,
@@ -132,4 +133,13 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         assert!(matches!(error, Error::InvalidArgument { .. }), "{error:?}");
         assert!(error.to_string().starts_with(words), "{error}");
     }
+    // Nor is there a coat without its image
+    let surfaces = Effects::DIFFUSE | Effects::COAT;
+    // SAFETY: as above.
+    let error = unsafe {
+        let pass =
+            ShadePass::new(engine.context(), ShadeOptions { surfaces, ..ShadeOptions::default() }).unwrap();
+        pass.write_set(vk::DescriptorSet::null(), &resources).unwrap_err()
+    };
+    assert!(error.to_string().starts_with("coat: is missing"), "{error}");
 }

@@ -51,6 +51,7 @@ impl Images {
             normal: of(&normal),
             base_color: of(&base_color),
             specular: None,
+            coat: None,
             radiance: Resource::StorageImage { view: radiance.view() },
             glossy: None,
             light_textures: None,

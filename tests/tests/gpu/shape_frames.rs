@@ -40,6 +40,8 @@ fn pixels() -> Vec<Pixel> {
             roughness: random.between(0.4, 1.0) as f32,
             dielectric_f0: Vec3::splat(0.04),
             dielectric_f90: 1.0,
+            coat: 0.0,
+            coat_roughness: 0.0,
         },
     };
     (0..PIXELS).map(pixel).collect()
@@ -152,6 +154,7 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
     let position = sampled("position", &|p| p.position.as_vec3().extend(1.0));
     let normal = sampled("normal", &|p| p.normal.as_vec3().extend(p.material.roughness));
     let color = sampled("colour", &|p| p.material.base_color.extend(p.material.metalness));
+    let coat = sampled("coat", &|_| Vec4::ZERO);
     let specular = sampled("specular", &|p| p.material.dielectric_f0.extend(p.material.dielectric_f90));
     let radiance =
         image("radiance", vk::ImageUsageFlags::STORAGE, vec![[f32::NAN; 4]; PIXELS], Usage::COMPUTE_WRITE);
@@ -173,6 +176,7 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             normal: read(&normal),
             base_color: read(&color),
             specular: Some(read(&specular)),
+            coat: Some(read(&coat)),
             radiance: Resource::StorageImage { view: radiance.view() },
             glossy: None,
             light_textures: Some(engine.light_textures()),
@@ -246,6 +250,8 @@ fn floor(glossy: bool) -> Scene {
         roughness: 0.6,
         dielectric_f0: Vec3::ZERO,
         dielectric_f90: 0.0,
+        coat: 0.0,
+        coat_roughness: 0.0,
     };
     let mut scene = Scene {
         triangles: vec![triangle([a, b, c]), triangle([a, c, d])],
@@ -259,6 +265,10 @@ fn floor(glossy: bool) -> Scene {
             normal_texture: None,
             normal_scale: 1.0,
             emission_texture: None,
+            coat_texture: None,
+            coat_roughness_texture: None,
+            coat_normal_texture: None,
+            coat_normal_scale: 1.0,
             alpha_cutoff: None,
             double_sided: true,
         }],

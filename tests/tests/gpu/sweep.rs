@@ -38,6 +38,8 @@ fn material(roughness: f32) -> Material {
         roughness,
         dielectric_f0: Vec3::splat(0.04),
         dielectric_f90: 1.0,
+        coat: 0.0,
+        coat_roughness: 0.0,
     }
 }
 
@@ -101,7 +103,9 @@ impl<'a> Sweep<'a> {
                 diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
                 light: index as u32,
                 f0: surface.f0.as_vec3().to_array(),
-                reserved: 0,
+                coat_weight: 0.0,
+                coat_normal: [0.0; 3],
+                coat_roughness: 0.0,
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();
@@ -153,6 +157,7 @@ impl<'a> Sweep<'a> {
                 normal: sampled(normal),
                 base_color: sampled(color),
                 specular: Some(sampled(color)),
+                coat: None,
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: None,
                 light_textures: None,

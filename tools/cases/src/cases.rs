@@ -4,12 +4,14 @@
 //! case and field. A field that is not known does not fail the file, but its case counts as not supported,
 //! for an answer that ignores a field would look like an answer to it.
 
+mod coat;
 mod fields;
 
 use arealight::{Light, LightShape, LightTexture, MIN_ALPHA, Surface, TextureError, TextureMap, TubeEnds};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
+pub use coat::CaseCoat;
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
@@ -84,6 +86,10 @@ pub enum CaseMaterial {
         f0: Option<DVec3>,
         /// Albedo of the Lambert lobe.
         albedo: Option<DVec3>,
+        /// Whether the Lambert lobe gets what the GGX lobe's Fresnel term leaves, as in glTF.
+        coupled: bool,
+        /// What lies above both.
+        coat: Option<CaseCoat>,
     },
 }
 
@@ -248,7 +254,7 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
 fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
     match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
         "diffuse" => Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)? }),
-        "ggx" => {
+        bsdf @ ("ggx" | "coat") => {
             let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
                 if fields.has("alpha") {
                     return Err(fields.error("alpha", "give either alpha, or alpha_x and alpha_y"));
@@ -264,9 +270,20 @@ fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
             }
             let f0 = fields.optional("F0", |f, field| f.color(field, 1.0))?;
             let albedo = fields.optional("albedo", |f, field| f.color(field, f64::INFINITY))?;
-            Ok(CaseMaterial::Ggx { alpha, f0, albedo })
+            let coupled = match fields.optional("coupling", Fields::text)? {
+                None => false,
+                Some("gltf") => true,
+                Some(other) => {
+                    return Err(fields.error("coupling", &format!("\"{other}\" is not known; \"gltf\" is")));
+                }
+            };
+            let coat = if bsdf == "coat" { Some(CaseCoat::read(fields)?) } else { None };
+            Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat })
         }
-        other => Err(fields.error("bsdf", &format!("\"{other}\" is not known; \"ggx\" and \"diffuse\" are"))),
+        other => {
+            Err(fields
+                .error("bsdf", &format!("\"{other}\" is not known; \"ggx\", \"coat\" and \"diffuse\" are")))
+        }
     }
 }
 
@@ -441,12 +458,12 @@ impl Case {
         }
     }
 
-    /// The two lobes.
+    /// The lobes.
     fn surface(&self) -> Result<Surface, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         match &self.material {
             CaseMaterial::Diffuse { albedo } => {
-                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0 })
+                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: None })
             }
             CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
                 unsupported("anisotropic GGX is not supported yet".into())
@@ -454,11 +471,15 @@ impl Case {
             CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
                 unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
             }
-            CaseMaterial::Ggx { alpha, f0, albedo } => Ok(Surface {
+            CaseMaterial::Ggx { albedo: Some(albedo), coupled: true, .. } if *albedo != DVec3::ZERO => {
+                unsupported("coupling of the Lambert lobe to the Fresnel term is not supported yet".into())
+            }
+            CaseMaterial::Ggx { alpha, f0, albedo, coat, .. } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
                 alpha: alpha.x,
+                coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
             }),
         }
     }

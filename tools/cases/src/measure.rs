@@ -12,7 +12,7 @@ pub struct Family {
     pub shape: &'static str,
     /// Whether the light has a texture.
     pub textured: bool,
-    /// `diffuse`, `ggx`, `ggx + diffuse`, `anisotropic ggx` or `anisotropic ggx + diffuse`.
+    /// `diffuse`, `ggx`, `ggx + diffuse`, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
     pub material: &'static str,
 }
 
@@ -26,6 +26,7 @@ impl Family {
         );
         let material = match &case.material {
             CaseMaterial::Diffuse { .. } => "diffuse",
+            CaseMaterial::Ggx { coat: Some(_), .. } => "coat",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {
                 (true, None) => "ggx",
                 (true, Some(_)) => "ggx + diffuse",

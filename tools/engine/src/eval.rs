@@ -2,7 +2,7 @@
 
 use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
-use arealight::{Effects, Light, PackedLights, Quality, Surface};
+use arealight::{Coat, Effects, Light, PackedLights, Quality, Surface};
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
@@ -32,10 +32,10 @@ impl Engine {
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
-        // Points get a pipeline that has no more than their lights need
+        // Points get a pipeline that has no more than they need
         let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
         for (index, point) in points.iter().enumerate() {
-            let needed = point.light.effects() & POLYGONAL;
+            let needed = (point.light.effects() & POLYGONAL) | coat_effects(&point.surface);
             match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
                 Some((_, subset)) => subset.push(index),
                 None => subsets.push((needed, vec![index])),
@@ -43,7 +43,7 @@ impl Engine {
         }
         let mut radiance = vec![Vec3::ZERO; points.len()];
         for (needed, indices) in subsets {
-            let effects = (Effects::all() - POLYGONAL) | needed;
+            let effects = (Effects::all() - POLYGONAL - COATS) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
             let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;
@@ -119,8 +119,20 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     surface_case(&point.surface, point.normal, point.view, light)
 }
 
+pub(crate) const COATS: Effects = Effects::COAT.union(Effects::COAT_NORMAL);
+
+/// What a surface's coat needs.
+pub(crate) fn coat_effects(surface: &Surface) -> Effects {
+    match surface.coat {
+        None => Effects::empty(),
+        Some(Coat { normal: None, .. }) => Effects::COAT,
+        Some(_) => COATS,
+    }
+}
+
 /// A surface as the eval kernels read it.
 pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light: u32) -> GpuCase {
+    let coat = surface.coat.unwrap_or(Coat { weight: 0.0, alpha: 1.0, normal: None });
     GpuCase {
         normal: rounded(normal),
         roughness: surface.alpha.sqrt() as f32,
@@ -129,7 +141,9 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         diffuse_albedo: surface.diffuse_albedo.as_vec3().to_array(),
         light,
         f0: surface.f0.as_vec3().to_array(),
-        reserved: 0,
+        coat_weight: coat.weight as f32,
+        coat_normal: coat.normal.map_or([0.0; 3], rounded),
+        coat_roughness: coat.alpha.sqrt() as f32,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Shading points one by one under disks, spheres and tubes.
 
-use crate::eval::{EvalPoint, POLYGONAL, surface_case};
+use crate::eval::{COATS, EvalPoint, POLYGONAL, coat_effects, surface_case};
 use crate::{Engine, EngineError};
 use arealight::gpu::GpuShape;
 use arealight::{Effects, PackedLights, Quality};
@@ -58,9 +58,10 @@ impl Engine {
             return Ok(Vec::new());
         }
 
-        // Points under lights of one colour do not pay for images
+        // Points under lights of one colour do not pay for images, nor those without a coat for coats
         let textured = points.iter().any(|point| point.light.texture.is_some());
-        let mut effects = Effects::all() - POLYGONAL;
+        let coats: Effects = points.iter().map(|point| coat_effects(&point.surface)).collect();
+        let mut effects = (Effects::all() - POLYGONAL - COATS) | coats;
         effects.set(Effects::TEXTURED_ELLIPSE, textured);
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);
         let shape_buffer = self.storage("shapes", &shapes)?;

@@ -15,6 +15,8 @@ pub struct GBuffer {
     pub base_color: Image,
     /// Dielectric reflectance.
     pub specular: Image,
+    /// Weight, roughness and normal of coats.
+    pub coat: Image,
     /// Radiance.
     pub radiance: Image,
 }
@@ -42,17 +44,18 @@ impl GBuffer {
             normal: image("normal", full)?,
             base_color: image("base colour", half)?,
             specular: image("specular", full)?,
+            coat: image("coat", full)?,
             radiance: image("radiance", full)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings.
-    pub fn surfaces(&self) -> [&Image; 4] {
-        [&self.position, &self.normal, &self.base_color, &self.specular]
+    /// The images that describe surfaces, in the order of the bindings; that of coats is the last.
+    pub fn surfaces(&self) -> [&Image; 5] {
+        [&self.position, &self.normal, &self.base_color, &self.specular, &self.coat]
     }
 
     /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 4] {
+    pub fn sampled(&self) -> [Resource; 5] {
         let layout = Usage::COMPUTE_READ.layout;
         self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
     }

@@ -78,7 +78,8 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let images = self.g_buffer.surfaces().into_iter().chain([&self.g_buffer.radiance]);
+        let GBuffer { position, normal, base_color, specular, coat, radiance } = &self.g_buffer;
+        let images = [position, normal, base_color, specular, radiance, coat].into_iter();
         let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
         let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
         let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
@@ -138,7 +139,7 @@ impl<'a> SceneRenderer<'a> {
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat] = self.g_buffer.sampled();
         let resources = [
             self.engine.table(),
             Resource::buffer(self.light_buffer.handle()),
@@ -151,6 +152,7 @@ impl<'a> SceneRenderer<'a> {
             self.engine.light_textures(),
             Resource::buffer(self.shape_buffer.handle()),
             Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            coat,
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;
         let constants = ShadeConstants {
@@ -180,15 +182,20 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
+        let [position, normal, base_color, specular, coat] = self.g_buffer.sampled();
         let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
         let resources: Vec<_> = buffers
             .into_iter()
             .map(|buffer| Resource::buffer(buffer.handle()))
-            .chain(self.g_buffer.sampled())
             .chain([
+                position,
+                normal,
+                base_color,
+                specular,
                 Resource::StorageImage { view: self.g_buffer.radiance.view() },
                 self.engine.light_textures(),
                 Resource::buffer(self.shape_buffer.handle()),
+                coat,
             ])
             .collect();
         let pass = self.engine.pass(&REFERENCE, &[], &resources)?;
@@ -264,7 +271,7 @@ impl<'a> SceneRenderer<'a> {
     }
 
     fn shade_resources(&self) -> ShadeResources {
-        let [position, normal, base_color, specular] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat] = self.g_buffer.sampled();
         ShadeResources {
             table: self.engine.table(),
             lights: Resource::buffer(self.light_buffer.handle()),
@@ -273,6 +280,7 @@ impl<'a> SceneRenderer<'a> {
             normal,
             base_color,
             specular: Some(specular),
+            coat: Some(coat),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             glossy: None,
             light_textures: Some(self.engine.light_textures()),

@@ -14,7 +14,9 @@ struct ArealightGpuCase {
     vec3 diffuse_albedo;
     uint light;
     vec3 f0;
-    uint reserved0;
+    float coat_weight;
+    vec3 coat_normal;
+    float coat_roughness;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -30,7 +32,7 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness);
+                            given.roughness, ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness));
 }
 
 #endif

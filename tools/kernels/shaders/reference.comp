@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick: integrates the true BRDF (Lambert + GGX) over the same lights by Monte Carlo, at the
+// The yardstick: integrates the true BRDF (Lambert + GGX, and a coat above them) over the same lights by Monte Carlo, at the
 // same G-buffer, without visibility, as the shade kernel. For each light one direction drawn from its area and
 // the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995).
 
@@ -12,6 +12,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define G_BUFFER_BINDING 4
 #define LIGHT_TEXTURES_BINDING 9
 #define SHAPES_BINDING 10
+#define COAT_BINDING 11
+#define AREALIGHT_COAT 1
+#define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
@@ -59,6 +62,15 @@ layout(push_constant, std430) uniform ReferenceConstants {
     uint shape_count;
 } constants;
 
+// A coat, whose frame goes from the surface's.
+struct CoatLobe {
+    mat3 to_coat;
+    vec3 view;         // in its frame
+    float alpha;
+    float share;       // of the light that it reflects
+    float probability; // of drawing from it
+};
+
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
     vec3 position;
@@ -68,8 +80,20 @@ struct Lobes {
     vec3 f0;
     float f90;
     float alpha;
-    float glossy_probability; // of drawing from the GGX lobe
+    float glossy_probability; // of drawing from the GGX lobe, where not from the coat's
+    CoatLobe coat;
 };
+
+// `base`: about what the lobes below the coat reflect.
+CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
+    vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
+    ArealightFrame own = arealight_coat_frame(frame, coat, view);
+    float alpha = max(coat.roughness * coat.roughness, AREALIGHT_MIN_ALPHA);
+    float share = arealight_coat_share(coat, dot(own.normal, view));
+    float rest = (1.0 - share) * base;
+    float probability = share > 0.0 ? clamp(share / (share + rest), 0.25, rest > 0.0 ? 0.75 : 1.0) : 0.0;
+    return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share, probability);
+}
 
 Lobes load_lobes(ArealightSurface surface) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
@@ -78,23 +102,35 @@ Lobes load_lobes(ArealightSurface surface) {
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
-                 surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability);
+                 surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability,
+                 load_coat_lobe(frame, surface.coat, glossy + diffuse));
 }
 
-// f cos, both lobes.
+// f cos, all lobes.
 vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
-    return diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
+    vec3 base = diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
+    CoatLobe coat = lobes.coat;
+    vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, coat.alpha, vec3(1.0), 1.0);
+    return mix(base, above, coat.share);
 }
 
+// Zero where no lobe reflects light from there: below the surface, and below its coat.
 float density(Lobes lobes, vec3 light) {
     float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
-    return mix(diffuse, arealight_ggx_density(lobes.view, light, lobes.alpha), lobes.glossy_probability);
+    float base = mix(diffuse, arealight_ggx_density(lobes.view, light, lobes.alpha), lobes.glossy_probability);
+    float above = arealight_ggx_density(lobes.coat.view, lobes.coat.to_coat * light, lobes.coat.alpha);
+    return mix(base, above, lobes.coat.probability);
 }
 
 vec3 sample_direction(Lobes lobes, inout RandomState random) {
     float choice = random_float(random);
     vec2 u = vec2(random_float(random), random_float(random));
+    CoatLobe coat = lobes.coat;
+    if (choice < coat.probability) {
+        return arealight_ggx_sample(coat.view, coat.alpha, u) * coat.to_coat;
+    }
+    choice = (choice - coat.probability) / (1.0 - coat.probability);
     if (choice < lobes.glossy_probability) {
         return arealight_ggx_sample(lobes.view, lobes.alpha, u);
     }
@@ -173,10 +209,11 @@ vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLig
     vec3 offset = point.offset + (light.center - lobes.position);
     float by_light = light_density(light, sampling.area, point.normal, offset);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
-    if (by_light <= 0.0 || direction.z <= 0.0) {
+    float by_brdf = density(lobes, direction);
+    if (by_light <= 0.0 || by_brdf <= 0.0) {
         return vec3(0.0);
     }
-    return light_radiance(light, point.offset) * evaluate(lobes, direction) / (by_light + density(lobes, direction));
+    return light_radiance(light, point.offset) * evaluate(lobes, direction) / (by_light + by_brdf);
 }
 
 // The sample's BRDF direction, where it meets the light, weighed against the light's density.
@@ -228,9 +265,10 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
     vec3 sum = vec3(0.0);
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
-    if (drawn.density > 0.0 && towards.z > 0.0) {
+    float towards_density = density(lobes, towards);
+    if (drawn.density > 0.0 && towards_density > 0.0) {
         vec3 color = shape_color(shape, lobes.position, drawn.offset);
-        sum += color * evaluate(lobes, towards) / (drawn.density + density(lobes, towards));
+        sum += color * evaluate(lobes, towards) / (drawn.density + towards_density);
     }
     if (by_brdf > 0.0) {
         vec3 ray = direction * lobes.to_surface;
@@ -244,7 +282,7 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
 
 vec3 estimate(Lobes lobes, inout RandomState random) {
     vec3 direction = sample_direction(lobes, random);
-    float by_brdf = direction.z > 0.0 ? density(lobes, direction) : 0.0;
+    float by_brdf = density(lobes, direction);
     vec3 radiance = vec3(0.0);
     for (uint index = 0u; index < constants.light_count; index++) {
         ArealightPolygonLight light = load_polygon(lights[index]);

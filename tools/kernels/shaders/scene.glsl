@@ -4,6 +4,7 @@
 // Triangles, materials and textures of a scene: crates/arealight/src/gpu.rs has the same structures, and a
 // test compares the offsets.
 
+#include "arealight/surface.glsl"
 #include "srgb.glsl"
 
 struct ArealightGpuBvhNode {
@@ -47,6 +48,14 @@ struct ArealightGpuMaterial {
     float alpha_cutoff;
     float base_alpha;
     uint emission_texture;
+    float coat;
+    float coat_roughness;
+    uint coat_texture;
+    uint coat_roughness_texture;
+    uint coat_normal_texture;
+    float coat_normal_scale;
+    uint reserved0;
+    uint reserved1;
 };
 
 struct ArealightGpuTexture {
@@ -98,6 +107,7 @@ struct ScenePoint {
     vec3 dielectric_f0;
     float dielectric_f90;
     vec3 emission;
+    ArealightCoat coat; // its normal is unit
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -157,7 +167,10 @@ bool masked_out(Hit hit) {
 }
 
 // The shading normal bent by a tangent-space normal texture; the tangents follow the texture coordinates.
-vec3 bend_normal(ArealightGpuTriangle triangle, ArealightGpuMaterial material, vec3 normal, vec2 uv) {
+vec3 bend_normal(ArealightGpuTriangle triangle, uint normal_texture, float scale, vec3 normal, vec2 uv) {
+    if (normal_texture == NO_TEXTURE) {
+        return normal;
+    }
     vec2 d1 = vec2(triangle.u1 - triangle.u0, triangle.v1 - triangle.v0);
     vec2 d2 = vec2(triangle.u2 - triangle.u0, triangle.v2 - triangle.v0);
     float area = d1.x * d2.y - d2.x * d1.y;
@@ -165,8 +178,8 @@ vec3 bend_normal(ArealightGpuTriangle triangle, ArealightGpuMaterial material, v
     vec3 tangent = arealight_normalize_or(along_u - normal * dot(normal, along_u), vec3(0.0));
     // Rows of a texture run downwards, so green points against v
     vec3 bitangent = cross(normal, tangent) * (area < 0.0 ? 1.0 : -1.0);
-    vec3 bend = sample_texture(material.normal_texture, uv).xyz * 2.0 - 1.0;
-    bend.xy *= material.normal_scale;
+    vec3 bend = sample_texture(normal_texture, uv).xyz * 2.0 - 1.0;
+    bend.xy *= scale;
     return arealight_normalize_or(tangent * bend.x + bitangent * bend.y + normal * bend.z, normal);
 }
 
@@ -182,11 +195,12 @@ ScenePoint scene_point(Hit hit) {
     point.position = triangle.p0 + (triangle.p1 - triangle.p0) * u + (triangle.p2 - triangle.p0) * v;
     vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
     vec3 smooth_normal = triangle.n0 * (1.0 - u - v) + triangle.n1 * u + triangle.n2 * v;
-    point.normal = arealight_normalize_or(smooth_normal, arealight_normalize_or(face, vec3(0.0, 0.0, 1.0)));
-    if (material.normal_texture != NO_TEXTURE) {
-        point.normal = bend_normal(triangle, material, point.normal, uv);
-    }
-    point.normal = hit.back ? -point.normal : point.normal;
+    vec3 normal = arealight_normalize_or(smooth_normal, arealight_normalize_or(face, vec3(0.0, 0.0, 1.0)));
+    float side = hit.back ? -1.0 : 1.0;
+    point.normal = side * bend_normal(triangle, material.normal_texture, material.normal_scale, normal, uv);
+    point.coat.normal = side * bend_normal(triangle, material.coat_normal_texture, material.coat_normal_scale, normal, uv);
+    point.coat.weight = material.coat * sample_texture(material.coat_texture, uv).r;
+    point.coat.roughness = material.coat_roughness * sample_texture(material.coat_roughness_texture, uv).g;
 
     vec4 metallic_roughness = sample_texture(material.metallic_roughness_texture, uv);
     point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb;

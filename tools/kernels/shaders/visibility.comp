@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#include "arealight/common.glsl"
+#include "arealight/surface.glsl"
 #include "scene.glsl"
 
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D out_position;
@@ -13,6 +13,7 @@ layout(set = 0, binding = 6, rgba32f) uniform writeonly image2D out_normal;
 layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D out_base_color;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D out_specular;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D out_radiance;
+layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
@@ -94,6 +95,13 @@ Hit trace(vec3 origin, vec3 direction) {
     return hit;
 }
 
+// A unit direction's place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
+vec2 to_octahedron(vec3 direction) {
+    vec2 place = direction.xy / (abs(direction.x) + abs(direction.y) + abs(direction.z));
+    vec2 sides = vec2(place.x >= 0.0 ? 1.0 : -1.0, place.y >= 0.0 ? 1.0 : -1.0);
+    return direction.z >= 0.0 ? place : (1.0 - abs(place.yx)) * sides;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(out_radiance);
@@ -112,6 +120,7 @@ void main() {
         imageStore(out_base_color, pixel, vec4(0.0));
         imageStore(out_specular, pixel, vec4(0.0));
         imageStore(out_radiance, pixel, vec4(constants.background, 0.0));
+        imageStore(out_coat, pixel, vec4(0.0));
         return;
     }
     ScenePoint point = scene_point(hit);
@@ -119,5 +128,7 @@ void main() {
     imageStore(out_normal, pixel, vec4(point.normal, point.roughness));
     imageStore(out_base_color, pixel, vec4(point.base_color, point.metalness));
     imageStore(out_specular, pixel, vec4(point.dielectric_f0, point.dielectric_f90));
-    imageStore(out_radiance, pixel, vec4(point.emission, 1.0));
+    float below_coat = 1.0 - arealight_coat_share(point.coat, dot(point.coat.normal, direction));
+    imageStore(out_radiance, pixel, vec4(point.emission * below_coat, 1.0));
+    imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
 }

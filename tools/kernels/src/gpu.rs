@@ -67,8 +67,12 @@ pub struct GpuCase {
     pub light: u32,
     /// Schlick's reflectance at normal incidence.
     pub f0: [f32; 3],
-    /// Zero.
-    pub reserved: u32,
+    /// Weight of the coat; 0 for none.
+    pub coat_weight: f32,
+    /// The coat's normal, of any length; zero for the surface's.
+    pub coat_normal: [f32; 3],
+    /// The coat's perceptual roughness.
+    pub coat_roughness: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.
@@ -160,6 +164,20 @@ pub struct GpuMaterial {
     pub base_alpha: f32,
     /// sRGB texture times `emission`.
     pub emission_texture: u32,
+    /// Weight factor of the coat.
+    pub coat: f32,
+    /// Perceptual roughness factor of the coat.
+    pub coat_roughness: f32,
+    /// Linear texture: red times `coat`.
+    pub coat_texture: u32,
+    /// Linear texture: green times `coat_roughness`.
+    pub coat_roughness_texture: u32,
+    /// Tangent-space normal texture of the coat.
+    pub coat_normal_texture: u32,
+    /// Scale of its x and y.
+    pub coat_normal_scale: f32,
+    /// Zero.
+    pub reserved: [u32; 2],
 }
 
 impl GpuMaterial {

@@ -2,8 +2,8 @@
 //! facts back out of the SPIR-V.
 
 use arealight::kernels::{
-    Access, Binding, BindingKind, G_BASE_COLOR, G_NORMAL, G_POSITION, G_SPECULAR, Kernel, LIGHT_TEXTURES,
-    LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
+    Access, Binding, BindingKind, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SPECULAR, Kernel,
+    LIGHT_TEXTURES, LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
 };
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -86,6 +86,7 @@ pub static REFERENCE: Kernel = Kernel {
         ),
         LIGHT_TEXTURES,
         SHAPES,
+        G_COAT,
     ],
     constants: &[],
 };
@@ -117,6 +118,7 @@ pub static VISIBILITY: Kernel = Kernel {
         write("out_base_color", BindingKind::StorageImage, Access::Write, "g_base_color (rgba16f)"),
         write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba32f)"),
         write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
+        write("out_coat", BindingKind::StorageImage, Access::Write, "g_coat, with normals (rgba32f)"),
     ],
     constants: &[],
 };

@@ -5,8 +5,13 @@ use gltf::json;
 use std::path::{Path, PathBuf};
 
 /// Extensions that a file may require.
-const SUPPORTED_EXTENSIONS: [&str; 4] =
-    ["EXT_lights_area", "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_specular"];
+const SUPPORTED_EXTENSIONS: [&str; 5] = [
+    "EXT_lights_area",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+];
 
 /// The largest file, buffer or encoded image that is read, in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 32;

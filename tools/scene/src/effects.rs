@@ -43,6 +43,8 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::TUBE),
         light(Effects::MESH),
         light(Effects::TEXTURED_ELLIPSE),
+        material(Effects::COAT, has_coat),
+        material(Effects::COAT_NORMAL, has_coat_normal),
     ];
     calls.into_iter().flatten().collect()
 }
@@ -74,4 +76,15 @@ fn has_specular_input(material: &SceneMaterial) -> bool {
     let usual = (material.material.dielectric_f0 - Vec3::splat(0.04)).abs().max_element() < 1e-6
         && material.material.dielectric_f90 == 1.0;
     is_dielectric_somewhere(material) && !usual
+}
+
+fn has_coat(material: &SceneMaterial) -> bool {
+    material.material.coat > 0.0
+}
+
+/// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.
+fn has_coat_normal(material: &SceneMaterial) -> bool {
+    let coat = material.coat_normal_texture.map(|texture| (texture, material.coat_normal_scale));
+    let base = material.normal_texture.map(|texture| (texture, material.normal_scale));
+    has_coat(material) && coat != base
 }

@@ -136,6 +136,9 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
             ("metallic_roughness_texture", material.metallic_roughness_texture),
             ("normal_texture", material.normal_texture),
             ("emission_texture", material.emission_texture),
+            ("coat_texture", material.coat_texture),
+            ("coat_roughness_texture", material.coat_roughness_texture),
+            ("coat_normal_texture", material.coat_normal_texture),
         ];
         for (name, texture) in textures {
             let Some(texture) = texture else { continue };
@@ -193,6 +196,13 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         alpha_cutoff: material.alpha_cutoff.unwrap_or(0.0),
         base_alpha: material.base_alpha,
         emission_texture: texture(material.emission_texture),
+        coat: material.material.coat,
+        coat_roughness: material.material.coat_roughness,
+        coat_texture: texture(material.coat_texture),
+        coat_roughness_texture: texture(material.coat_roughness_texture),
+        coat_normal_texture: texture(material.coat_normal_texture),
+        coat_normal_scale: material.coat_normal_scale,
+        reserved: [0; 2],
     }
 }
 

@@ -8,6 +8,7 @@ use glam::Vec3;
 use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
+use serde::Deserialize;
 
 /// The scene's index of a primitive's material.
 pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32, SceneError> {
@@ -28,6 +29,9 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.metallic_roughness_texture,
         material.normal_texture,
         material.emission_texture,
+        material.coat_texture,
+        material.coat_roughness_texture,
+        material.coat_normal_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
@@ -52,15 +56,31 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let [metalness] = reader.fractions("metallicFactor", [pbr.metallic_factor.0]);
     let [roughness] = reader.fractions("roughnessFactor", [pbr.roughness_factor.0]);
     let (dielectric_f0, dielectric_f90) = reader.dielectric(&source);
-    let material =
-        Material { base_color: Vec3::new(r, g, b), metalness, roughness, dielectric_f0, dielectric_f90 };
+    let clearcoat = reader.clearcoat(&source)?;
+    let [coat] = reader.fractions("clearcoatFactor", [clearcoat.factor]);
+    let [coat_roughness] = reader.fractions("clearcoatRoughnessFactor", [clearcoat.roughness_factor]);
+    let material = Material {
+        base_color: Vec3::new(r, g, b),
+        metalness,
+        roughness,
+        dielectric_f0,
+        dielectric_f90,
+        coat,
+        coat_roughness,
+    };
     let emission = reader.emission(&source);
     // Textures
     let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), "baseColorTexture", true)?;
     let metallic_roughness_texture =
         reader.texture(pbr.metallic_roughness_texture.as_ref(), "metallicRoughnessTexture", false)?;
     let emission_texture = reader.texture(source.emissive_texture.as_ref(), "emissiveTexture", true)?;
-    let (normal_texture, normal_scale) = reader.normal_texture(source.normal_texture.as_ref())?;
+    let (normal_texture, normal_scale) =
+        reader.normal_texture(source.normal_texture.as_ref(), "normalTexture")?;
+    let coat_texture = reader.texture(clearcoat.texture.as_ref(), "clearcoatTexture", false)?;
+    let coat_roughness_texture =
+        reader.texture(clearcoat.roughness_texture.as_ref(), "clearcoatRoughnessTexture", false)?;
+    let (coat_normal_texture, coat_normal_scale) =
+        reader.normal_texture(clearcoat.normal_texture.as_ref(), "clearcoatNormalTexture")?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -80,6 +100,10 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         normal_texture,
         normal_scale,
         emission_texture,
+        coat_texture,
+        coat_roughness_texture,
+        coat_normal_texture,
+        coat_normal_scale,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -126,6 +150,16 @@ impl Reader<'_> {
         ((color * by_index).min(Vec3::ONE) * weight, weight)
     }
 
+    /// The coat; nothing of it where its factor is zero.
+    fn clearcoat(&mut self, source: &json::Material) -> Result<Clearcoat, SceneError> {
+        let extension = source.extensions.as_ref().and_then(|e| e.others.get(CLEARCOAT));
+        let Some(extension) = extension else { return Ok(Clearcoat::default()) };
+        let read = Clearcoat::deserialize(extension);
+        let field = format!("{}: {CLEARCOAT}", self.place);
+        let coat = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+        Ok(if coat.factor == 0.0 { Clearcoat::default() } else { coat })
+    }
+
     /// emissiveFactor times `KHR_materials_emissive_strength`.
     fn emission(&mut self, source: &json::Material) -> Vec3 {
         let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
@@ -153,10 +187,11 @@ impl Reader<'_> {
     fn normal_texture(
         &mut self,
         info: Option<&json::material::NormalTexture>,
+        field: &str,
     ) -> Result<(Option<u32>, f32), SceneError> {
         let Some(info) = info else { return Ok((None, 1.0)) };
         let transformed = info.extensions.as_ref().is_some_and(|e| e.others.contains_key(TRANSFORM));
-        self.warn_of_coordinates("normalTexture", info.tex_coord, transformed);
+        self.warn_of_coordinates(field, info.tex_coord, transformed);
         let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
         Ok((Some(images::resolve(self.loader, info.index.value(), false)?), scale))
     }
@@ -171,10 +206,29 @@ impl Reader<'_> {
     }
 
     fn warn_of_unknown_extensions(&mut self, source: &json::Material) {
-        for extension in source.extensions.iter().flat_map(|e| e.others.keys()) {
+        let unknown =
+            source.extensions.iter().flat_map(|e| e.others.keys()).filter(|name| *name != CLEARCOAT);
+        for extension in unknown {
             self.warn(format!("{extension} is not supported: ignored"));
         }
     }
 }
 
 const TRANSFORM: &str = "KHR_texture_transform";
+const CLEARCOAT: &str = "KHR_materials_clearcoat";
+
+/// `KHR_materials_clearcoat`.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Clearcoat {
+    #[serde(rename = "clearcoatFactor")]
+    factor: f32,
+    #[serde(rename = "clearcoatTexture")]
+    texture: Option<json::texture::Info>,
+    #[serde(rename = "clearcoatRoughnessFactor")]
+    roughness_factor: f32,
+    #[serde(rename = "clearcoatRoughnessTexture")]
+    roughness_texture: Option<json::texture::Info>,
+    #[serde(rename = "clearcoatNormalTexture")]
+    normal_texture: Option<json::material::NormalTexture>,
+}

@@ -71,6 +71,14 @@ pub struct SceneMaterial {
     pub normal_scale: f32,
     /// Of an sRGB texture times emission.
     pub emission_texture: Option<u32>,
+    /// Of a linear texture: red times the coat's weight.
+    pub coat_texture: Option<u32>,
+    /// Of a linear texture: green times the coat's roughness.
+    pub coat_roughness_texture: Option<u32>,
+    /// Of a linear texture of the coat's tangent-space normals. Without one the coat is as the geometry is, whatever bends the base.
+    pub coat_normal_texture: Option<u32>,
+    /// Scale of its x and y.
+    pub coat_normal_scale: f32,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

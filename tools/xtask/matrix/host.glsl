@@ -16,6 +16,8 @@ layout(constant_id = 4) const bool FRESNEL_SPLIT = false;
 layout(constant_id = 5) const bool FORMULA = false;
 layout(constant_id = 6) const bool DIFFERENCE = false;
 layout(constant_id = 7) const int FOOTPRINT = 0;
+layout(constant_id = 8) const bool COAT = false;
+layout(constant_id = 9) const bool COAT_NORMAL = false;
 #define AREALIGHT_DIFFUSE DIFFUSE
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
@@ -24,6 +26,8 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #define AREALIGHT_FORMULA FORMULA
 #define AREALIGHT_DIFFERENCE DIFFERENCE
 #define AREALIGHT_FOOTPRINT FOOTPRINT
+#define AREALIGHT_COAT COAT
+#define AREALIGHT_COAT_NORMAL COAT_NORMAL
 #endif
 
 #include "arealight/arealight.glsl"
@@ -99,6 +103,7 @@ vec3 shade(int first) {
     surface.roughness = numbers[first + 3].x;
     arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a, numbers[first + 5].rgb,
                                      numbers[first + 5].a);
+    surface.coat = ArealightCoat(numbers[first + 14].xyz, numbers[first + 14].w, numbers[first + 3].y);
     ArealightPoint point = arealight_point(surface);
 
     uvec4 counts = floatBitsToUint(numbers[first + 6]);

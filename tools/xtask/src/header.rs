@@ -96,7 +96,7 @@ fn layouts() -> [Layout; 17] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, light_textures, radiance,
+            lights, light_vertices, shapes, position, normal, base_color, specular, coat, light_textures, radiance,
             glossy, lobe_horizons, tile_lists,
         }
         ArealightFrame {

@@ -1,6 +1,7 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
-use super::{RelativeLight, ShownImage, Truth, glossy_part, reflected};
+use super::coat::layered;
+use super::{RelativeLight, ShownImage, Truth, coated, glossy_part, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
 use crate::frame::SurfaceFrame;
@@ -9,7 +10,6 @@ use crate::polygon::{above_horizon, emitted};
 use crate::sphere::{self, Sphere};
 use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
-use arealight::table::share_above_surface;
 use arealight::{Horizon, Light, LightShape, LightTable, LightTexture, Quality, Surface, TubeEnds};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
@@ -32,17 +32,18 @@ pub fn shape_ltc_on(
     let seen = SeenShape::new(light, &frame)?;
     let both_horizons = quality.horizon == Horizon::Both;
     // Integrate the transformed cosine
-    let lobe = |inverse: &DMat3| {
+    let lobe = |inverse: &DMat3, above_surface: f64| {
         let form_factor = if both_horizons {
             // What is clipped at the surface's horizon is made up for, so that the albedo stays
-            seen.cut_form_factor(inverse) / share_above_surface(inverse)
+            seen.cut_form_factor(inverse) / above_surface
         } else {
             seen.form_factor(inverse)
         };
         DVec3::splat(form_factor.min(1.0))
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    Some(light.radiance.as_dvec3() * (surface.diffuse_albedo * seen.lambert_form_factor() + glossy))
+    let base = surface.diffuse_albedo * seen.lambert_form_factor() + glossy;
+    Some(light.radiance.as_dvec3() * coated(quality, table, surface, &frame, base, lobe))
 }
 
 /// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the
@@ -53,6 +54,19 @@ pub fn shape_ltc_on(
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn shape_truth(
+    surface: &Surface,
+    normal: DVec3,
+    view: DVec3,
+    light: &Light,
+    settings: &Settings,
+) -> Option<Truth> {
+    let truth = layered(surface, normal, view, |surface, normal, view| {
+        uncoated_truth(surface, normal, view, light, settings).ok_or(())
+    });
+    truth.ok()
+}
+
+fn uncoated_truth(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,

@@ -1,6 +1,7 @@
 //! Properties of the oracle, and its parts against each other and against the reference.
 
 mod article;
+mod coat;
 mod common;
 mod ellipse;
 mod footprints;

@@ -12,13 +12,14 @@ struct ArealightLobe {
 };
 
 // The gain of a lobe with this space, from 1 on: the inverse of its part above the surface, which is a lune of the cosine
-// (share_above_surface in Rust). For spaces that keep the plane of incidence, as those of isotropic BRDFs do.
+// (share_above_surface in Rust).
 float arealight_gain_above_surface(mat3 space) {
     if (!AREALIGHT_CLIPS_AT_SURFACE) {
         return 1.0;
     }
-    vec3 across = space[0];
-    float share = 0.5 + 0.5 * across.x * inversesqrt(across.x * across.x + across.z * across.z + AREALIGHT_TINY);
+    // The normal of the surface's horizon in the lobe's space
+    vec3 horizon = cross(space[0], space[1]);
+    float share = 0.5 + 0.5 * horizon.z * inversesqrt(dot(horizon, horizon) + AREALIGHT_TINY);
     return 1.0 / max(share, 1e-6);
 }
 

@@ -151,6 +151,13 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// A number from 0 to 1.
+    pub fn share(&self, field: &str) -> Result<f64, CaseError> {
+        let share = self.number_at(field, self.value(field)?)?;
+        let message = || format!("{share} must be from 0 to 1");
+        if (0.0..=1.0).contains(&share) { Ok(share) } else { Err(self.error(field, &message())) }
+    }
+
     /// An array whose items are read by `read`, each with its own field name.
     pub fn list<T>(
         &self,

@@ -1,6 +1,7 @@
 //! Writes the scenes of `scenes/`: `cargo run -p arealight-scene --example make_scenes [FOLDER]`.
 
 mod clock;
+mod coats;
 mod demo;
 mod lamps;
 mod room;
@@ -23,6 +24,7 @@ fn main() -> std::io::Result<()> {
         ("screen.glb", screen::glb()),
         ("shapes.glb", lamps::glb()),
         ("clock.glb", clock::glb()),
+        ("coats.glb", coats::glb()),
     ];
     for (name, bytes) in scenes {
         let path = folder.join(name);

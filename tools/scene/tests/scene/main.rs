@@ -13,6 +13,8 @@ mod textured_lights;
 // The program that writes the project's scenes, whose writer and shapes serve the tests too
 #[path = "../../examples/make_scenes/clock.rs"]
 mod clock;
+#[path = "../../examples/make_scenes/coats.rs"]
+mod coats;
 #[path = "../../examples/make_scenes/demo.rs"]
 mod demo;
 #[path = "../../examples/make_scenes/lamps.rs"]

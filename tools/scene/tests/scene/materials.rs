@@ -2,7 +2,7 @@
 
 use crate::shapes::panel;
 use crate::writer::Writer;
-use crate::{load, panel_with, warnings};
+use crate::{error, load, panel_with, warnings};
 use arealight::{Effects, Material};
 use arealight_scene::{Scene, SceneBuffers, Wrap, required_effects};
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
@@ -71,8 +71,12 @@ fn what_is_out_of_range_or_unknown_is_said() {
         ),
         (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
         (
-            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1 } } }),
-            "KHR_materials_clearcoat is not supported: ignored",
+            json!({ "extensions": { "KHR_materials_sheen": { "sheenRoughnessFactor": 1 } } }),
+            "KHR_materials_sheen is not supported: ignored",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1.5 } } }),
+            "clearcoatFactor [1.5] is not in [0, 1]: clamped",
         ),
     ] {
         let scene = load(panel_with(value));
@@ -115,6 +119,78 @@ fn textures_are_decoded_and_shared() {
     );
     assert_eq!(buffers.textures[1].flags, 0);
     assert_eq!((buffers.materials[0].normal_texture, buffers.materials[0].normal_scale), (1, 0.5));
+}
+
+fn clearcoat(values: &Value) -> Value {
+    json!({ "extensions": { "KHR_materials_clearcoat": values } })
+}
+
+#[test]
+fn a_clear_coat_is_read_with_its_textures() {
+    let scene = load(textured(clearcoat(&json!({
+        "clearcoatFactor": 0.75, "clearcoatTexture": { "index": 0 },
+        "clearcoatRoughnessFactor": 0.25, "clearcoatRoughnessTexture": { "index": 0 },
+        "clearcoatNormalTexture": { "index": 0, "scale": 0.5 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    assert_eq!((read.material.coat, read.material.coat_roughness), (0.75, 0.25));
+    assert_eq!((read.coat_texture, read.coat_roughness_texture), (Some(0), Some(0)));
+    assert_eq!((read.coat_normal_texture, read.coat_normal_scale), (Some(0), 0.5));
+    assert!(!scene.textures[0].srgb);
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!((gpu.coat, gpu.coat_roughness), (0.75, 0.25));
+    assert_eq!([gpu.coat_texture, gpu.coat_roughness_texture, gpu.coat_normal_texture], [0; 3]);
+    assert_eq!(gpu.coat_normal_scale, 0.5);
+    // None without the extension, and none of its textures where its factor is zero, which is the default
+    for without in [json!({}), clearcoat(&json!({ "clearcoatTexture": { "index": 0 } }))] {
+        let scene = load(textured(without));
+        let read = &scene.materials[0];
+        assert_eq!((read.material.coat, read.coat_texture, scene.textures.len()), (0.0, None, 0));
+        assert_eq!(
+            SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0].coat_texture,
+            GpuMaterial::NO_TEXTURE
+        );
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_coat_is_named() {
+    let message = |values: Value| error(textured(clearcoat(&values)));
+    let text = message(json!({ "clearcoatFactor": "much" }));
+    assert!(text.contains("material '#0': KHR_materials_clearcoat"), "{text}");
+    let missing = message(json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 7 } }));
+    assert!(missing.contains("textures[7]"), "{missing}");
+    let transformed = json!({ "clearcoatFactor": 1, "clearcoatRoughnessTexture": {
+        "index": 0, "extensions": { "KHR_texture_transform": {} } } });
+    assert_eq!(
+        warnings(&load(textured(clearcoat(&transformed)))),
+        ["material '#0': clearcoatRoughnessTexture: KHR_texture_transform is not supported: ignored"]
+    );
+}
+
+#[test]
+fn a_coat_has_a_normal_of_its_own_where_textures_bend_it_or_what_is_below() {
+    let effects = |normal: Value, coat: Value| {
+        let mut material = clearcoat(&coat);
+        if !normal.is_null() {
+            material["normalTexture"] = normal;
+        }
+        load(textured(material)).effects() & (Effects::COAT | Effects::COAT_NORMAL)
+    };
+    let texture = |scale: f32| json!({ "index": 0, "scale": scale });
+    let coat = |scale: Option<f32>| match scale {
+        None => json!({ "clearcoatFactor": 1 }),
+        Some(scale) => json!({ "clearcoatFactor": 1, "clearcoatNormalTexture": texture(scale) }),
+    };
+    let both = Effects::COAT | Effects::COAT_NORMAL;
+    assert_eq!(effects(Value::Null, coat(None)), Effects::COAT);
+    assert_eq!(effects(texture(1.0), coat(None)), both);
+    assert_eq!(effects(Value::Null, coat(Some(1.0))), both);
+    assert_eq!(effects(texture(1.0), coat(Some(0.5))), both);
+    // Both are bent alike
+    assert_eq!(effects(texture(0.5), coat(Some(0.5))), Effects::COAT);
+    // No weight, no coat
+    assert_eq!(effects(texture(1.0), json!({ "clearcoatFactor": 0 })), Effects::empty());
 }
 
 #[test]
@@ -186,7 +262,8 @@ fn effects_are_what_the_scene_calls_for() {
                         "extensions": { "KHR_materials_specular": { "specularFactor": 0 } } });
     let matte = load(panel_with(matte));
     assert_eq!(calls(&matte), ["diffuse: material 'matte'", "specular_input: material 'matte'"]);
-    assert_eq!(Effects::SURFACES - matte.effects(), Effects::GLOSSY);
+    let others = Effects::GLOSSY | Effects::COAT | Effects::COAT_NORMAL;
+    assert_eq!(Effects::SURFACES - matte.effects(), others);
     let black = json!({ "name": "black", "pbrMetallicRoughness": {
         "metallicFactor": 0, "baseColorFactor": [0, 0, 0, 1] } });
     assert_eq!(calls(&load(panel_with(black.clone()))), ["glossy: material 'black'"]);

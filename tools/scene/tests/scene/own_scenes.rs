@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{clock, demo, lamps, room, screen, sweep, test_card};
+use crate::{clock, coats, demo, lamps, room, screen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -36,6 +36,7 @@ fn the_files_are_what_the_program_makes() {
         ("screen.glb", screen::glb()),
         ("shapes.glb", lamps::glb()),
         ("clock.glb", clock::glb()),
+        ("coats.glb", coats::glb()),
     ];
     for (name, bytes) in scenes {
         let file = std::fs::read(path(name)).unwrap();
@@ -55,6 +56,20 @@ fn the_sweep_covers_roughness_and_metalness_under_one_rectangle() {
     }
     assert_eq!((scene.lights.len(), scene.lights[0].shape.vertices().len()), (1, 4));
     assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY);
+}
+
+#[test]
+fn the_coats_lie_on_every_base_and_beside_each_is_the_same_without() {
+    let scene = load("coats.glb");
+    for (name, ..) in coats::BASES {
+        let material = |name: &str| &scene.materials.iter().find(|m| m.name == name).unwrap().material;
+        let (without, with) = (material(name), material(&format!("{name}, coated")));
+        assert_eq!((without.coat, with.coat), (0.0, 1.0), "{name}");
+        assert_eq!((without.base_color, without.roughness), (with.base_color, with.roughness), "{name}");
+    }
+    let coats = Effects::COAT | Effects::COAT_NORMAL;
+    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | coats);
+    assert_eq!(scene.lights.len(), 4);
 }
 
 /// Whether an outline turns both ways.
@@ -87,11 +102,8 @@ fn the_room_has_outlines_of_many_kinds() {
 #[test]
 fn the_demo_shows_what_there_is() {
     let scene = load("demo.glb");
-    assert_eq!(
-        scene.effects(),
-        Effects::all() - Effects::IMAGES - Effects::SHAPES - Effects::MESH,
-        "screen.glb has textures"
-    );
+    let elsewhere = Effects::IMAGES | Effects::SHAPES | Effects::MESH | Effects::COAT | Effects::COAT_NORMAL;
+    assert_eq!(scene.effects(), Effects::all() - elsewhere, "screen.glb has textures, coats.glb coats");
     let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
     assert_eq!(letters.len(), 3);
     assert!(letters.iter().all(|letter| is_concave(letter)));
@@ -110,8 +122,8 @@ fn the_demo_shows_what_there_is() {
 #[test]
 fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let scene = load("screen.glb");
-    let others = Effects::SPECULAR_INPUT | Effects::SHAPES | Effects::TEXTURED_ELLIPSE | Effects::MESH;
-    assert_eq!(scene.effects(), Effects::all() - others);
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
+    assert_eq!(scene.effects(), lobes | Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED);
     let layer = |name: &str| {
         let light = scene.lights.iter().find(|light| light.name == name).unwrap();
         light.texture.as_ref().map(|texture| texture.layer)
