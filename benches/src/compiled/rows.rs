@@ -204,10 +204,12 @@ fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: boo
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
 }
 
+/// `kinds`: of lights, and what coats need.
 fn classify(lights: &'static str, level: &'static str, kinds: Effects, cull_threshold: f32) -> Row {
     let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
     let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
-    let specialization = plan::classify_specialization(ShadeOptions::default(), frame, tiles);
+    let options = ShadeOptions { surfaces: LOBES | (kinds & COATS), ..ShadeOptions::default() };
+    let specialization = plan::classify_specialization(options, frame, tiles);
     row(&kernels::CLASSIFY, lights, level, None, specialization)
 }
 
