@@ -24,6 +24,7 @@
 //   lights/*                       a file per kind of light
 //   light_kind.glsl                the loop over lobes
 //   textures/*                     what a lobe sees of a light's image
+//   shadows/*                      rays drawn from the lobes, for hosts that trace: shadow_sampling.glsl, included by itself
 #include "arealight/material.glsl"
 #if AREALIGHT_QUADS
 #include "arealight/lights/quad.glsl"
