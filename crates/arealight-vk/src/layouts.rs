@@ -7,6 +7,19 @@ use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
 use std::sync::Arc;
 
+/// The sampler of every binding of [`BindingKind::FilteredImage`], which is immutable in our layouts: trilinear, clamped to the edge. For hosts that
+/// make layouts of our kernels themselves.
+pub fn filtered_image_sampler() -> vk::SamplerCreateInfo<'static> {
+    vk::SamplerCreateInfo::default()
+        .mag_filter(vk::Filter::LINEAR)
+        .min_filter(vk::Filter::LINEAR)
+        .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
+        .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+        .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+        .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
+        .max_lod(vk::LOD_CLAMP_NONE)
+}
+
 /// What every pipeline of a kernel has in common: a descriptor set is for all that share it.
 #[derive(Debug)]
 pub(crate) struct Layouts {
@@ -40,14 +53,7 @@ impl Layouts {
     }
 
     fn make_sampler(&mut self) -> Result<(), Error> {
-        let info = vk::SamplerCreateInfo::default()
-            .mag_filter(vk::Filter::LINEAR)
-            .min_filter(vk::Filter::LINEAR)
-            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
-            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .max_lod(vk::LOD_CLAMP_NONE);
+        let info = filtered_image_sampler();
         // SAFETY: the device is valid by the contract of Context::new.
         self.sampler = unsafe { self.context.device.create_sampler(&info, None) }.call("vkCreateSampler")?;
         Ok(())

@@ -49,6 +49,7 @@ pub use ash;
 pub use context::{Context, HostDevice};
 pub use error::Error;
 pub use formats::ShadeFormats;
+pub use layouts::filtered_image_sampler;
 pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use prune::prune;

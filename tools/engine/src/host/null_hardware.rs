@@ -252,14 +252,7 @@ impl<'a> Made<'a> {
     }
 
     fn make_layout(&mut self, shader: &ComputeShader) -> Result<(), HostError> {
-        let info = vk::SamplerCreateInfo::default()
-            .mag_filter(vk::Filter::LINEAR)
-            .min_filter(vk::Filter::LINEAR)
-            .mipmap_mode(vk::SamplerMipmapMode::LINEAR)
-            .address_mode_u(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_v(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .address_mode_w(vk::SamplerAddressMode::CLAMP_TO_EDGE)
-            .max_lod(vk::LOD_CLAMP_NONE);
+        let info = arealight_vk::filtered_image_sampler();
         // SAFETY: The device is alive; so for every call of this function, whose infos outlive them.
         self.sampler = unsafe { self.device.create_sampler(&info, None) }.named("vkCreateSampler")?;
 

@@ -3,6 +3,7 @@
 mod clock;
 mod coats;
 mod demo;
+mod files;
 mod lamps;
 mod room;
 mod screen;
@@ -17,16 +18,7 @@ fn main() -> std::io::Result<()> {
     let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let folder = std::env::args_os().nth(1).map_or(default, PathBuf::from);
     std::fs::create_dir_all(&folder)?;
-    let scenes = [
-        ("sweep.glb", sweep::glb()),
-        ("room.glb", room::glb()),
-        ("demo.glb", demo::glb()),
-        ("screen.glb", screen::glb()),
-        ("shapes.glb", lamps::glb()),
-        ("clock.glb", clock::glb()),
-        ("coats.glb", coats::glb()),
-    ];
-    for (name, bytes) in scenes {
+    for (name, bytes) in files::files() {
         let path = folder.join(name);
         println!("{}: {} bytes", path.display(), bytes.len());
         std::fs::write(path, bytes)?;

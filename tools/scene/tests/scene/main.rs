@@ -17,6 +17,8 @@ mod clock;
 mod coats;
 #[path = "../../examples/make_scenes/demo.rs"]
 mod demo;
+#[path = "../../examples/make_scenes/files.rs"]
+mod files;
 #[path = "../../examples/make_scenes/lamps.rs"]
 mod lamps;
 #[path = "../../examples/make_scenes/room.rs"]

@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{clock, coats, demo, lamps, room, screen, sweep, test_card};
+use crate::{clock, coats, files, lamps, room, screen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -29,16 +29,7 @@ fn load(name: &str) -> Scene {
 
 #[test]
 fn the_files_are_what_the_program_makes() {
-    let scenes = [
-        ("sweep.glb", sweep::glb()),
-        ("room.glb", room::glb()),
-        ("demo.glb", demo::glb()),
-        ("screen.glb", screen::glb()),
-        ("shapes.glb", lamps::glb()),
-        ("clock.glb", clock::glb()),
-        ("coats.glb", coats::glb()),
-    ];
-    for (name, bytes) in scenes {
+    for (name, bytes) in files::files() {
         let file = std::fs::read(path(name)).unwrap();
         assert!(file.len() < 300_000, "{name} has {} bytes", file.len());
         assert!(file == bytes, "{name} is stale: cargo run -p arealight-scene --example make_scenes");
