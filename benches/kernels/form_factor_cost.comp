@@ -19,7 +19,7 @@ layout(constant_id = 1) const int REPEATS = 1;
 const int METHOD_LEVEL = 1;
 const int METHOD_QUAD = 0;
 const int METHOD_BOTH = 8;
-const int METHOD_WALK = 12;
+const int METHOD_POLYGON = 12;
 const int METHOD_NOTHING = 16;
 const int METHOD_YARDSTICK = 17; // plus a school of yardsticks.glsl
 
@@ -49,7 +49,7 @@ vec3 outline_vector(ArealightQuad quad) {
 
 // The library's form factor of a quad given as offsets from `center`, in a space; where both horizons clip, a tilted one.
 float library(vec3 center, ArealightQuad quad) {
-    if ((METHOD & ~METHOD_LEVEL) == METHOD_WALK) {
+    if ((METHOD & ~METHOD_LEVEL) == METHOD_POLYGON) {
         return arealight_form_factor(outline_vector(moved(quad, center)));
     }
     mat3 space = (METHOD & ~METHOD_LEVEL) == METHOD_BOTH ? mat3(0.8, 0.0, -0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8) : mat3(1.0);

@@ -1,7 +1,7 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
-// Triangles, materials and textures of a scene: crates/arealight/src/gpu.rs has the same structures, and a
+// Triangles, materials and textures of a scene: tools/kernels/src/gpu.rs has the same structures, and a
 // test compares the offsets.
 
 #include "arealight/surface.glsl"

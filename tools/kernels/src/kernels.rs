@@ -72,7 +72,7 @@ pub static REFERENCE: Kernel = Kernel {
     bindings: &[
         LIGHTS,
         LIGHT_VERTICES,
-        read("light_sampling", BindingKind::StorageBuffer, "GpuLightSampling[], one a light"),
+        read("light_sampling", BindingKind::StorageBuffer, "GpuLightSampling[]: a record per light"),
         read("light_triangles", BindingKind::StorageBuffer, "GpuLightTriangle[]"),
         G_POSITION,
         G_NORMAL,

@@ -50,6 +50,27 @@ ArealightQuad arealight_turned(ArealightQuad quad) {
     return quad;
 }
 
+// What is above the horizon of a quad that crosses it, as five vertices in the order of the outline: from where it comes up to where it
+// goes down. With fewer than three vertices above, the last ones are the same.
+struct ArealightCutQuad {
+    vec3 entry;
+    vec3 a;
+    vec3 b;
+    vec3 c;
+    vec3 exit;
+    bool has_c; // three vertices are above
+};
+
+ArealightCutQuad arealight_cut_at_horizon(ArealightQuad quad) {
+    ArealightQuad turned = arealight_turned(quad);
+    bool b_above = turned.b.z > 0.0;
+    bool c_above = b_above && turned.c.z > 0.0;
+    vec3 entry = arealight_cut(turned.a, turned.d);
+    vec3 exit = arealight_cut(c_above ? turned.c : b_above ? turned.b : turned.a,
+                              c_above ? turned.d : b_above ? turned.c : turned.b);
+    return ArealightCutQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit, exit, c_above);
+}
+
 // The arcs around a quad that is wholly above the horizon.
 vec3 arealight_quad_above(ArealightQuad quad) {
     vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);

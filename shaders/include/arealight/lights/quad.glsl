@@ -44,15 +44,10 @@ ArealightQuad arealight_moved(ArealightQuad quad, vec3 by) {
 
 // Cuts a quad that crosses the surface's horizon into a quad and, where three vertices are above, a triangle.
 void arealight_cut_quad(inout ArealightLocalQuad local) {
-    ArealightQuad turned = arealight_turned(local.quad);
-    bool b_above = turned.b.z > 0.0;
-    bool c_above = b_above && turned.c.z > 0.0;
-    vec3 entry = arealight_cut(turned.a, turned.d);
-    vec3 exit = arealight_cut(c_above ? turned.c : b_above ? turned.b : turned.a,
-                              c_above ? turned.d : b_above ? turned.c : turned.b);
-    local.quad = ArealightQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit);
-    local.triangle = ArealightQuad(entry, turned.c, exit, exit);
-    local.has_triangle = c_above;
+    ArealightCutQuad cut = arealight_cut_at_horizon(local.quad);
+    local.quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
+    local.triangle = ArealightQuad(cut.entry, cut.c, cut.exit, cut.exit);
+    local.has_triangle = cut.has_c;
 }
 
 // Takes a quad whose center is at `center` in the shading frame there, and clips it at the surface's horizon where that is on. False

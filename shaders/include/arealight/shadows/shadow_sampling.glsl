@@ -24,14 +24,8 @@ ArealightSamplingPolygon arealight_sampling_polygon(ArealightQuad quad) {
     } else if (arealight_highest(quad) <= 0.0) {
         polygon.vertices = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
     } else {
-        // From where the outline comes up, on to where it goes down
-        ArealightQuad turned = arealight_turned(quad);
-        bool b_above = turned.b.z > 0.0;
-        bool c_above = b_above && turned.c.z > 0.0;
-        vec3 entry = arealight_cut(turned.a, turned.d);
-        vec3 exit = arealight_cut(c_above ? turned.c : b_above ? turned.b : turned.a,
-                                  c_above ? turned.d : b_above ? turned.c : turned.b);
-        polygon.vertices = vec3[](entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit, exit);
+        ArealightCutQuad cut = arealight_cut_at_horizon(quad);
+        polygon.vertices = vec3[](cut.entry, cut.a, cut.b, cut.c, cut.exit);
     }
     return polygon;
 }
