@@ -6,6 +6,14 @@
 
 const int POSITION_FROM_DEPTH = 1;
 
+// The position of a pixel's centre at a depth.
+vec3 position_at_depth(ivec2 pixel, ivec2 size, float depth) {
+    // Vulkan's clip space has y down, as pixels have
+    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
+    vec4 homogeneous = constants.position_from_clip * vec4(clip, depth, 1.0);
+    return homogeneous.xyz / homogeneous.w;
+}
+
 // The pixel's position relative to the origin; false where there is no surface.
 bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
     vec4 texel = texelFetch(g_position, pixel, 0);
@@ -13,10 +21,7 @@ bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
         position = texel.xyz;
         return texel.w != 0.0;
     }
-    // Unproject the pixel's centre; Vulkan's clip space has y down, as pixels have
-    vec2 clip = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
-    vec4 homogeneous = constants.position_from_clip * vec4(clip, texel.x, 1.0);
-    position = homogeneous.xyz / homogeneous.w;
+    position = position_at_depth(pixel, size, texel.x);
     return texel.x > 0.0 && texel.x < 1.0;
 }
 

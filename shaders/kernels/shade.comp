@@ -15,6 +15,7 @@ layout(push_constant, std430) uniform ShadeConstants {
     uint light_count;
     uint shape_count;
     uint quad_count; // of the first lights: convex quads without an image
+    uint seed;       // of shadow rays
 } constants;
 
 const bool HAS_LIGHTS = true;

@@ -8,6 +8,7 @@
 // - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other polygons and meshes,
 //   shapes.
 
+#include "pick_lights.glsl"
 #include "position.glsl"
 
 const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
@@ -15,21 +16,32 @@ const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
 const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
 
-void shade_polygon(inout PixelRadiance sum, ArealightPoint point, ArealightGpuLight record) {
-    if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
-        add_light(sum, record.radiance, arealight_reflected(point, load_mesh(record)));
-    } else {
-        add_light(sum, record.radiance, arealight_reflected(point, load_polygon(record)));
+// Adds what is reflected of the light of this radiance at an index, of PICK_SHAPE or 0.
+void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightReflected reflected) {
+    add_light(sum, radiance, reflected);
+    if (HAS_SHADOWS) {
+        pick_light(index, radiance * reflected.diffuse, radiance * reflected.specular);
     }
 }
 
-void shade_shape(inout PixelRadiance sum, ArealightPoint point, ArealightGpuShape record) {
+void shade_polygon(inout PixelRadiance sum, ArealightPoint point, uint index) {
+    ArealightGpuLight record = lights[index];
+    if (HAS_MESHES && (record.flags & LIGHT_MESH) != 0u) {
+        add_light_at(sum, index, record.radiance, arealight_reflected(point, load_mesh(record)));
+    } else {
+        add_light_at(sum, index, record.radiance, arealight_reflected(point, load_polygon(record)));
+    }
+}
+
+void shade_shape(inout PixelRadiance sum, ArealightPoint point, uint index) {
+    ArealightGpuShape record = shapes[index];
+    uint pick = PICK_SHAPE | index;
     if (HAS_TUBES && record.kind == SHAPE_TUBE) {
-        add_light(sum, record.radiance, arealight_reflected(point, load_tube(record)));
+        add_light_at(sum, pick, record.radiance, arealight_reflected(point, load_tube(record)));
     } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
-        add_light(sum, record.radiance, arealight_reflected(point, load_sphere(record)));
+        add_light_at(sum, pick, record.radiance, arealight_reflected(point, load_sphere(record)));
     } else if (HAS_DISKS && record.kind == SHAPE_DISK) {
-        add_light(sum, record.radiance, arealight_reflected(point, load_disk(record)));
+        add_light_at(sum, pick, record.radiance, arealight_reflected(point, load_disk(record)));
     }
 }
 
@@ -38,18 +50,19 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_QUADS) {
         for (uint index = 0u; index < list.quad_count; index++) {
-            ArealightGpuLight record = lights[light_at(list, index)];
-            add_light(sum, record.radiance, arealight_reflected(point, load_quad(record)));
+            uint light = light_at(list, index);
+            ArealightGpuLight record = lights[light];
+            add_light_at(sum, light, record.radiance, arealight_reflected(point, load_quad(record)));
         }
     }
     if (HAS_POLYGONS) {
         for (uint index = list.quad_count; index < list.light_count; index++) {
-            shade_polygon(sum, point, lights[light_at(list, index)]);
+            shade_polygon(sum, point, light_at(list, index));
         }
     }
     if (HAS_SHAPES) {
         for (uint index = 0u; index < list.shape_count; index++) {
-            shade_shape(sum, point, shapes[shape_at(list, index)]);
+            shade_shape(sum, point, shape_at(list, index));
         }
     }
     return sum;
@@ -63,8 +76,14 @@ void shade_pixel(ivec2 pixel, ivec2 size, LightList list) {
     vec3 position;
     bool hit = load_position(pixel, size, position);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
+    if (HAS_SHADOWS) {
+        begin_picks(pixel);
+    }
     if (HAS_LIGHTS && hit) {
         sum = shade_surface(pixel, position, list);
+    }
+    if (HAS_SHADOWS) {
+        store_picks(pixel, size);
     }
     store_radiance(pixel, hit, sum);
 }

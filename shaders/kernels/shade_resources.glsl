@@ -14,6 +14,7 @@ layout(constant_id = 5) const int FRESNEL = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
+layout(constant_id = 15) const int SHADOW_RAYS = 0;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
@@ -23,6 +24,7 @@ layout(constant_id = 13) const int LAYOUT = 0;
 #define SHAPES_BINDING 9
 #define GLOSSY_BINDING 10
 #define COAT_BINDING 11
+#define PICKS_BINDING 12
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "table_image.glsl"

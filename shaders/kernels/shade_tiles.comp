@@ -11,7 +11,7 @@
 layout(constant_id = 11) const bool HAS_QUADS = true;
 layout(constant_id = 12) const uint CLASS = 2u;
 
-#define TILE_LISTS_BINDING 12
+#define TILE_LISTS_BINDING 13
 #define TILE_LISTS_ACCESS readonly
 #include "tiles.glsl"
 

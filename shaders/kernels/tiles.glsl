@@ -35,6 +35,7 @@ layout(push_constant, std430) uniform TileConstants {
     uint shape_count;
     uint quad_count;
     float cull_threshold;
+    uint seed; // of shadow rays
 } constants;
 
 layout(set = 0, binding = TILE_LISTS_BINDING, std430) TILE_LISTS_ACCESS buffer TileLists {

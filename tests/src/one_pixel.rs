@@ -106,6 +106,7 @@ impl<'a> OnePixel<'a> {
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),
                 shapes: None,
+                picks: None,
                 tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
@@ -115,6 +116,7 @@ impl<'a> OnePixel<'a> {
                 position_from_clip: matrix,
                 lights: packed.summary(),
                 tile_lists: None,
+                seed: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

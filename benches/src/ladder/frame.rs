@@ -182,6 +182,7 @@ impl<'a> Frame<'a> {
                 light_count,
                 shape_count: 0,
                 quad_count: self.summary.quad_count.min(light_count),
+                seed: 0,
             };
             return device_seconds(self.engine, |commands| {
                 // SAFETY: `commands` is being recorded, outside a render pass.

@@ -149,6 +149,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
             "radiance_format",
         )?,
+        shadow_rays: 0,
     })
 }
 
@@ -230,6 +231,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
             radiance: stored(resources.radiance),
             glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
+            picks: None,
             tiles: pass.tiles().map(|_| TileResources {
                 lobe_horizons: buffer(resources.lobe_horizons),
                 tile_lists: buffer(resources.tile_lists),
@@ -323,6 +325,7 @@ unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
         position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
         lights: read_summary(frame.lights)?,
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
+        seed: 0,
     })
 }
 

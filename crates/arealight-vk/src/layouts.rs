@@ -25,6 +25,8 @@ pub fn filtered_image_sampler() -> vk::SamplerCreateInfo<'static> {
 pub(crate) struct Layouts {
     context: Context,
     kernel: &'static Kernel,
+    /// Of set 1, where a module of the host's reads what is the host's.
+    host_set: Option<vk::DescriptorSetLayout>,
     sampler: vk::Sampler,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
@@ -34,11 +36,25 @@ impl Layouts {
     /// # Safety
     /// They are dropped before the device is destroyed, when no recorded use of them is pending.
     pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
+        // SAFETY: the same contract.
+        unsafe { Self::with_host_set(context, kernel, None) }
+    }
+
+    /// As [`Layouts::new`], with the layout of a second set, which is the host's.
+    ///
+    /// # Safety
+    /// As [`Layouts::new`]; the layout is valid until they are dropped.
+    pub(crate) unsafe fn with_host_set(
+        context: &Context,
+        kernel: &'static Kernel,
+        host_set: Option<vk::DescriptorSetLayout>,
+    ) -> Result<Arc<Self>, Error> {
         check_limits(context, kernel)?;
         // Handles that were made before a later call fails are destroyed with these half-made layouts
         let mut layouts = Self {
             context: context.clone(),
             kernel,
+            host_set,
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
@@ -81,7 +97,7 @@ impl Layouts {
         self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
             .call("vkCreateDescriptorSetLayout")?;
 
-        let set_layouts = [self.set_layout];
+        let set_layouts: Vec<_> = std::iter::once(self.set_layout).chain(self.host_set).collect();
         let ranges = [vk::PushConstantRange::default()
             .stage_flags(vk::ShaderStageFlags::COMPUTE)
             .size(self.kernel.push_constant_size)];
@@ -99,6 +115,11 @@ impl Layouts {
 
     pub(crate) fn pipeline_layout(&self) -> vk::PipelineLayout {
         self.pipeline_layout
+    }
+
+    /// Whether set 1 is the host's.
+    pub(crate) fn has_host_set(&self) -> bool {
+        self.host_set.is_some()
     }
 
     pub(crate) fn set_layout(&self) -> vk::DescriptorSetLayout {

@@ -24,6 +24,7 @@
 //!     position_from_clip: None,
 //!     lights: packed.summary(),
 //!     tile_lists: None,
+//!     seed: 0,
 //! };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;
 //! # Ok(()) }
@@ -41,6 +42,7 @@ mod pass;
 mod pipelines;
 mod prune;
 mod shade;
+mod shadows;
 mod table_image;
 mod tiles;
 mod written_sets;
@@ -54,5 +56,6 @@ pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use prune::prune;
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
+pub use shadows::{BlockerResources, ShadowOptions, ShadowPass, ShadowResources};
 pub use table_image::{TableFormat, TableImage};
 pub use tiles::{TileMemory, TileResources};

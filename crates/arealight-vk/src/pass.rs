@@ -193,24 +193,24 @@ impl ComputePass {
     ) -> Result<(), Error> {
         self.layouts.check(self.kernel, set, constants, groups)?;
         // SAFETY: the same contract.
-        unsafe { self.record_checked(command_buffer, set, constants, groups) };
+        unsafe { self.record_checked(command_buffer, &[set], constants, groups) };
         Ok(())
     }
 
-    /// Records what passed [`Layouts::check`].
+    /// Records what passed [`Layouts::check`], with descriptor sets from 0 on.
     ///
     /// # Safety
     /// As [`ComputePass::record`].
     pub(crate) unsafe fn record_checked(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
+        sets: &[vk::DescriptorSet],
         constants: &[u8],
         groups: [u32; 3],
     ) {
         // SAFETY: the same contract.
         unsafe {
-            self.bind(command_buffer, set, constants);
+            self.bind(command_buffer, sets, constants);
             self.layouts.context().device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
         }
     }
@@ -229,13 +229,13 @@ impl ComputePass {
     ) {
         // SAFETY: the same contract.
         unsafe {
-            self.bind(command_buffer, set, constants);
+            self.bind(command_buffer, &[set], constants);
             self.layouts.context().device.cmd_dispatch_indirect(command_buffer, buffer, offset);
         }
     }
 
-    /// Binds the pipeline, its descriptor set and its push constants.
-    unsafe fn bind(&self, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, constants: &[u8]) {
+    /// Binds the pipeline, its descriptor sets and its push constants.
+    unsafe fn bind(&self, command_buffer: vk::CommandBuffer, sets: &[vk::DescriptorSet], constants: &[u8]) {
         let (device, layout) = (&self.layouts.context().device, self.layouts.pipeline_layout());
         // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
         unsafe {
@@ -245,7 +245,7 @@ impl ComputePass {
                 vk::PipelineBindPoint::COMPUTE,
                 layout,
                 0,
-                &[set],
+                sets,
                 &[],
             );
             device.cmd_push_constants(command_buffer, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);

@@ -8,7 +8,7 @@ use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Access, BindingKind, CLASSIFY, Kernel, SHADE, store_to};
-use arealight::plan::{self, PositionSource, RadianceImages, ShadeOptions, TileOptions};
+use arealight::plan::{self, Output, PositionSource, RadianceImages, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
@@ -44,6 +44,9 @@ pub struct ShadeResources {
     pub radiance: Resource,
     /// Where the glossy lobe's goes with [`RadianceImages::Separate`]: another image of that format. Else none.
     pub glossy: Option<Resource>,
+    /// With [`ShadeOptions::shadow_rays`], a buffer of [`ShadePass::picks_size`] bytes, which the pass writes and a
+    /// [`crate::ShadowPass`] reads. Else none.
+    pub picks: Option<Resource>,
     /// What a pass with tiles needs; others do not use it.
     pub tiles: Option<TileResources>,
 }
@@ -62,6 +65,8 @@ pub struct ShadeFrame {
     pub lights: LightSummary,
     /// With tiles, [`TileResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
     pub tile_lists: Option<Resource>,
+    /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each frame. Else ignored.
+    pub seed: u32,
 }
 
 /// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
@@ -142,6 +147,7 @@ impl ShadePass {
         table_size: u32,
     ) -> Result<Self, Error> {
         // SAFETY: the same contract; the modules are the kernels'.
+        check_shadows(options)?;
         unsafe {
             let layouts = Tiles::layouts(context)?;
             let tiles = Tiles::new(&layouts, options, tiles, table_size)?;
@@ -164,6 +170,7 @@ impl ShadePass {
         mut module: Vec<u32>,
     ) -> Result<Self, Error> {
         check_module(&module)?;
+        check_shadows(options)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
         let pipelines = unsafe { Pipelines::new(Layouts::new(context, &SHADE)?, &SHADE, module) };
@@ -183,6 +190,11 @@ impl ShadePass {
     /// What [`TileResources::tile_lists`] needs for images of `size` pixels; none in a pass without tiles.
     pub fn tile_memory(&self, size: [u32; 2]) -> Option<TileMemory> {
         self.tiles.as_ref().map(|tiles| tiles.memory(size))
+    }
+
+    /// How many bytes [`ShadeResources::picks`] needs for images of `size` pixels.
+    pub fn picks_size(&self, size: [u32; 2]) -> vk::DeviceSize {
+        4 * vk::DeviceSize::from(self.options.shadow_rays) * size.map(vk::DeviceSize::from).iter().product::<u64>()
     }
 
     /// The layout that the host allocates a descriptor set with.
@@ -230,6 +242,10 @@ impl ShadePass {
             let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
             return Err(Error::InvalidArgument { field: "coat", message });
         }
+        if resources.picks.is_none() && self.options.shadow_rays > 0 {
+            let message = "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
+            return Err(Error::InvalidArgument { field: "picks", message });
+        }
         let textures_place = match resources.table {
             Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
             other => other,
@@ -247,6 +263,7 @@ impl ShadePass {
             resources.shapes.unwrap_or(resources.lights),
             self.glossy_image(resources)?,
             resources.coat.unwrap_or(resources.base_color),
+            resources.picks.unwrap_or(resources.lights),
         ];
         if self.tiles.is_some() {
             let Some(tiles) = resources.tiles else {
@@ -322,7 +339,7 @@ impl ShadePass {
             // SAFETY: the same contract.
             unsafe {
                 let _label = names.label(command_buffer, c"arealight shade");
-                pass.record_checked(command_buffer, set, bytemuck::bytes_of(&constants), groups);
+                pass.record_checked(command_buffer, &[set], bytemuck::bytes_of(&constants), groups);
             }
         })
     }
@@ -340,31 +357,56 @@ impl ShadePass {
 
     /// The push constants of a frame.
     fn constants(&self, frame: &ShadeFrame) -> Result<ShadeConstants, Error> {
-        let position_from_clip = match (self.options.position, frame.position_from_clip) {
-            (PositionSource::Depth, None) => {
-                return Err(Error::InvalidArgument {
-                    field: "position_from_clip",
-                    message: "is missing, but the pass takes positions from depth".into(),
-                });
-            }
-            (_, matrix) => matrix.unwrap_or(Mat4::IDENTITY),
-        };
-        if !position_from_clip.is_finite() || !frame.camera.is_finite() {
-            let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
-            return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
-        }
+        let (position_from_clip, camera) = push_constants_of_view(self.options, frame)?;
         check_lights(frame.lights)?;
-        if frame.size.contains(&0) {
-            return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
-        }
         Ok(ShadeConstants {
-            position_from_clip: position_from_clip.to_cols_array_2d(),
-            camera: frame.camera.to_array(),
+            position_from_clip,
+            camera,
             light_count: frame.lights.light_count,
             shape_count: frame.lights.shape_count,
             quad_count: frame.lights.quad_count,
+            seed: frame.seed,
         })
     }
+}
+
+/// A frame's matrix from clip space and its camera, as kernels have them.
+pub(crate) fn push_constants_of_view(
+    options: ShadeOptions,
+    frame: &ShadeFrame,
+) -> Result<([[f32; 4]; 4], [f32; 3]), Error> {
+    let position_from_clip = match (options.position, frame.position_from_clip) {
+        (PositionSource::Depth, None) => {
+            return Err(Error::InvalidArgument {
+                field: "position_from_clip",
+                message: "is missing, but the pass takes positions from depth".into(),
+            });
+        }
+        (_, matrix) => matrix.unwrap_or(Mat4::IDENTITY),
+    };
+    if !position_from_clip.is_finite() || !frame.camera.is_finite() {
+        let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
+        return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
+    }
+    if frame.size.contains(&0) {
+        return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
+    }
+    Ok((position_from_clip.to_cols_array_2d(), frame.camera.to_array()))
+}
+
+/// Refuses options that no shadow can be made with.
+fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
+    let wrong = |field, message: &str| Err(Error::InvalidArgument { field, message: message.into() });
+    if options.shadow_rays > ShadeOptions::MOST_SHADOW_RAYS {
+        return wrong("shadow_rays", "is more than ShadeOptions::MOST_SHADOW_RAYS");
+    }
+    if options.shadow_rays > 0 && options.output != Output::Overwrite {
+        return wrong("output", "adds, but with shadow rays the unshadowed radiance has an image of its own: ShadowOptions::output adds");
+    }
+    if options.shadow_rays > 0 && options.images != RadianceImages::Combined {
+        return wrong("images", "are separate, but with shadow rays the lobes' radiance is one sum");
+    }
+    Ok(())
 }
 
 /// The names of bindings that may have nothing, in the manifest.

@@ -120,7 +120,7 @@ impl Tiles {
         if !self.options.classifies(frame.lights) {
             return Ok(None);
         }
-        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count } = constants;
+        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count, seed } = constants;
         let constants = TileConstants {
             position_from_clip,
             camera,
@@ -131,6 +131,7 @@ impl Tiles {
             shape_count,
             quad_count,
             cull_threshold: self.options.cull_threshold,
+            seed,
         };
         Ok(Some(TiledFrame { constants, lights: frame.lights, lists }))
     }
@@ -177,7 +178,7 @@ impl Tiles {
                 (compute, read | write),
             );
             self.classify.with(self.classify_constants(options, frame), |pass| {
-                pass.record_checked(command_buffer, set, bytes, groups);
+                pass.record_checked(command_buffer, &[set], bytes, groups);
             })?;
             self.record_barrier(
                 command_buffer,

@@ -93,6 +93,8 @@ pub struct ShadeConstants {
     pub shape_count: u32,
     /// How many of the first polygon lights are convex quads without a texture, see [`crate::LightSummary::quad_count`].
     pub quad_count: u32,
+    /// Of the random numbers that lights are picked for shadow rays with; other kernels do not read it.
+    pub seed: u32,
 }
 
 /// Push constants of the kernels that classify tiles and shade them.
@@ -117,6 +119,22 @@ pub struct TileConstants {
     pub quad_count: u32,
     /// As [`crate::plan::TileOptions::cull_threshold`].
     pub cull_threshold: f32,
+    /// As [`ShadeConstants::seed`].
+    pub seed: u32,
+}
+
+/// Push constants of the kernels that trace shadow rays and filter them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ShadowConstants {
+    /// As [`ShadeConstants::position_from_clip`].
+    pub position_from_clip: [[f32; 4]; 4],
+    /// The camera's position relative to the origin.
+    pub camera: [f32; 3],
+    /// Of the random numbers that rays are drawn with.
+    pub seed: u32,
+    /// The image's size in pixels.
+    pub size: [u32; 2],
 }
 
 /// How a class of tiles is dispatched.

@@ -167,6 +167,14 @@ const GLOSSY: Binding = write(
     "the glossy lobe's, likewise; used only with RadianceImages::Separate, else bind radiance_image's again",
 );
 
+const PICKS: Binding = write(
+    "shadow_picks",
+    BindingKind::StorageBuffer,
+    Access::Write,
+    "u32[]: of each pixel ShadeOptions::shadow_rays words, a light and a lobe for each ray; written only with shadow rays, else bind any \
+     buffer",
+);
+
 /// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].
 pub static SHADE: Kernel = Kernel {
     name: "shade",
@@ -186,6 +194,7 @@ pub static SHADE: Kernel = Kernel {
         SHAPES,
         GLOSSY,
         G_COAT,
+        PICKS,
     ],
     constants: &[
         constant::EFFECTS,
@@ -198,6 +207,7 @@ pub static SHADE: Kernel = Kernel {
         constant::FOOTPRINT,
         constant::HAS_QUADS,
         constant::LAYOUT,
+        constant::SHADOW_RAYS,
     ],
 };
 
@@ -230,6 +240,7 @@ pub static CLASSIFY: Kernel = Kernel {
         SHAPES,
         GLOSSY.unused(),
         G_COAT,
+        PICKS.unused(),
         TILE_LISTS,
         LOBE_HORIZONS,
     ],
@@ -264,6 +275,7 @@ pub static SHADE_TILES: Kernel = Kernel {
         SHAPES,
         GLOSSY,
         G_COAT,
+        PICKS,
         Binding { access: Access::Read, ..TILE_LISTS },
         LOBE_HORIZONS.unused(),
     ],
@@ -279,6 +291,103 @@ pub static SHADE_TILES: Kernel = Kernel {
         constant::HAS_QUADS,
         constant::CLASS,
         constant::LAYOUT,
+        constant::SHADOW_RAYS,
+    ],
+};
+
+const UNSHADOWED: Binding = read(
+    "unshadowed_image",
+    BindingKind::StorageImage,
+    "what the shade kernel stored at radiance_image (rgba32f, or by RadianceFormat)",
+);
+const SHADOW: Binding = write(
+    "shadow_image",
+    BindingKind::StorageImage,
+    Access::ReadWrite,
+    "of the light of a pixel: the part that arrives, the penumbra's width, 1 where there is light, how many rays (rgba16f)",
+);
+const SHADOWED: Binding = write(
+    "radiance_image",
+    BindingKind::StorageImage,
+    Access::ReadWrite,
+    "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be unshadowed_image's",
+);
+const BLOCKER_NODES: Binding =
+    read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
+const BLOCKER_TRIANGLES: Binding = read(
+    "blocker_triangles",
+    BindingKind::StorageBuffer,
+    "Blockers::triangles: GpuBlockerTriangle[]",
+);
+
+/// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants: [`crate::gpu::ShadowConstants`].
+pub static SHADOW_RAYS: Kernel = Kernel {
+    name: "shadow_rays",
+    spirv: include_bytes!("../spirv/shadow_rays.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
+    bindings: &[
+        TABLE,
+        LIGHTS,
+        LIGHT_VERTICES,
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        UNSHADOWED.unused(),
+        SHAPES,
+        G_COAT,
+        Binding { access: Access::Read, ..PICKS },
+        SHADOW,
+        SHADOWED.unused(),
+        BLOCKER_NODES,
+        BLOCKER_TRIANGLES,
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::POSITION_SOURCE,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::LAYOUT,
+        constant::SHADOW_RAYS,
+    ],
+};
+
+/// Multiplies unshadowed radiance with what the rays of [`SHADOW_RAYS`] say of it. Its descriptor set is that kernel's. Push constants:
+/// [`crate::gpu::ShadowConstants`].
+pub static SHADOW_FILTER: Kernel = Kernel {
+    name: "shadow_filter",
+    spirv: include_bytes!("../spirv/shadow_filter.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
+    bindings: &[
+        TABLE.unused(),
+        LIGHTS.unused(),
+        LIGHT_VERTICES.unused(),
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        UNSHADOWED,
+        SHAPES.unused(),
+        G_COAT,
+        PICKS.unused(),
+        SHADOW,
+        SHADOWED,
+        BLOCKER_NODES.unused(),
+        BLOCKER_TRIANGLES.unused(),
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::POSITION_SOURCE,
+        constant::OUTPUT,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::LAYOUT,
+        constant::SHADOW_RAYS,
+        constant::SHADOW_FILTER,
     ],
 };
 
@@ -315,7 +424,8 @@ pub static TEXTURE_BLUR: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 5] = [&SHADE, &CLASSIFY, &SHADE_TILES, &TEXTURE_LOAD, &TEXTURE_BLUR];
+pub static ALL: [&Kernel; 7] =
+    [&SHADE, &CLASSIFY, &SHADE_TILES, &SHADOW_RAYS, &SHADOW_FILTER, &TEXTURE_LOAD, &TEXTURE_BLUR];
 
 #[cfg(test)]
 mod tests {

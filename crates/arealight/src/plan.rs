@@ -90,6 +90,9 @@ pub struct ShadeOptions {
     pub images: RadianceImages,
     /// Their format.
     pub format: RadianceFormat,
+    /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a light and a lobe for each. With 0
+    /// there are no shadows, and the pipeline has nothing of them.
+    pub shadow_rays: u32,
 }
 
 impl Default for ShadeOptions {
@@ -103,11 +106,15 @@ impl Default for ShadeOptions {
             output: Output::default(),
             images: RadianceImages::default(),
             format: RadianceFormat::default(),
+            shadow_rays: 0,
         }
     }
 }
 
 impl ShadeOptions {
+    /// The most shadow rays of a pixel.
+    pub const MOST_SHADOW_RAYS: u32 = 4;
+
     /// The effects of a pipeline: what surfaces need, and `lights`.
     pub fn effects(self, lights: LightSummary) -> Effects {
         (self.surfaces & Effects::SURFACES) | (lights.effects - Effects::SURFACES)
@@ -159,6 +166,7 @@ pub fn shade_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
         (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
+        (kernels::constant::SHADOW_RAYS, options.shadow_rays),
     ]);
     values
 }
@@ -189,6 +197,44 @@ impl Default for TileOptions {
     fn default() -> Self {
         Self { capacity: 128, cull_threshold: 0.0, least_quads: 4 }
     }
+}
+
+/// What the mean of a pixel's shadow rays becomes before it is multiplied with the unshadowed radiance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum ShadowFilter {
+    /// Nothing: unbiased, with noise in penumbras.
+    Off = 0,
+    /// A mean over neighbours in the same plane, as wide as a fifth of the penumbra and at least two pixels.
+    #[default]
+    Gather = 1,
+}
+
+/// The values of the constants of the kernel [`kernels::SHADOW_RAYS`].
+pub fn shadow_rays_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
+    vec![
+        (kernels::constant::EFFECTS, (options.surfaces & Effects::SURFACES).bits()),
+        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::HORIZON, options.quality.horizon as u32),
+        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
+        (kernels::constant::LOBES, options.quality.lobes as u32),
+        (kernels::constant::LAYOUT, options.g_buffer as u32),
+        (kernels::constant::SHADOW_RAYS, options.shadow_rays),
+    ]
+}
+
+/// The values of the constants of the kernel [`kernels::SHADOW_FILTER`], which stores by `output` in the format of `options`.
+pub fn shadow_filter_specialization(
+    options: ShadeOptions,
+    filter: ShadowFilter,
+    output: Output,
+) -> Vec<(u32, u32)> {
+    let mut values = shadow_rays_specialization(options);
+    values.extend([
+        (kernels::constant::OUTPUT, output as u32 | options.format as u32),
+        (kernels::constant::SHADOW_FILTER, filter as u32),
+    ]);
+    values
 }
 
 /// The values of the classify kernel's specialisation constants, for the lights of a frame.

@@ -171,6 +171,7 @@ impl<'a> Deferred<'a> {
                 coat: None,     // without Effects::COAT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
                 glossy: None, // its radiance is in that image too, without RadianceImages::Separate
+                picks: None, // without shadow rays
                 tiles: Some(TileResources {
                     lobe_horizons: Resource::buffer(lobe_horizons.raw),
                     tile_lists: Resource::buffer(place.tile_lists.raw),
@@ -243,6 +244,7 @@ impl<'a> Deferred<'a> {
                 position_from_clip: Some(camera.clip_from_view.inverse()),
                 lights: packed.summary(),
                 tile_lists: Some(Resource::buffer(place.tile_lists.raw)),
+                seed: 0,
             };
             // SAFETY: the commands are being recorded; buffers and sets are this place's.
             unsafe {

@@ -65,6 +65,11 @@ float arealight_horizon_width(mat3 space) {
     return AREALIGHT_HORIZON_WIDTH * sqrt(dot(height, height) / (longest + AREALIGHT_TINY));
 }
 
+// Relative luminance of linear Rec. 709 colours.
+float arealight_luminance(vec3 color) {
+    return dot(color, vec3(0.2126, 0.7152, 0.0722));
+}
+
 // The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided light, else 0. A point
 // in the light's plane is on neither side, so that a light in the plane of a surface does not light it by the last bit. `offset`
 // goes from the point to the light's center; `normal` is that of the front, unit. 0 where a component of `offset` is not finite.

@@ -175,6 +175,7 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         glossy: None,
         light_textures: None,
         shapes: Some(Resource::buffer(shape_buffer.handle())),
+        picks: None,
         tiles: None,
     };
     let frame = ShadeFrame {
@@ -183,6 +184,7 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         position_from_clip: None,
         lights: packed.summary(),
         tile_lists: None,
+        seed: 0,
     };
     // SAFETY: the set is new, and what it points to lives until the submission was waited for.
     unsafe {

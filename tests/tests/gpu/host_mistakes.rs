@@ -211,6 +211,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
             position_from_clip: None,
             lights: LightSummary::default(),
             tile_lists: None,
+            seed: 0,
         };
         let none = vk::DescriptorSet::null();
         engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();

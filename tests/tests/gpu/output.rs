@@ -115,6 +115,7 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         glossy: None,
         light_textures: None,
         shapes: None,
+        picks: None,
         tiles: None,
     };
     let apart = ShadeOptions { images: RadianceImages::Separate, ..ShadeOptions::default() };

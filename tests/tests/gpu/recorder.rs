@@ -23,6 +23,7 @@ fn frame() -> ShadeFrame {
         position_from_clip: None,
         lights: LightSummary::default(),
         tile_lists: None,
+        seed: 0,
     }
 }
 

@@ -56,6 +56,7 @@ impl Images {
             glossy: None,
             light_textures: None,
             shapes: None,
+            picks: None,
             tiles: None,
         };
         // SAFETY: the set is new; tests wait before the images go.
@@ -144,6 +145,7 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
             position_from_clip: None,
             lights: packed.summary(),
             tile_lists: None,
+            seed: 0,
         };
         // SAFETY: the commands are being recorded, with a set of images of at least this size.
         unsafe { pass.record(commands, images.set, &frame) }.unwrap();

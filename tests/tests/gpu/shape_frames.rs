@@ -181,6 +181,7 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             glossy: None,
             light_textures: Some(engine.light_textures()),
             shapes: Some(Resource::buffer(buffer.handle())),
+            picks: None,
             tiles: None,
         };
         pass.write_set(set, &resources).expect("resources");
@@ -190,6 +191,7 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             position_from_clip: None,
             lights: LightSummary { effects: effects | packed.summary().effects, ..packed.summary() },
             tile_lists: None,
+            seed: 0,
         };
         host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
     }

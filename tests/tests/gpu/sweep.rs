@@ -162,6 +162,7 @@ impl<'a> Sweep<'a> {
                 glossy: None,
                 light_textures: None,
                 shapes: None,
+                picks: None,
                 tiles: None,
             };
             pass.write_set(set, &resources).unwrap();
@@ -171,6 +172,7 @@ impl<'a> Sweep<'a> {
                 position_from_clip: None,
                 lights: self.packed.summary(),
                 tile_lists: None,
+                seed: 0,
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

@@ -153,6 +153,7 @@ impl<'a> SceneRenderer<'a> {
             Resource::buffer(self.shape_buffer.handle()),
             Resource::StorageImage { view: self.g_buffer.radiance.view() },
             coat,
+            Resource::buffer(self.light_buffer.handle()),
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;
         let constants = ShadeConstants {
@@ -161,6 +162,7 @@ impl<'a> SceneRenderer<'a> {
             light_count: self.lights.light_count,
             shape_count: self.lights.shape_count,
             quad_count: self.lights.quad_count,
+            seed: 0,
         };
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
@@ -285,6 +287,7 @@ impl<'a> SceneRenderer<'a> {
             glossy: None,
             light_textures: Some(self.engine.light_textures()),
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),
+            picks: None,
             tiles: None,
         }
     }
@@ -296,6 +299,7 @@ impl<'a> SceneRenderer<'a> {
             position_from_clip: None,
             lights: self.lights,
             tile_lists: None,
+            seed: 0,
         }
     }
 

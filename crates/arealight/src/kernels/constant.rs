@@ -30,3 +30,7 @@ pub const CLASS: u32 = 12;
 pub const LAYOUT: u32 = 13;
 /// 1 where [`crate::plan::TileOptions::cull_threshold`] is not zero.
 pub const CULL: u32 = 14;
+/// [`crate::plan::ShadeOptions::shadow_rays`].
+pub const SHADOW_RAYS: u32 = 15;
+/// [`crate::plan::ShadowFilter`].
+pub const SHADOW_FILTER: u32 = 16;

@@ -2,6 +2,7 @@
 #define AREALIGHT_POLYGON_SAMPLING_GLSL
 
 #include "arealight/form_factor/arctangent.glsl"
+#include "arealight/shadows/choose.glsl"
 
 // Directions drawn from a lobe over a polygon: with the density of the clamped cosine in the lobe's cosine space, over what of the
 // polygon is above the horizon. The integrand of the unshadowed light over that density is its form factor, whatever is drawn. So the
@@ -94,17 +95,6 @@ float arealight_linear_quantile(float from, float to, float part) {
     float root = sqrt(max(from * from + part * (to * to - from * from), 0.0));
     float sum = from + root;
     return sum > 0.0 ? min(part * (from + to) / sum, 1.0) : part;
-}
-
-// Chooses among parts as they come: whether to take the one that brings the sum of weights from `sum` to `sum + weight`, weight > 0. `random` in
-// [0, 1) is used up by as much as the choice takes, and is uniform again.
-bool arealight_choose(inout float random, inout float sum, float weight) {
-    sum += weight;
-    float probability = weight / sum;
-    bool is_taken = random < probability;
-    random = is_taken ? random / probability : (random - probability) / (1.0 - probability);
-    random = clamp(random, 0.0, 0.99999994);
-    return is_taken;
 }
 
 // The azimuth up to which a sector without an inner circle has this area: the angle along the outer circle is in proportion to it.

@@ -1,0 +1,136 @@
+#ifndef PICKED_LIGHT_GLSL
+#define PICKED_LIGHT_GLSL
+
+// A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel defines LIGHTS_BINDING (vertices are
+// at the binding after it) and SHAPES_BINDING.
+
+#include "light_records.glsl"
+#include "arealight/form_factor/tube_outline.glsl"
+#include "arealight/shadows/outline_sampling.glsl"
+
+layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVertices {
+    vec4 light_vertices[];
+};
+
+vec3 arealight_bridge_vertex(uint index) {
+    return light_vertices[index].xyz;
+}
+
+struct PickedLight {
+    ArealightShadowOutline outline; // of a mesh each face's in turn
+    float size;               // the root of its area
+    vec3 center;              // from the shading point
+    uint row;                 // of a mesh: that of the next face, and the last one's end
+    uint end;
+    bool is_mesh;
+    bool two_sided;
+};
+
+// The silhouette of a sphere, as a disk. A point inside of it has none.
+ArealightShadowOutline sphere_outline(vec3 center, float radius) {
+    float square = max(dot(center, center), 1e-37);
+    float part = max(1.0 - radius * radius / square, 0.0);
+    vec3 axis = center * inversesqrt(square);
+    vec3 axis_u = normalize(abs(axis.z) < 0.7 ? vec3(axis.y, -axis.x, 0.0) : vec3(0.0, axis.z, -axis.y));
+    float seen = radius * sqrt(part);
+    return arealight_ellipse_outline(part * center, seen * axis_u, seen * cross(axis, axis_u));
+}
+
+// The silhouette of a tube: between its two tangent planes, and as long as it is; round ends as a straight edge of the same area. From within an
+// end's disk extended along the axis: that disk.
+ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, int ends) {
+    float half_length = max(length(half_axis), 1e-37);
+    vec3 axis = half_axis / half_length;
+    float along = dot(center, axis);
+    vec3 across = center - along * axis;
+    float distance = length(across);
+    if (distance <= radius) {
+        vec3 axis_u = normalize(abs(axis.z) < 0.7 ? vec3(axis.y, -axis.x, 0.0) : vec3(0.0, axis.z, -axis.y));
+        vec3 end = center + (along > 0.0 ? -half_axis : half_axis);
+        return arealight_ellipse_outline(end, radius * axis_u, radius * cross(axis, axis_u));
+    }
+    vec3 toward = across / distance;
+    float sine = radius / distance;
+    float reach = half_length + (ends == AREALIGHT_TUBE_ROUND ? 0.78539816 * radius : 0.0);
+    vec3 side = radius * sqrt(1.0 - sine * sine) * cross(axis, toward);
+    return arealight_rectangle_outline(center - radius * sine * toward, reach * axis, side);
+}
+
+PickedLight picked_light(uint pick, vec3 position) {
+    PickedLight light;
+    light.is_mesh = false;
+    light.row = 0u;
+    light.end = 0u;
+    uint index = pick & PICK_INDEX;
+    if ((pick & PICK_SHAPE) == 0u) {
+        ArealightGpuLight record = lights[index];
+        light.center = record.center - position;
+        light.size = record.radius * sqrt(record.area);
+        light.is_mesh = (record.flags & LIGHT_MESH) != 0u;
+        light.two_sided = (record.flags & LIGHT_TWO_SIDED) != 0u;
+        light.row = record.first_vertex;
+        light.end = record.first_vertex + record.vertex_count;
+        light.outline = arealight_vertex_outline(light.center, record.first_vertex, record.vertex_count,
+                                                 (record.flags & LIGHT_QUAD) != 0u);
+        return light;
+    }
+    ArealightGpuShape record = shapes[index];
+    light.center = record.center - position;
+    light.two_sided = (record.flags & SHAPE_TWO_SIDED) != 0u;
+    if (record.kind == SHAPE_TUBE) {
+        light.outline = tube_outline(light.center, record.axis_u, record.radius, int(record.detail));
+        light.size = 2.0 * sqrt(record.radius * length(record.axis_u));
+    } else if (record.kind == SHAPE_SPHERE) {
+        light.outline = sphere_outline(light.center, record.radius);
+        light.size = 1.7724539 * record.radius;
+    } else {
+        light.outline = arealight_ellipse_outline(light.center, record.axis_u, record.axis_v);
+        light.size = 1.7724539 * sqrt(length(record.axis_u) * length(record.axis_v));
+    }
+    return light;
+}
+
+// Goes on to the next face of a mesh that is lit towards the point; false after the last one.
+bool next_face(inout PickedLight light) {
+    while (light.row + 1u < light.end) {
+        vec4 face = light_vertices[light.row];
+        uint first = light.row + 1u;
+        uint count = clamp(uint(face.w), 1u, light.end - first);
+        light.row = first + count;
+        if (count >= 3u && arealight_lit_side(light.center + light_vertices[first].xyz, face.xyz, light.two_sided) != 0.0) {
+            light.outline = arealight_vertex_outline(light.center, first, count, count == 3u);
+            return true;
+        }
+    }
+    return false;
+}
+
+// The size of the form factor of a light in the space that `to_space` leads to, and for one lobe after the other of its faces: which is chosen.
+float picked_light_weight(PickedLight light, mat3 to_space) {
+    if (!light.is_mesh) {
+        return arealight_outline_weight(light.outline, to_space);
+    }
+    float sum = 0.0;
+    while (next_face(light)) {
+        sum += arealight_outline_weight(light.outline, to_space);
+    }
+    return sum;
+}
+
+// The outline to draw over: of a mesh one face's, chosen by its form factor.
+ArealightShadowOutline chosen_outline(PickedLight light, mat3 to_space, inout float random) {
+    if (!light.is_mesh) {
+        return light.outline;
+    }
+    ArealightShadowOutline chosen = light.outline;
+    float sum = 0.0;
+    while (next_face(light)) {
+        float weight = arealight_outline_weight(light.outline, to_space);
+        if (weight > 0.0 && arealight_choose(random, sum, weight)) {
+            chosen = light.outline;
+        }
+    }
+    return chosen;
+}
+
+#endif

@@ -1,0 +1,141 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Traces the shadow rays that the shade kernel picked a light and a lobe for: each is drawn from that lobe over that light, so that its
+// visibility is an unbiased estimate of what arrives of the pixel's unshadowed radiance.
+
+#include "shadow_resources.glsl"
+
+#include "table_image.glsl"
+#include "arealight/material.glsl"
+#include "arealight/shadows/ray_origin.glsl"
+#include "arealight/shadows/sequence.glsl"
+#define PICKS_ACCESS readonly
+#include "shadow_picks.glsl"
+#include "picked_light.glsl"
+
+// Of the host: the distance of something that blocks a ray from `origin` (relative to what positions are relative to) along `direction`, unit,
+// before `distance`; else `distance` or more. A host that knows only whether there is something returns 0 then.
+float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
+#ifdef AREALIGHT_HOST_BLOCKER
+// Lies in an include folder of the host's compiler. What it reads is in descriptor set 1.
+#include "host_blocker.glsl"
+#else
+#include "blockers.glsl"
+#endif
+
+// Rays end this part of their length before the light, whose own geometry may be there.
+const float RAY_PART = 0.999755859375;
+
+// The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each reflects of the light.
+int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
+    if (!AREALIGHT_HAS_COAT && !AREALIGHT_SPLITS_FRESNEL) {
+        return AREALIGHT_LOBE_SPECULAR;
+    }
+    int chosen = AREALIGHT_LOBE_SPECULAR;
+    float sum = 0.0;
+    for (int lobe = AREALIGHT_LOBE_SPECULAR; lobe < AREALIGHT_LOBE_END; lobe++) {
+        if (arealight_has_lobe(lobe)) {
+            float albedo = abs(arealight_luminance(point.lobes[lobe].albedo));
+            float weight = albedo * picked_light_weight(light, point.lobes[lobe].space * point.to_frame);
+            if (weight > 0.0 && arealight_choose(random, sum, weight)) {
+                chosen = lobe;
+            }
+        }
+    }
+    return chosen;
+}
+
+// The offset to a pixel's neighbour along an axis, of the two the nearer one.
+vec3 offset_along(ivec2 pixel, ivec2 size, ivec2 axis, vec3 position) {
+    vec3 nearest = vec3(0.0);
+    float least = 3e38;
+    for (int side = -1; side <= 1; side += 2) {
+        ivec2 neighbour = pixel + side * axis;
+        vec3 there;
+        if (all(greaterThanEqual(neighbour, ivec2(0))) && all(lessThan(neighbour, size)) && load_position(neighbour, size, there)) {
+            vec3 offset = there - position;
+            if (dot(offset, offset) < least) {
+                least = dot(offset, offset);
+                nearest = float(side) * offset;
+            }
+        }
+    }
+    return nearest;
+}
+
+// The normal of the surface's geometry towards the viewer: across its neighbours' positions; the shading normal where those are of another surface.
+vec3 geometric_normal(ivec2 pixel, ivec2 size, ArealightSurface surface) {
+    vec3 shading = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
+    vec3 across = cross(offset_along(pixel, size, ivec2(1, 0), surface.position), offset_along(pixel, size, ivec2(0, 1), surface.position));
+    vec3 normal = arealight_normalize_or(across, shading);
+    normal = dot(normal, shading) < 0.0 ? -normal : normal;
+    normal = dot(normal, shading) < 0.7 ? shading : normal;
+    return dot(normal, surface.view) < 0.0 ? -normal : normal;
+}
+
+// By how much a position may be wrong beyond its own rounding: that of a unit in the last place of depth.
+float position_step(ivec2 pixel, ivec2 size, vec3 position) {
+    if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
+        return 0.0;
+    }
+    float depth = texelFetch(g_position, pixel, 0).x;
+    return distance(position_at_depth(pixel, size, depth * (1.0 - 1.1920929e-7)), position);
+}
+
+// How wide the penumbra of a blocker is, by the part of a ray that is before it. A lobe narrower than the light makes it no wider than the lobe.
+float penumbra_width(PickedLight light, float part, float distance, float alpha) {
+    float size = min(light.size, 2.0 * distance * alpha);
+    return min(size * part / max(1.0 - part, 1e-3), size * 16.0);
+}
+
+// What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
+vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec3 normal, uint index) {
+    PickedLight light = picked_light(pick, point.position);
+    vec2 random = arealight_sequence_2d(index);
+    bool is_specular = (pick & PICK_SPECULAR) != 0u;
+    int lobe = is_specular ? chosen_lobe(point, light, random.x) : AREALIGHT_LOBE_DIFFUSE;
+    mat3 space = point.lobes[lobe].space;
+    ArealightShadowOutline outline = chosen_outline(light, space * point.to_frame, random.x);
+    ArealightShadowRay ray;
+    if (!arealight_draw_ray(outline, point.to_frame, space, random, ray)) {
+        return vec2(1.0, 0.0);
+    }
+    // What is below the surface does not arrive
+    if (dot(ray.direction, normal) <= 0.0) {
+        return vec2(0.0);
+    }
+    float end = ray.distance * RAY_PART;
+    float blocker = arealight_bridge_blocker(origin, ray.direction, end);
+    bool is_hidden = blocker < end;
+    float width = penumbra_width(light, blocker / ray.distance, ray.distance, is_specular ? alpha : 1e9);
+    return vec2(is_hidden ? 0.0 : 1.0, is_hidden ? width : 0.0);
+}
+
+vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
+    vec3 position;
+    uint first = first_pick(pixel, size);
+    if (!load_position(pixel, size, position) || shadow_picks[first] == NO_PICK) {
+        return vec4(0.0);
+    }
+    ArealightSurface surface = load_surface(pixel, position, constants.camera);
+    ArealightPoint point = arealight_point(surface);
+    vec3 normal = geometric_normal(pixel, size, surface);
+    vec3 origin = arealight_ray_origin(position, normal, position_step(pixel, size, position));
+    float alpha = surface.roughness * surface.roughness;
+    vec2 sum = vec2(0.0);
+    for (int ray = 0; ray < SHADOW_RAYS; ray++) {
+        uint index = arealight_sequence_index(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
+        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, normal, index);
+    }
+    return vec4(sum / float(SHADOW_RAYS), 1.0, float(SHADOW_RAYS));
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = ivec2(constants.size);
+    if (all(lessThan(pixel, size))) {
+        imageStore(shadow_image, pixel, pixel_shadow(pixel, size));
+    }
+}

@@ -1,0 +1,46 @@
+#ifndef SHADOW_RESOURCES_GLSL
+#define SHADOW_RESOURCES_GLSL
+
+// What the kernels of shadows, shadow_rays and shadow_filter, have in common: a descriptor set, push constants, specialisation constants.
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
+layout(constant_id = 2) const int POSITION_SOURCE = 0;
+layout(constant_id = 4) const int HORIZON = 0;
+layout(constant_id = 5) const int FRESNEL = 0;
+layout(constant_id = 6) const int LOBES = 0;
+layout(constant_id = 13) const int LAYOUT = 0;
+layout(constant_id = 15) const int SHADOW_RAYS = 1;
+
+#define LIGHTS_BINDING 1
+#define G_BUFFER_BINDING 3
+#define G_BUFFER_LAYOUT LAYOUT
+#define UNSHADOWED_BINDING 7
+#define SHAPES_BINDING 8
+#define COAT_BINDING 9
+#define PICKS_BINDING 10
+#define SHADOW_BINDING 11
+#define RADIANCE_BINDING 12
+#define BLOCKER_NODES_BINDING 13
+#define BLOCKER_TRIANGLES_BINDING 14
+
+layout(push_constant, std430) uniform ShadowConstants {
+    mat4 position_from_clip;
+    vec3 camera;
+    uint seed;
+    uvec2 size;
+} constants;
+
+#define AREALIGHT_DIFFERENCE 0
+#define AREALIGHT_FOOTPRINT 0
+#include "effects.glsl"
+const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
+#include "g_buffer.glsl"
+#include "position.glsl"
+
+// Of a pixel with light: what arrives of it in r, from 0 to 1; the penumbra's width in g, in the unit of positions, times the part that is
+// hidden; 1 in b; and in a of how many rays these are means. Else zero.
+layout(set = 0, binding = SHADOW_BINDING, rgba16f) uniform image2D shadow_image;
+
+#endif
