@@ -75,6 +75,21 @@ pub static SHADOW_RAYS: Kernel = Kernel {
     constants: &[0],
 };
 
+/// Blockers along rays, from buffers of [`arealight::Blockers`].
+pub static BLOCKERS: Kernel = Kernel {
+    name: "blockers",
+    spirv: include_bytes!("../spirv/blockers.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        Binding::storage_buffer("nodes", Access::Read, "GpuBvhNode[]"),
+        Binding::storage_buffer("blocker_triangles", Access::Read, "GpuBlockerTriangle[]"),
+        Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
+        Binding::storage_buffer("distances", Access::Write, "float a ray"),
+    ],
+    constants: &[],
+};
+
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]

@@ -151,6 +151,36 @@ pub struct GpuTileClass {
     pub tile_count: u32,
 }
 
+/// A node of a binary hierarchy of boxes, [`crate::Blockers::nodes`]: `ArealightGpuBvhNode` in `shaders/kernels/bvh.glsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct GpuBvhNode {
+    /// The box's smallest corner, relative to the origin.
+    pub min: [f32; 3],
+    /// Index of the first of a leaf's triangles; or of the first of an inner node's two children, after its own. All
+    /// zeros are a node of nothing.
+    pub first: u32,
+    /// The box's largest corner.
+    pub max: [f32; 3],
+    /// Triangles of a leaf; 0 for an inner node.
+    pub count: u32,
+}
+
+impl GpuBvhNode {
+    /// Whether it has children.
+    pub fn is_inner(&self) -> bool {
+        self.count == 0 && self.first > 0
+    }
+}
+
+/// A triangle that blocks light: three rows of `vec4`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
+pub struct GpuBlockerTriangle {
+    /// Positions relative to the origin in x, y, z; w is zero.
+    pub vertices: [[f32; 4]; 3],
+}
+
 /// Push constants of the kernel that loads an image into a layer of the light textures, made by
 /// [`crate::TexturePart::load_constants`].
 #[repr(C)]

@@ -28,12 +28,14 @@
 //! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
+//! | [`blockers`] | what blocks light, for shadow rays: triangles in a hierarchy |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
 //! | [`kernels`] | the embedded SPIR-V with bindings, constants and group sizes |
 //! | [`tiles`] | tiles of a picture, sorted by the lights that matter to them |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
+pub mod blockers;
 pub mod effects;
 pub mod gpu;
 pub mod holes;
@@ -51,6 +53,7 @@ pub mod table;
 pub mod texture_part;
 pub mod tiles;
 
+pub use blockers::{BlockerError, Blockers};
 pub use effects::{Effects, UnknownEffect};
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;

@@ -3,7 +3,9 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
 use arealight::pyramid::LevelKernel;
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, tiles};
+use arealight::{
+    Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, blockers, tiles,
+};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -44,6 +46,7 @@ const TEXTURE_BLUR_COMP: &str = include_str!("../../../shaders/kernels/texture_b
 const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl");
 const OUTPUT_GLSL: &str = include_str!("../../../shaders/kernels/output.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
+const BVH_GLSL: &str = include_str!("../../../shaders/kernels/bvh.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
 
 #[test]
@@ -130,6 +133,7 @@ fn choices_have_the_same_numbers_in_glsl() {
     ] {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
     }
+    assert_constants(BVH_GLSL, "BVH_STACK_SIZE", &[("", number(blockers::MAX_DEPTH))]);
     let footprints = [
         ("ROUND", number(Footprint::Round as u32)),
         ("ELLIPSE", number(Footprint::Ellipse as u32)),

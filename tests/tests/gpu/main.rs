@@ -4,6 +4,7 @@
 
 mod arcs;
 mod bits;
+mod blockers;
 mod c_api;
 mod c_pictures;
 mod coat;

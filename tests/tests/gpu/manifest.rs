@@ -3,6 +3,7 @@
 
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
+use arealight_tests::kernel::BLOCKERS;
 use arealight_tool_kernels as tool;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, ExecutionMode, Op, StorageClass};
@@ -288,7 +289,7 @@ fn every_structure_has_the_same_offsets() {
         (
             &visibility,
             "ArealightGpuBvhNode",
-            layout!(tool::gpu::GpuBvhNode, min as "min_corner", first,
+            layout!(gpu::GpuBvhNode, min as "min_corner", first,
                                                      max as "max_corner", count),
         ),
         (
@@ -336,15 +337,15 @@ fn every_structure_has_the_same_offsets() {
             layout!(
                 tool::gpu::VisibilityConstants,
                 camera,
-                node_count,
-                right,
                 reserved0,
-                up,
+                right,
                 reserved1,
-                forward,
+                up,
                 reserved2,
+                forward,
+                reserved3,
                 background,
-                reserved3
+                reserved4
             ),
         ),
     ] {
@@ -471,7 +472,9 @@ fn array_strides_are_the_sizes_in_rust() {
         (&kernels::SHADE, "shapes", size_of::<gpu::GpuShape>()),
         (&tool::kernels::REFERENCE, "light_sampling", size_of::<tool::gpu::GpuLightSampling>()),
         (&tool::kernels::REFERENCE, "light_triangles", size_of::<tool::gpu::GpuLightTriangle>()),
-        (&tool::kernels::VISIBILITY, "nodes", size_of::<tool::gpu::GpuBvhNode>()),
+        (&BLOCKERS, "nodes", size_of::<gpu::GpuBvhNode>()),
+        (&BLOCKERS, "blocker_triangles", size_of::<gpu::GpuBlockerTriangle>()),
+        (&tool::kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
         (&tool::kernels::VISIBILITY, "triangles", size_of::<tool::gpu::GpuTriangle>()),
         (&tool::kernels::VISIBILITY, "materials", size_of::<tool::gpu::GpuMaterial>()),
         (&tool::kernels::VISIBILITY, "textures", size_of::<tool::gpu::GpuTexture>()),

@@ -1,10 +1,11 @@
 //! Textures of the visibility kernel, near the image and far from it, against a float64 twin.
 
+use arealight::gpu::GpuBvhNode;
 use arealight_engine::SceneRenderer;
 use arealight_engine::host::Usage;
 use arealight_scene::SceneBuffers;
 use arealight_tests::{Comparison, Random, TestEngine};
-use arealight_tool_kernels::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
+use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::DVec3;
 
 /// For each texture coordinate a triangle before the pixel of a row of pixels, with that coordinate all over.
@@ -65,7 +66,6 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
         }],
         textures: vec![texture],
         texels: texels.to_vec(),
-        max_depth: 1,
     }
 }
 
@@ -73,15 +73,15 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
 fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
     let camera = VisibilityConstants {
         camera: [0.0; 3],
-        node_count: 1,
-        right: [1.0, 0.0, 0.0],
         reserved0: 0,
-        up: [0.0, 1.0, 0.0],
+        right: [1.0, 0.0, 0.0],
         reserved1: 0,
-        forward: [0.0, 0.0, -1.0],
+        up: [0.0, 1.0, 0.0],
         reserved2: 0,
-        background: [0.0; 3],
+        forward: [0.0, 0.0, -1.0],
         reserved3: 0,
+        background: [0.0; 3],
+        reserved4: 0,
     };
     let mut renderer =
         SceneRenderer::new(engine, scene, &[], camera, [scene.triangles.len() as u32, 1]).unwrap();

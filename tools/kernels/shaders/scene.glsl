@@ -2,17 +2,12 @@
 #define SCENE_GLSL
 
 // Triangles, materials and textures of a scene: tools/kernels/src/gpu.rs has the same structures, and a
-// test compares the offsets.
+// test compares the offsets. The including kernel defines SCENE_BINDING, the first of five.
 
+#define BVH_NODES_BINDING SCENE_BINDING
 #include "arealight/surface.glsl"
+#include "bvh.glsl"
 #include "srgb.glsl"
-
-struct ArealightGpuBvhNode {
-    vec3 min_corner;
-    uint first;
-    vec3 max_corner;
-    uint count;
-};
 
 struct ArealightGpuTriangle {
     vec3 p0;
@@ -65,7 +60,6 @@ struct ArealightGpuTexture {
     uint flags;
 };
 
-const uint NO_TRIANGLE = 0xffffffffu;
 const uint NO_TEXTURE = 0xffffffffu;
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
@@ -75,27 +69,17 @@ const uint TEXTURE_CLAMP_V = 4u;
 const uint TEXTURE_MIRROR_U = 8u;
 const uint TEXTURE_MIRROR_V = 16u;
 
-layout(set = 0, binding = 0, std430) readonly buffer Nodes {
-    ArealightGpuBvhNode nodes[];
-};
-layout(set = 0, binding = 1, std430) readonly buffer Triangles {
+layout(set = 0, binding = SCENE_BINDING + 1, std430) readonly buffer Triangles {
     ArealightGpuTriangle triangles[];
 };
-layout(set = 0, binding = 2, std430) readonly buffer Materials {
+layout(set = 0, binding = SCENE_BINDING + 2, std430) readonly buffer Materials {
     ArealightGpuMaterial materials[];
 };
-layout(set = 0, binding = 3, std430) readonly buffer Textures {
+layout(set = 0, binding = SCENE_BINDING + 3, std430) readonly buffer Textures {
     ArealightGpuTexture textures[];
 };
-layout(set = 0, binding = 4, std430) readonly buffer Texels {
+layout(set = 0, binding = SCENE_BINDING + 4, std430) readonly buffer Texels {
     uint texels[];
-};
-
-struct Hit {
-    float distance;
-    uint triangle;
-    vec2 barycentric; // weights of the second and the third vertex
-    bool back;        // the back face was met
 };
 
 struct ScenePoint {
@@ -156,7 +140,7 @@ vec2 hit_uv(ArealightGpuTriangle triangle, vec2 barycentric) {
          + vec2(triangle.u1, triangle.v1) * barycentric.x + vec2(triangle.u2, triangle.v2) * barycentric.y;
 }
 
-bool masked_out(Hit hit) {
+bool masked_out(BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[hit.triangle];
     ArealightGpuMaterial material = materials[triangle.material];
     if ((material.flags & MATERIAL_ALPHA_MASK) == 0u) {
@@ -183,7 +167,7 @@ vec3 bend_normal(ArealightGpuTriangle triangle, uint normal_texture, float scale
     return arealight_normalize_or(tangent * bend.x + bitangent * bend.y + normal * bend.z, normal);
 }
 
-ScenePoint scene_point(Hit hit) {
+ScenePoint scene_point(BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[hit.triangle];
     ArealightGpuMaterial material = materials[triangle.material];
     float u = hit.barycentric.x;

@@ -5,7 +5,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-#include "arealight/surface.glsl"
+#define SCENE_BINDING 0
 #include "scene.glsl"
 
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D out_position;
@@ -17,82 +17,26 @@ layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
-    uint node_count;
-    vec3 right;
     uint reserved0;
-    vec3 up;
+    vec3 right;
     uint reserved1;
-    vec3 forward;
+    vec3 up;
     uint reserved2;
-    vec3 background;
+    vec3 forward;
     uint reserved3;
+    vec3 background;
+    uint reserved4;
 } constants;
 
-// arealight_scene builds no hierarchy deeper than 48.
-const uint STACK_SIZE = 64u;
-
-// The distance at which a ray enters a box before `nearest`, or -1.
-float enter_box(vec3 low, vec3 high, vec3 origin, vec3 inverse_direction, float nearest) {
-    vec3 a = (low - origin) * inverse_direction;
-    vec3 b = (high - origin) * inverse_direction;
-    vec3 first = min(a, b);
-    vec3 last = max(a, b);
-    float enter = max(max(first.x, first.y), max(first.z, 0.0));
-    // Widened by two roundings, so that a ray along a flat box is not lost
-    float leave = min(min(last.x, last.y), min(last.z, nearest)) * 1.0000004;
-    return enter <= leave ? enter : -1.0;
-}
-
-// Moeller and Trumbore 1997; back faces are met only where the material has two sides.
-void meet_triangle(uint index, vec3 origin, vec3 direction, inout Hit hit) {
+// Back faces are met only where the material has two sides.
+void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[index];
-    vec3 edge1 = triangle.p1 - triangle.p0;
-    vec3 edge2 = triangle.p2 - triangle.p0;
-    vec3 p = cross(direction, edge2);
-    float determinant = dot(edge1, p);
     bool double_sided = (materials[triangle.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
-    if (!(double_sided ? determinant != 0.0 : determinant > 0.0)) {
-        return;
+    BvhHit met;
+    if (bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
+        && (double_sided || !met.back) && !masked_out(met)) {
+        hit = met;
     }
-    float inverse = 1.0 / determinant;
-    vec3 s = origin - triangle.p0;
-    float u = dot(s, p) * inverse;
-    vec3 q = cross(s, edge1);
-    float v = dot(direction, q) * inverse;
-    float distance = dot(edge2, q) * inverse;
-    if (u < 0.0 || v < 0.0 || u + v > 1.0 || !(distance > 0.0 && distance < hit.distance)) {
-        return;
-    }
-    Hit candidate = Hit(distance, index, vec2(u, v), determinant < 0.0);
-    if (!masked_out(candidate)) {
-        hit = candidate;
-    }
-}
-
-Hit trace(vec3 origin, vec3 direction) {
-    Hit hit = Hit(3e38, NO_TRIANGLE, vec2(0.0), false);
-    // A direction along an axis would divide by zero: 1e-30 reaches no box that it should not
-    vec3 safe = mix(direction, vec3(1e-30), lessThan(abs(direction), vec3(1e-30)));
-    vec3 inverse_direction = 1.0 / safe;
-    uint stack[STACK_SIZE];
-    uint depth = 0u;
-    if (constants.node_count > 0u) {
-        stack[depth++] = 0u;
-    }
-    while (depth > 0u) {
-        ArealightGpuBvhNode node = nodes[stack[--depth]];
-        if (enter_box(node.min_corner, node.max_corner, origin, inverse_direction, hit.distance) < 0.0) {
-            continue;
-        }
-        for (uint i = 0u; i < node.count; i++) {
-            meet_triangle(node.first + i, origin, direction, hit);
-        }
-        if (node.count == 0u && depth + 2u <= STACK_SIZE) {
-            stack[depth++] = node.first;
-            stack[depth++] = node.first + 1u;
-        }
-    }
-    return hit;
 }
 
 // A unit direction's place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
@@ -112,9 +56,9 @@ void main() {
     vec2 plane = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
     vec3 direction = arealight_normalize_or(
         constants.forward + plane.x * constants.right - plane.y * constants.up, vec3(0.0, 0.0, -1.0));
-    Hit hit = trace(constants.camera, direction);
+    BvhHit hit = bvh_trace(constants.camera, direction, 3e38, false);
 
-    if (hit.triangle == NO_TRIANGLE) {
+    if (hit.triangle == BVH_NO_TRIANGLE) {
         imageStore(out_position, pixel, vec4(0.0));
         imageStore(out_normal, pixel, vec4(0.0));
         imageStore(out_base_color, pixel, vec4(0.0));

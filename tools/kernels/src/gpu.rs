@@ -83,21 +83,6 @@ pub struct EvalConstants {
     pub case_count: u32,
 }
 
-/// A node of a binary bounding volume hierarchy; the root is node 0. The children of an inner node are
-/// `first` and `first + 1`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct GpuBvhNode {
-    /// The box's smallest corner, relative to the origin.
-    pub min: [f32; 3],
-    /// The first child, or the first triangle of a leaf.
-    pub first: u32,
-    /// The box's largest corner.
-    pub max: [f32; 3],
-    /// Triangles of a leaf; 0 for an inner node.
-    pub count: u32,
-}
-
 /// A triangle of the visibility kernel, in the order of the hierarchy's leaves.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -223,22 +208,22 @@ impl GpuTexture {
 pub struct VisibilityConstants {
     /// The camera's position relative to the origin.
     pub camera: [f32; 3],
-    /// How many nodes the hierarchy has; 0 for a scene without triangles.
-    pub node_count: u32,
+    /// Zero.
+    pub reserved0: u32,
     /// From the middle of the image to its right edge, at distance 1 along `forward`.
     pub right: [f32; 3],
     /// Zero.
-    pub reserved0: u32,
+    pub reserved1: u32,
     /// From the middle of the image to its top edge, at distance 1.
     pub up: [f32; 3],
     /// Zero.
-    pub reserved1: u32,
+    pub reserved2: u32,
     /// Unit viewing direction.
     pub forward: [f32; 3],
     /// Zero.
-    pub reserved2: u32,
+    pub reserved3: u32,
     /// Radiance where nothing is hit.
     pub background: [f32; 3],
     /// Zero.
-    pub reserved3: u32,
+    pub reserved4: u32,
 }

@@ -76,27 +76,25 @@ impl Camera {
     }
 
     /// Push constants of the visibility kernel for an image of `width` × `height` pixels, relative to
-    /// `origin`. `node_count` is that of the scene's hierarchy; `background` is the radiance where nothing is
-    /// hit.
+    /// `origin`. `background` is the radiance where nothing is hit.
     pub fn constants(
         &self,
         [width, height]: [u32; 2],
         origin: DVec3,
-        node_count: u32,
         background: Vec3,
     ) -> VisibilityConstants {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         VisibilityConstants {
             camera: (self.position - origin).as_vec3().to_array(),
-            node_count,
-            right: (self.right * (self.tan_half_height * aspect)).as_vec3().to_array(),
             reserved0: 0,
-            up: (self.up * self.tan_half_height).as_vec3().to_array(),
+            right: (self.right * (self.tan_half_height * aspect)).as_vec3().to_array(),
             reserved1: 0,
-            forward: self.forward.as_vec3().to_array(),
+            up: (self.up * self.tan_half_height).as_vec3().to_array(),
             reserved2: 0,
-            background: background.to_array(),
+            forward: self.forward.as_vec3().to_array(),
             reserved3: 0,
+            background: background.to_array(),
+            reserved4: 0,
         }
     }
 
@@ -152,10 +150,10 @@ mod tests {
     #[test]
     fn constants_reach_the_edges_of_the_image() {
         let camera = Camera::looking(String::new(), DVec3::new(1e7, 0.0, 0.5), DVec3::NEG_Z, DVec3::Y);
-        let constants = camera.constants([200, 100], DVec3::X * 1e7, 3, Vec3::ZERO);
+        let constants = camera.constants([200, 100], DVec3::X * 1e7, Vec3::ZERO);
         assert_eq!(constants.camera, [0.0, 0.0, 0.5]);
         assert_eq!((constants.right, constants.up), ([2.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
-        assert_eq!((constants.forward, constants.node_count), ([0.0, 0.0, -1.0], 3));
+        assert_eq!(constants.forward, [0.0, 0.0, -1.0]);
         let corner = camera.direction([1.0, -1.0], 2.0);
         assert!((corner - DVec3::new(2.0, -1.0, -1.0) / 6.0_f64.sqrt()).length() < 1e-15);
     }

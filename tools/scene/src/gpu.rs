@@ -1,18 +1,19 @@
 //! A scene as the visibility kernel reads it.
 
-use crate::bvh::Bvh;
 use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
-use arealight_tool_kernels::gpu::{GpuBvhNode, GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
+use arealight::gpu::GpuBvhNode;
+use arealight::{BlockerError, Blockers};
+use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::{DVec3, Vec3};
 
-pub use crate::bvh::Hit;
+pub use crate::rays::Hit;
 
 /// The buffers of the visibility kernel, and of the shade pass's own hierarchy. Any of them may be empty.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneBuffers {
     /// What positions are relative to.
     pub origin: DVec3,
-    /// The hierarchy; empty without triangles.
+    /// The hierarchy: [`Blockers::nodes`].
     pub nodes: Vec<GpuBvhNode>,
     /// In the order of the hierarchy's leaves.
     pub triangles: Vec<GpuTriangle>,
@@ -22,8 +23,6 @@ pub struct SceneBuffers {
     pub textures: Vec<GpuTexture>,
     /// The images' texels, one after the other.
     pub texels: Vec<u32>,
-    /// Nodes from the root to the deepest leaf, at most [`crate::bvh::MAX_DEPTH`].
-    pub max_depth: u32,
 }
 
 /// Why a scene cannot be packed. Scenes that were loaded can, about any origin that is finite and no farther
@@ -32,13 +31,8 @@ pub struct SceneBuffers {
 #[non_exhaustive]
 pub enum BufferError {
     /// A vertex is NaN or too far from the origin.
-    #[error("triangles[{triangle}]: {position} relative to the origin is not within 1e16")]
-    NotInRange {
-        /// The triangle.
-        triangle: usize,
-        /// The vertex's position relative to the origin.
-        position: DVec3,
-    },
+    #[error(transparent)]
+    Triangles(#[from] BlockerError),
     /// An index points at nothing.
     #[error("{field}: index {index}, but there are {count}")]
     BadIndex {
@@ -67,17 +61,8 @@ impl SceneBuffers {
         check_indices(scene)?;
         // Round the triangles once, and build the hierarchy of what the GPU will see
         let unordered: Vec<GpuTriangle> = scene.triangles.iter().map(|t| pack(t, origin)).collect();
-        let mut boxes = Vec::with_capacity(unordered.len());
-        for (triangle, source) in scene.triangles.iter().enumerate() {
-            let far = |p: &DVec3| p.is_nan() || p.abs().max_element() > 1e16;
-            if let Some(position) = source.positions.map(|p| p - origin).into_iter().find(far) {
-                return Err(BufferError::NotInRange { triangle, position });
-            }
-            let GpuTriangle { p0, p1, p2, .. } = unordered[triangle];
-            let [a, b, c] = [p0, p1, p2].map(Vec3::from_array);
-            boxes.push([a.min(b).min(c), a.max(b).max(c)]);
-        }
-        let bvh = Bvh::build(&boxes);
+        let vertices = |t: &GpuTriangle| [t.p0, t.p1, t.p2].map(Vec3::from_array);
+        let blockers = Blockers::new(&unordered.iter().map(vertices).collect::<Vec<_>>())?;
         // Append the images to each other
         let mut texels = Vec::new();
         let mut first_texels = Vec::with_capacity(scene.images.len());
@@ -100,25 +85,24 @@ impl SceneBuffers {
         };
         Ok(Self {
             origin,
-            triangles: bvh.order.iter().map(|&i| unordered[i as usize]).collect(),
-            nodes: bvh.nodes,
+            triangles: blockers.order.iter().map(|&i| unordered[i as usize]).collect(),
+            nodes: blockers.nodes,
             materials: scene.materials.iter().map(pack_material).collect(),
             textures: scene.textures.iter().map(texture).collect(),
             texels,
-            max_depth: bvh.max_depth,
         })
     }
 
     /// Push constants of the visibility kernel for `camera`, in an image of `size` pixels; `background` is
     /// the radiance where nothing is hit.
     pub fn constants(&self, camera: &Camera, size: [u32; 2], background: Vec3) -> VisibilityConstants {
-        camera.constants(size, self.origin, self.nodes.len() as u32, background)
+        camera.constants(size, self.origin, background)
     }
 
-    /// What a ray meets first, from a world position: [`crate::bvh::closest_hit`].
+    /// What a ray meets first, from a world position: [`crate::rays::closest_hit`].
     pub fn closest_hit(&self, position: DVec3, direction: DVec3) -> Option<Hit> {
         let position = position - self.origin;
-        crate::bvh::closest_hit(&self.nodes, &self.triangles, &self.materials, position, direction)
+        crate::rays::closest_hit(&self.nodes, &self.triangles, &self.materials, position, direction)
     }
 }
 

@@ -26,7 +26,6 @@
 mod accessor;
 mod area_lights;
 mod borders;
-pub mod bvh;
 mod camera;
 mod document;
 mod effects;
@@ -41,6 +40,7 @@ mod materials;
 mod meshes;
 mod nodes;
 mod outlines;
+pub mod rays;
 mod scene;
 mod shape_lights;
 mod shown;

@@ -245,7 +245,7 @@ fn scenes_made_by_hand_are_checked_when_packed() {
     let text = pack(|scene| scene.materials[0].normal_texture = Some(0), DVec3::ZERO);
     assert_eq!(text, "materials[0].normal_texture: index 0, but there are 0");
     let text = pack(|scene| scene.triangles[1].positions[0].x = f64::NAN, DVec3::ZERO);
-    assert!(text.starts_with("triangles[1]: [NaN"), "{text}");
+    assert!(text.starts_with("triangles[1][0]: [NaN"), "{text}");
     let text = pack(|_| {}, DVec3::splat(1e17));
-    assert!(text.starts_with("triangles[0]: "), "{text}");
+    assert!(text.starts_with("triangles[0][0]: "), "{text}");
 }

@@ -83,7 +83,7 @@ fn strips_and_fans_are_triangles_and_lines_are_not() {
     assert_eq!(warnings(&scene), ["meshes[0] 'lamp'.primitives[0]: Lines are not triangles: left out"]);
     // Both are said: there is nothing to light, and nothing to light it with
     assert_eq!(scene.warnings.iter().filter(|w| w.place == "scene").count(), 2);
-    assert!(SceneBuffers::new(&scene, DVec3::ZERO).unwrap().nodes.is_empty());
+    assert!(SceneBuffers::new(&scene, DVec3::ZERO).unwrap().triangles.is_empty());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The hierarchy's closest hit against every triangle in turn.
 
-use arealight_scene::bvh::{self, Hit};
+use arealight_scene::rays::{self, Hit};
 use arealight_scene::{Bounds, Scene, SceneBuffers, Triangle};
 use arealight_tool_kernels::gpu::GpuMaterial;
 use glam::{DVec3, Vec2, Vec3};
@@ -23,7 +23,7 @@ fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
 fn brute_force(buffers: &SceneBuffers, origin: DVec3, direction: DVec3) -> Option<Hit> {
     let double_sided = buffers.materials[0].flags & GpuMaterial::DOUBLE_SIDED != 0;
     let hits = buffers.triangles.iter().enumerate().filter_map(|(triangle, shape)| {
-        let (distance, barycentric) = bvh::intersect(shape, double_sided, origin, direction)?;
+        let (distance, barycentric) = rays::intersect(shape, double_sided, origin, direction)?;
         Some(Hit { distance, triangle, barycentric })
     });
     hits.min_by(|a, b| a.distance.total_cmp(&b.distance))

@@ -1,0 +1,92 @@
+#ifndef BVH_GLSL
+#define BVH_GLSL
+
+// Rays through a binary hierarchy of boxes around triangles, as arealight::Blockers builds it. The including kernel defines BVH_NODES_BINDING
+// and the function bvh_meet_triangle.
+
+struct ArealightGpuBvhNode {
+    vec3 min_corner;
+    uint first;
+    vec3 max_corner;
+    uint count;
+};
+
+layout(set = 0, binding = BVH_NODES_BINDING, std430) readonly buffer Nodes {
+    ArealightGpuBvhNode nodes[];
+};
+
+// The deepest hierarchy: the same as arealight::blockers::MAX_DEPTH.
+const uint BVH_STACK_SIZE = 32u;
+
+const uint BVH_NO_TRIANGLE = 0xffffffffu;
+
+// Where a ray meets a triangle.
+struct BvhHit {
+    float distance;   // in lengths of the ray's direction
+    uint triangle;    // in the order of the leaves
+    vec2 barycentric; // weights of the second and the third vertex
+    bool back;        // the back face was met
+};
+
+// Of the including kernel: makes `hit` that of triangle `index`, where the ray meets it nearer than hit.distance and is to meet it.
+void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit);
+
+// Whether a ray meets triangle `index` of these vertices, on either face, at a distance above 0 and below `limit`; and where. What is seen
+// edge-on is not met. Error of the distance: 1e-6 of the largest coordinate over the cosine of incidence; a ray within as much of an edge may
+// pass on either side of it. Source: Moeller and Trumbore 1997.
+bool bvh_intersect(vec3 p0, vec3 p1, vec3 p2, uint index, vec3 origin, vec3 direction, float limit, out BvhHit met) {
+    vec3 edge1 = p1 - p0;
+    vec3 edge2 = p2 - p0;
+    vec3 p = cross(direction, edge2);
+    float determinant = dot(edge1, p);
+    float inverse = 1.0 / determinant;
+    vec3 s = origin - p0;
+    float u = dot(s, p) * inverse;
+    vec3 q = cross(s, edge1);
+    float v = dot(direction, q) * inverse;
+    float distance = dot(edge2, q) * inverse;
+    met = BvhHit(distance, index, vec2(u, v), determinant < 0.0);
+    return determinant != 0.0 && u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0 && distance < limit;
+}
+
+// Whether a ray enters a node's box before `limit`.
+bool bvh_enters(ArealightGpuBvhNode node, vec3 origin, vec3 inverse_direction, float limit) {
+    vec3 a = (node.min_corner - origin) * inverse_direction;
+    vec3 b = (node.max_corner - origin) * inverse_direction;
+    vec3 first = min(a, b);
+    vec3 last = max(a, b);
+    float enter = max(max(first.x, first.y), max(first.z, 0.0));
+    // Widened by two roundings, so that a ray along a flat box is not lost
+    float leave = min(min(last.x, last.y), min(last.z, limit)) * 1.0000004;
+    return enter <= leave;
+}
+
+// What a ray meets before `limit`, both in lengths of its direction: the closest triangle, or with `any_hit` the first one that is found,
+// which costs less. Its triangle is BVH_NO_TRIANGLE, and its distance `limit`, where there is none.
+BvhHit bvh_trace(vec3 origin, vec3 direction, float limit, bool any_hit) {
+    BvhHit hit = BvhHit(limit, BVH_NO_TRIANGLE, vec2(0.0), false);
+    // A direction along an axis would divide by zero: 1e-30 reaches no box that it should not
+    vec3 safe = mix(direction, vec3(1e-30), lessThan(abs(direction), vec3(1e-30)));
+    vec3 inverse_direction = 1.0 / safe;
+    uint stack[BVH_STACK_SIZE];
+    uint depth = 0u;
+    stack[depth++] = 0u;
+    while (depth > 0u && !(any_hit && hit.triangle != BVH_NO_TRIANGLE)) {
+        uint index = stack[--depth];
+        ArealightGpuBvhNode node = nodes[index];
+        if (!bvh_enters(node, origin, inverse_direction, hit.distance)) {
+            continue;
+        }
+        for (uint i = 0u; i < node.count; i++) {
+            bvh_meet_triangle(node.first + i, origin, direction, hit);
+        }
+        // Children lie after their parent; a node of zeros has none
+        if (node.count == 0u && node.first > index && depth + 2u <= BVH_STACK_SIZE) {
+            stack[depth++] = node.first;
+            stack[depth++] = node.first + 1u;
+        }
+    }
+    return hit;
+}
+
+#endif
