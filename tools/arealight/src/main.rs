@@ -9,6 +9,7 @@ mod output;
 mod picture;
 mod progress;
 mod quality;
+mod shadows;
 mod visible;
 
 use clap::{Parser, Subcommand};

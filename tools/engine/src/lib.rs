@@ -24,6 +24,7 @@ pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
 pub use render::SceneRenderer;
+pub use render::shadowed::ShadowedView;
 pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};

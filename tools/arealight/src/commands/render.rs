@@ -7,6 +7,7 @@ use crate::output::print;
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
+use crate::shadows::Shadows;
 use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight::{Effects, Quality};
 use arealight_benches::budget::{FrameLoad, ProfileLevel};
@@ -23,7 +24,7 @@ use std::time::Duration;
 /// Renders a glTF scene: what emits is a light.
 ///
 /// Visibility by a walk through a bounding volume hierarchy, shading by linearly transformed cosines, both on
-/// the GPU. There are no shadows.
+/// the GPU, with shadows by rays that are drawn from the lobes.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
@@ -57,6 +58,10 @@ pub struct Arguments {
     /// together contribute less than this fraction of what the others do
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
+    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra (filtered:N) [default: filtered:4,
+    /// off with --tiles and --reference]
+    #[arg(long, value_name = "LEVEL", conflicts_with_all = ["tiles", "reference"])]
+    shadows: Option<Shadows>,
     #[command(flatten)]
     quality: QualityArguments,
     #[command(flatten)]
@@ -80,6 +85,7 @@ impl Arguments {
             supersample: 2,
             surfaces: SurfaceChoice::Required,
             tiles: None,
+            shadows: None,
             quality: QualityArguments::default(),
             budget: BudgetArguments::default(),
             json: false,
@@ -238,7 +244,7 @@ fn render(
     let visibility = renderer.visibility()?;
     let mut tiles = None;
     let shading = match (arguments.reference, arguments.tiles) {
-        (None, None) => renderer.shade(surfaces, quality)?,
+        (None, None) => shade(&mut renderer, &buffers, (surfaces, quality), arguments.shadows.unwrap_or_default())?,
         (None, Some(cull_threshold)) => {
             let options = ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() };
             let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;
@@ -257,6 +263,19 @@ fn render(
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
     Ok(Outcome { visibility, shading, picked: None, tiles, picture })
+}
+
+/// Shades a view with shadows or without.
+fn shade(
+    renderer: &mut SceneRenderer<'_>,
+    scene: &SceneBuffers,
+    (surfaces, quality): (Effects, Quality),
+    shadows: Shadows,
+) -> Result<Option<Duration>, EngineError> {
+    let Shadows::Rays(shadow_rays, filter) = shadows else { return renderer.shade(surfaces, quality) };
+    let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
+    let view = renderer.shadowed(scene, options, filter)?;
+    renderer.shade_shadowed(&view, 0)
 }
 
 /// Stops within what float32 radiance bears.

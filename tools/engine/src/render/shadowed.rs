@@ -1,0 +1,171 @@
+//! Shading with shadows: the same picture, with what of each light's radiance arrives.
+
+use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
+use crate::{Engine, EngineError, Kept, SceneRenderer};
+use arealight::Blockers;
+use arealight::plan::{Output, ShadeOptions, ShadowFilter};
+use arealight_scene::{BufferError, SceneBuffers};
+use arealight_vk::{
+    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowOptions, ShadowPass,
+    ShadowResources,
+};
+use ash::vk;
+use glam::{Vec3, Vec4};
+use std::time::Duration;
+
+/// What shading a view with shadows needs: passes, images, and the scene's blockers.
+pub struct ShadowedView {
+    shade: Kept<ShadePass>,
+    shadow: Kept<ShadowPass>,
+    /// Of the shade pass and of the shadow pass.
+    sets: [vk::DescriptorSet; 2],
+    _pool: DescriptorPool,
+    unshadowed: Image,
+    shadows: Image,
+    picks: Buffer,
+    blockers: [Buffer; 2],
+}
+
+impl ShadowedView {
+    /// What the last run's rays found: of each pixel the part of its light that arrives, the penumbra's width, 1 where there is light, and the
+    /// number of rays.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shadows(&self) -> Result<Vec<Vec4>, EngineError> {
+        let texels: Vec<[u16; 4]> = self.shadows.download(Usage::COMPUTE_WRITE)?;
+        let number = |bits| half::f16::from_bits(bits).to_f32();
+        Ok(texels.into_iter().map(|texel| Vec4::from_array(texel.map(number))).collect())
+    }
+
+    /// The last run's radiance without shadows.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn unshadowed(&self) -> Result<Vec<Vec4>, EngineError> {
+        let texels: Vec<[f32; 4]> = self.unshadowed.download(Usage::COMPUTE_WRITE)?;
+        Ok(texels.into_iter().map(Vec4::from_array).collect())
+    }
+}
+
+/// What of a scene blocks light: every triangle that does not emit, so that lamps do not hide the lights that they are.
+fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
+    let blocks = |material: u32| scene.materials[material as usize].emission == [0.0; 3];
+    let triangles = scene.triangles.iter().filter(|triangle| blocks(triangle.material));
+    let triangles: Vec<_> =
+        triangles.map(|triangle| [triangle.p0, triangle.p1, triangle.p2].map(Vec3::from_array)).collect();
+    Ok(Blockers::new(&triangles)?)
+}
+
+impl SceneRenderer<'_> {
+    /// Makes what shading this view of `scene` with shadows needs. `options` have shadow rays; radiance is added to the image of the view.
+    ///
+    /// # Errors
+    /// [`EngineError`] says why the device fails, or which option no shadow can be made with.
+    pub fn shadowed(
+        &self,
+        scene: &SceneBuffers,
+        options: ShadeOptions,
+        filter: ShadowFilter,
+    ) -> Result<ShadowedView, EngineError> {
+        let (engine, host) = (self.engine, self.engine.host());
+        // SAFETY: As in Engine::pass.
+        let (shade, shadow) = unsafe {
+            let output = ShadowOptions { filter, output: Output::Add };
+            (
+                ShadePass::new(engine.context(), options)?,
+                ShadowPass::new(engine.context(), options, output)?,
+            )
+        };
+        let blockers = blockers(scene)?;
+        let image = |name, format| {
+            let usage = vk::ImageUsageFlags::STORAGE;
+            host.image(&ImageDescription { name, extent: self.size, layers: 1, format, usage })
+        };
+        let sizes = [shade.pool_sizes(1), shadow.pool_sizes(1)].concat();
+        let pool = host.descriptor_pool(2, &sizes)?;
+        // SAFETY: The layouts are the passes', and alive.
+        let sets = unsafe { [pool.allocate(shade.set_layout())?, pool.allocate(shadow.set_layout())?] };
+        let view = ShadowedView {
+            sets,
+            _pool: pool,
+            unshadowed: image("unshadowed radiance", vk::Format::R32G32B32A32_SFLOAT)?,
+            shadows: image("shadows", ShadowPass::SHADOW_FORMAT)?,
+            picks: engine.storage("shadow picks", &vec![0_u32; shade.picks_size(self.size) as usize / 4])?,
+            blockers: [
+                engine.storage("blocker nodes", &blockers.nodes)?,
+                engine.storage("blocker triangles", &blockers.triangles)?,
+            ],
+            shade: Kept::new(host, shade),
+            shadow: Kept::new(host, shadow),
+        };
+        let resources = self.shadowed_resources(&view);
+        // SAFETY: The sets are new, and the resources live until submissions were waited for.
+        unsafe {
+            view.shade.write_set(view.sets[0], &resources)?;
+            let shadow = ShadowResources {
+                shadow: Resource::StorageImage { view: view.shadows.view() },
+                radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
+                blockers: Some(BlockerResources {
+                    nodes: Resource::buffer(view.blockers[0].handle()),
+                    triangles: Resource::buffer(view.blockers[1].handle()),
+                }),
+            };
+            view.shadow.write_set(view.sets[1], &resources, &shadow)?;
+        }
+        view.shade.prepare(&self.shade_frame())?;
+        view.shadow.prepare()?;
+        Ok(view)
+    }
+
+    fn shadowed_resources(&self, view: &ShadowedView) -> ShadeResources {
+        ShadeResources {
+            radiance: Resource::StorageImage { view: view.unshadowed.view() },
+            picks: Some(Resource::buffer(view.picks.handle())),
+            ..self.shade_resources()
+        }
+    }
+
+    /// As [`SceneRenderer::shade`], with shadows, by the random numbers of `seed`.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shade_shadowed(
+        &mut self,
+        view: &ShadowedView,
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let frame = ShadeFrame { seed, ..self.shade_frame() };
+        self.engine.host().try_submit_timed(|commands| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            view.unshadowed.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+            view.shadows.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+            // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
+            // submissions are waited for.
+            unsafe {
+                view.shade.record(commands, view.sets[0], &frame)?;
+                self.engine.compute_barrier(commands);
+                view.shadow.record(commands, view.sets[1], None, &frame)?;
+            }
+            Ok(())
+        })
+    }
+}
+
+impl Engine {
+    /// What dispatches before wrote is read by those after.
+    ///
+    /// # Safety
+    /// `commands` is being recorded, outside a render pass.
+    unsafe fn compute_barrier(&self, commands: vk::CommandBuffer) {
+        let barrier = [vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE)];
+        let (compute, flags) = (vk::PipelineStageFlags::COMPUTE_SHADER, vk::DependencyFlags::empty());
+        // SAFETY: The same contract.
+        unsafe {
+            self.host().device().cmd_pipeline_barrier(commands, compute, compute, flags, &barrier, &[], &[]);
+        }
+    }
+}
