@@ -11,6 +11,7 @@ pub mod lobe;
 pub mod one_pixel;
 mod points;
 mod property;
+pub mod shadow_patch;
 pub mod shapes;
 pub mod spirv;
 

@@ -194,7 +194,8 @@ impl ShadePass {
 
     /// How many bytes [`ShadeResources::picks`] needs for images of `size` pixels.
     pub fn picks_size(&self, size: [u32; 2]) -> vk::DeviceSize {
-        4 * vk::DeviceSize::from(self.options.shadow_rays) * size.map(vk::DeviceSize::from).iter().product::<u64>()
+        4 * vk::DeviceSize::from(self.options.shadow_rays)
+            * size.map(vk::DeviceSize::from).iter().product::<u64>()
     }
 
     /// The layout that the host allocates a descriptor set with.
@@ -243,7 +244,8 @@ impl ShadePass {
             return Err(Error::InvalidArgument { field: "coat", message });
         }
         if resources.picks.is_none() && self.options.shadow_rays > 0 {
-            let message = "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
+            let message =
+                "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
             return Err(Error::InvalidArgument { field: "picks", message });
         }
         let textures_place = match resources.table {
@@ -401,7 +403,10 @@ fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
         return wrong("shadow_rays", "is more than ShadeOptions::MOST_SHADOW_RAYS");
     }
     if options.shadow_rays > 0 && options.output != Output::Overwrite {
-        return wrong("output", "adds, but with shadow rays the unshadowed radiance has an image of its own: ShadowOptions::output adds");
+        return wrong(
+            "output",
+            "adds, but with shadow rays the unshadowed radiance has an image of its own: ShadowOptions::output adds",
+        );
     }
     if options.shadow_rays > 0 && options.images != RadianceImages::Combined {
         return wrong("images", "are separate, but with shadow rays the lobes' radiance is one sum");

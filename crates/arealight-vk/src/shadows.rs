@@ -164,7 +164,10 @@ impl ShadowPass {
             (Some(blockers), _) => blockers,
             (None, true) => BlockerResources { nodes: shade.lights, triangles: shade.lights },
             (None, false) => {
-                return Err(missing("blockers", "are missing, but the pass was made without a module of the host's"));
+                return Err(missing(
+                    "blockers",
+                    "are missing, but the pass was made without a module of the host's",
+                ));
             }
         };
         let all = [

@@ -120,7 +120,8 @@ impl Tiles {
         if !self.options.classifies(frame.lights) {
             return Ok(None);
         }
-        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count, seed } = constants;
+        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count, seed } =
+            constants;
         let constants = TileConstants {
             position_from_clip,
             camera,

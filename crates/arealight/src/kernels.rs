@@ -312,13 +312,9 @@ const SHADOWED: Binding = write(
     Access::ReadWrite,
     "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be unshadowed_image's",
 );
-const BLOCKER_NODES: Binding =
-    read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
-const BLOCKER_TRIANGLES: Binding = read(
-    "blocker_triangles",
-    BindingKind::StorageBuffer,
-    "Blockers::triangles: GpuBlockerTriangle[]",
-);
+const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
+const BLOCKER_TRIANGLES: Binding =
+    read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: GpuBlockerTriangle[]");
 
 /// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants: [`crate::gpu::ShadowConstants`].
 pub static SHADOW_RAYS: Kernel = Kernel {

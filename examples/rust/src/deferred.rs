@@ -171,7 +171,7 @@ impl<'a> Deferred<'a> {
                 coat: None,     // without Effects::COAT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
                 glossy: None, // its radiance is in that image too, without RadianceImages::Separate
-                picks: None, // without shadow rays
+                picks: None,  // without shadow rays
                 tiles: Some(TileResources {
                     lobe_horizons: Resource::buffer(lobe_horizons.raw),
                     tile_lists: Resource::buffer(place.tile_lists.raw),

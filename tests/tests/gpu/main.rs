@@ -32,6 +32,7 @@ mod recorder;
 mod resize;
 mod shading;
 mod shadow_rays;
+mod shadows;
 mod shape_frames;
 mod shape_lights;
 mod shape_points;

@@ -100,14 +100,14 @@ ivec2 arealight_outline_coverage(ArealightShadowOutline outline, vec3 direction)
     return coverage;
 }
 
-// How often a direction is drawn over an outline that is not convex before one outside of it is taken.
-const int AREALIGHT_OUTLINE_TRIES = 8;
+// How often a direction is drawn, until one is inside of an outline that is not convex, and above the surface.
+const int AREALIGHT_OUTLINE_TRIES = 32;
 
 // Draws a ray over an outline from a lobe whose cosine space `space` leads to from the shading frame. `random` in [0, 1)^2, uniform. False where
-// the outline has no form factor in that space.
+// the outline has no form factor in that space, or no draw was inside of it and above the surface: there is next to no light.
 bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 space, vec2 random, out ArealightShadowRay ray) {
     mat3 to_space = space * to_frame;
-    int tries = outline.is_convex ? 1 : AREALIGHT_OUTLINE_TRIES;
+    int tries = outline.is_convex && !AREALIGHT_CLIPS_AT_SURFACE ? 1 : AREALIGHT_OUTLINE_TRIES;
     for (int i = 0; i < tries; i++) {
         // Draw in a piece
         vec2 rest = fract(random + float(i) * vec2(0.7548777, 0.5698403));
@@ -120,6 +120,10 @@ bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 spac
         vec3 normal = cross(piece.c - piece.a, piece.d - piece.b);
         ray.distance = clamp(dot(piece.a, normal) / dot(ray.direction, normal), 0.0, 1e30);
 
+        // What is clipped at the surface's horizon is not drawn
+        if (AREALIGHT_CLIPS_AT_SURFACE && (to_frame * ray.direction).z <= 0.0) {
+            continue;
+        }
         // Pieces that overlap cancel, or count as often as they overlap
         if (outline.is_convex) {
             return true;
@@ -130,7 +134,7 @@ bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 spac
             return true;
         }
     }
-    return true;
+    return false;
 }
 
 #endif

@@ -244,7 +244,9 @@ fn render(
     let visibility = renderer.visibility()?;
     let mut tiles = None;
     let shading = match (arguments.reference, arguments.tiles) {
-        (None, None) => shade(&mut renderer, &buffers, (surfaces, quality), arguments.shadows.unwrap_or_default())?,
+        (None, None) => {
+            shade(&mut renderer, &buffers, (surfaces, quality), arguments.shadows.unwrap_or_default())?
+        }
         (None, Some(cull_threshold)) => {
             let options = ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() };
             let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;

@@ -72,10 +72,7 @@ impl SceneRenderer<'_> {
         // SAFETY: As in Engine::pass.
         let (shade, shadow) = unsafe {
             let output = ShadowOptions { filter, output: Output::Add };
-            (
-                ShadePass::new(engine.context(), options)?,
-                ShadowPass::new(engine.context(), options, output)?,
-            )
+            (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), options, output)?)
         };
         let blockers = blockers(scene)?;
         let image = |name, format| {

@@ -1,0 +1,178 @@
+//! The shade pass and the shadow pass over an image whose pixels all see one shading point, each by rays of its own.
+
+use crate::TestEngine;
+use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight::{Blockers, Light, Material, PackedLights};
+use arealight_engine::host::{Buffer, Image, ImageDescription, Usage};
+use arealight_vk::{
+    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowOptions, ShadowPass,
+    ShadowResources,
+};
+use ash::vk;
+use glam::{DVec3, Vec3, Vec4};
+use half::f16;
+
+/// Pixels to a side of the image.
+pub const SIDE: u32 = 64;
+
+/// A shading point at the origin, whose surface looks up along z, with its lights and what blocks them.
+#[derive(Debug, Clone)]
+pub struct ShadowPatch {
+    /// The surface's material.
+    pub material: Material,
+    /// From the point to the camera.
+    pub view: Vec3,
+    /// What shines.
+    pub lights: Vec<Light>,
+    /// Triangles.
+    pub blockers: Vec<[Vec3; 3]>,
+}
+
+/// What the passes found of a patch.
+#[derive(Debug, Clone)]
+pub struct PatchShadows {
+    /// Of each pixel, radiance without shadows.
+    pub unshadowed: Vec<Vec3>,
+    /// And with them.
+    pub radiance: Vec<Vec3>,
+    /// What [`ShadowResources::shadow`] holds.
+    pub shadows: Vec<Vec4>,
+}
+
+impl PatchShadows {
+    /// The mean over all pixels of the part of the light that arrives.
+    pub fn mean(&self) -> f64 {
+        self.shadows.iter().map(|shadow| f64::from(shadow.x)).sum::<f64>() / self.shadows.len() as f64
+    }
+}
+
+/// Both passes.
+pub struct PatchPasses<'a> {
+    engine: &'a TestEngine,
+    shade: ShadePass,
+    shadow: ShadowPass,
+    options: ShadeOptions,
+}
+
+impl<'a> PatchPasses<'a> {
+    /// Makes them.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn new(engine: &'a TestEngine, options: ShadeOptions, filter: ShadowFilter) -> Self {
+        let shadows = ShadowOptions { filter, ..ShadowOptions::default() };
+        // SAFETY: Host::submit waits, and the passes are dropped before the engine.
+        unsafe {
+            let shade = ShadePass::new(engine.context(), options).unwrap();
+            let shadow = ShadowPass::new(engine.context(), options, shadows).unwrap();
+            Self { engine, shade, shadow, options }
+        }
+    }
+}
+
+impl ShadowPatch {
+    /// Runs both passes.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn run(&self, passes: &PatchPasses<'_>) -> PatchShadows {
+        let PatchPasses { engine, shade, shadow: shadows, options } = passes;
+        let host = engine.host();
+        let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
+        let blockers = Blockers::new(&self.blockers).unwrap();
+        let material = &self.material;
+        let images = [
+            filled(engine, [0.0, 0.0, 0.0, 1.0]),
+            filled(engine, [0.0, 0.0, 1.0, material.roughness]),
+            filled(engine, material.base_color.extend(material.metalness).to_array()),
+            filled(engine, material.dielectric_f0.extend(material.dielectric_f90).to_array()),
+            filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
+        ];
+        let [position, normal, base_color, specular, coat] = images
+            .each_ref()
+            .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
+        let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
+        let shadowed = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
+        let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
+        let of = |image: &Image| Resource::StorageImage { view: image.view() };
+        let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
+        let lights = host.storage_buffer("lights", &packed.lights).unwrap();
+        let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
+        let shapes = host.storage_buffer("shapes", &packed.shapes).unwrap();
+        let nodes = host.storage_buffer("nodes", &blockers.nodes).unwrap();
+        let triangles = host.storage_buffer("triangles", &blockers.triangles).unwrap();
+        let picks = vec![0_u32; (SIDE * SIDE * options.shadow_rays) as usize];
+        let picks = host.storage_buffer("picks", &picks).unwrap();
+        // SAFETY: Host::submit waits, and everything here is dropped before the engine.
+        unsafe {
+            let sizes = [shade.pool_sizes(1), shadows.pool_sizes(1)].concat();
+            let pool = host.descriptor_pool(2, &sizes).unwrap();
+            let sets =
+                [shade.set_layout(), shadows.set_layout()].map(|layout| pool.allocate(layout).unwrap());
+            let resources = ShadeResources {
+                table: engine.table(),
+                lights: buffer(&lights),
+                light_vertices: buffer(&vertices),
+                shapes: Some(buffer(&shapes)),
+                light_textures: None,
+                position,
+                normal,
+                base_color,
+                specular: Some(specular),
+                coat: Some(coat),
+                radiance: of(&radiance),
+                glossy: None,
+                picks: Some(buffer(&picks)),
+                tiles: None,
+            };
+            shade.write_set(sets[0], &resources).unwrap();
+            let of_shadows = ShadowResources {
+                shadow: of(&shadow),
+                radiance: Some(of(&shadowed)),
+                blockers: Some(BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
+            };
+            shadows.write_set(sets[1], &resources, &of_shadows).unwrap();
+            let frame = ShadeFrame {
+                size: [SIDE; 2],
+                camera: self.view,
+                position_from_clip: None,
+                lights: packed.summary(),
+                tile_lists: None,
+                seed: 0,
+            };
+            host.submit(|commands| shade.record(commands, sets[0], &frame).unwrap()).unwrap();
+            host.submit(|commands| shadows.record(commands, sets[1], None, &frame).unwrap()).unwrap();
+        }
+        let pixels = |image: &Image| {
+            let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();
+            texels.into_iter().map(|texel| Vec4::from_array(texel).truncate()).collect()
+        };
+        let shadows: Vec<[u16; 4]> = shadow.download(Usage::COMPUTE_WRITE).unwrap();
+        let number = |bits| f16::from_bits(bits).to_f32();
+        PatchShadows {
+            unshadowed: pixels(&radiance),
+            radiance: pixels(&shadowed),
+            shadows: shadows.into_iter().map(|texel| Vec4::from_array(texel.map(number))).collect(),
+        }
+    }
+}
+
+fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) -> Image {
+    let description = ImageDescription { name: "patch", extent: [SIDE; 2], layers: 1, format, usage };
+    engine.host().image(&description).unwrap()
+}
+
+/// An image of one colour, to be read.
+fn filled(engine: &TestEngine, texel: [f32; 4]) -> Image {
+    let image = image(engine, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
+    image.upload(&vec![texel; (SIDE * SIDE) as usize], Usage::COMPUTE_READ).unwrap();
+    image
+}
+
+/// An image to be written.
+fn stored(engine: &TestEngine, format: vk::Format) -> Image {
+    let image = image(engine, format, vk::ImageUsageFlags::STORAGE);
+    let host = engine.host();
+    host.submit(|commands| image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE)).unwrap();
+    image
+}

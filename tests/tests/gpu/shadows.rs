@@ -1,0 +1,278 @@
+//! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces of every kind.
+
+use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Material, Quality, TubeEnds};
+use arealight_oracle::shading::{RelativeLight, ltc_on};
+use arealight_oracle::visibility::visible_parts;
+use arealight_tests::TestEngine;
+use arealight_tests::shadow_patch::{PatchPasses, PatchShadows, ShadowPatch};
+use glam::{DVec2, DVec3, Vec3};
+
+const RAYS: u32 = 4;
+
+fn options() -> ShadeOptions {
+    ShadeOptions { shadow_rays: RAYS, ..ShadeOptions::default() }
+}
+
+fn light(shape: LightShape) -> Light {
+    Light { radiance: Vec3::ONE, shape, ..Light::default() }
+}
+
+/// A flat light at a height, which shines down; its outline in (x, y), clockwise from above.
+fn flat(height: f64, outline: &[[f64; 2]]) -> Light {
+    let vertices = outline.iter().map(|&xy| DVec2::from_array(xy).extend(height)).collect();
+    light(LightShape::Polygon(vertices))
+}
+
+/// A rectangle as two triangles.
+fn rectangle(corners: [Vec3; 4]) -> Vec<[Vec3; 3]> {
+    let [a, b, c, d] = corners;
+    vec![[a, b, c], [a, c, d]]
+}
+
+/// A wide plate at a height over all that has y > 0.
+fn plate_over_half(height: f32) -> Vec<[Vec3; 3]> {
+    let corner = |x: f32, y: f32| Vec3::new(100.0 * x, 100.0 * y, height);
+    rectangle([corner(-1.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(-1.0, 1.0)])
+}
+
+/// Surfaces of every lobe, with a view in the plane y = 0.
+fn surfaces() -> Vec<(&'static str, Material, Vec3)> {
+    let metal = Material { metalness: 1.0, ..Material::default() };
+    let view = Vec3::new(-1.0, 0.0, 1.2);
+    vec![
+        ("diffuse", Material { dielectric_f0: Vec3::ZERO, dielectric_f90: 0.0, ..Material::default() }, view),
+        ("metal .2", Material { roughness: 0.2, ..metal }, view),
+        ("metal .5", Material { roughness: 0.5, ..metal }, Vec3::new(-3.0, 0.0, 1.0)),
+        ("plastic", Material { roughness: 0.35, ..Material::default() }, view),
+    ]
+}
+
+/// Lights that are their own mirror image in the plane y = 0.
+fn symmetric_lights() -> Vec<(&'static str, Light)> {
+    let (u, v) = (DVec3::X * 0.8, DVec3::Y * 0.5);
+    let center = DVec3::new(0.9, 0.0, 1.5);
+    let box_corner = |i: usize| {
+        let sign = |bit: usize| if i & bit == 0 { -0.4 } else { 0.4 };
+        center + DVec3::new(sign(1), sign(2), sign(4))
+    };
+    let box_faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    vec![
+        ("quad", flat(1.5, &[[0.2, -0.6], [0.2, 0.6], [1.5, 0.6], [1.5, -0.6]])),
+        ("quad through the horizon", {
+            let at = |y: f64, z: f64| DVec3::new(1.2, y, z);
+            light(LightShape::Polygon(vec![at(-0.6, -0.5), at(-0.6, 1.0), at(0.6, 1.0), at(0.6, -0.5)]))
+        }),
+        ("small quad", flat(1.5, &[[0.9, -0.02], [0.9, 0.02], [0.95, 0.02], [0.95, -0.02]])),
+        ("hexagon", flat(1.5, &[[0.2, 0.0], [0.5, 0.5], [1.1, 0.5], [1.4, 0.0], [1.1, -0.5], [0.5, -0.5]])),
+        (
+            "arrow",
+            flat(
+                1.5,
+                &[
+                    [0.0, 0.0],
+                    [0.8, 0.9],
+                    [0.8, 0.3],
+                    [1.8, 0.3],
+                    [1.4, 0.0],
+                    [1.8, -0.3],
+                    [0.8, -0.3],
+                    [0.8, -0.9],
+                ],
+            ),
+        ),
+        (
+            "box",
+            light(LightShape::Mesh {
+                vertices: box_faces.iter().flatten().map(|&i| box_corner(i)).collect(),
+                faces: vec![4; 6],
+            }),
+        ),
+        ("disk", light(LightShape::Disk { center, axis_u: u, axis_v: -v })),
+        ("sphere", light(LightShape::Sphere { center, radius: 0.5 })),
+        (
+            "tube along the plane",
+            light(LightShape::Tube { p0: center - u, p1: center + u, radius: 0.1, ends: TubeEnds::Open }),
+        ),
+        (
+            "capsule across the plane",
+            light(LightShape::Tube { p0: center - v, p1: center + v, radius: 0.2, ends: TubeEnds::Round }),
+        ),
+    ]
+}
+
+#[test]
+fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
+    let Some(engine) = TestEngine::new() else { return };
+    // A lobe's part below the surface would be hidden
+    let options =
+        ShadeOptions { quality: Quality { horizon: Horizon::Both, ..Quality::default() }, ..options() };
+    let passes = PatchPasses::new(&engine, options, ShadowFilter::Off);
+    for (kind, light) in symmetric_lights() {
+        for (surface, material, view) in surfaces() {
+            let patch =
+                ShadowPatch { material, view, lights: vec![light.clone()], blockers: plate_over_half(0.01) };
+            let found = patch.run(&passes);
+            assert!(found.unshadowed[0].max_element() > 1e-4, "{kind}, {surface}: {}", found.unshadowed[0]);
+            // 16,384 rays, more evenly spread than random ones, which would err by .004
+            assert!((found.mean() - 0.5).abs() < 4e-3, "{kind}, {surface}: {}", found.mean());
+            for (unshadowed, (radiance, shadow)) in
+                found.unshadowed.iter().zip(found.radiance.iter().zip(&found.shadows))
+            {
+                assert!(
+                    (*unshadowed * shadow.x - *radiance).abs().max_element()
+                        <= 1e-3 * unshadowed.max_element()
+                );
+            }
+            // The twins: nothing blocks, and everything
+            let lit = ShadowPatch { blockers: plate_over_half(-0.5), ..patch.clone() };
+            let lit = lit.run(&passes);
+            assert!(lit.shadows.iter().all(|shadow| shadow.x == 1.0), "{kind}, {surface}: {}", lit.mean());
+            assert_eq!(lit.radiance, lit.unshadowed, "without noise");
+            let mut all = plate_over_half(0.01);
+            all.extend(
+                plate_over_half(0.01).into_iter().map(|t| t.map(|vertex| vertex * Vec3::new(1.0, -1.0, 1.0))),
+            );
+            let dark = ShadowPatch { blockers: all, ..patch }.run(&passes);
+            // What comes in below the plates is left
+            assert!(dark.mean() < 1e-2, "{kind}, {surface}: {}", dark.mean());
+        }
+    }
+}
+
+/// What is visible of a quad by the oracle, as a part of its unshadowed light.
+fn exact(light: &Light, patch: &ShadowPatch) -> f64 {
+    let table = arealight_table::ggx();
+    let whole = RelativeLight::new(light, DVec3::ZERO);
+    let blockers: Vec<_> = patch.blockers.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
+    let surface = patch.material.surface();
+    let of = |vertices: Vec<DVec3>| {
+        let part = RelativeLight { vertices, ..whole.clone() };
+        ltc_on(Quality::default(), &table, &surface, DVec3::Z, patch.view.as_dvec3(), &part)
+    };
+    let weights = DVec3::new(0.2126, 0.7152, 0.0722);
+    let visible: DVec3 = visible_parts(&whole.vertices, &blockers).into_iter().map(of).sum();
+    visible.dot(weights) / of(whole.vertices.clone()).dot(weights)
+}
+
+#[test]
+fn what_arrives_of_a_quad_is_what_the_oracle_sees_of_it() {
+    let Some(engine) = TestEngine::new() else { return };
+    let light = flat(1.5, &[[-0.3, -0.6], [-0.4, 0.6], [1.5, 0.9], [1.5, -0.6]]);
+    let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);
+    let blockers =
+        vec![[at(0.2, -0.1), at(0.5, 0.05), at(0.2, 0.35)], [at(-0.2, -0.2), at(0.2, -0.05), at(0.0, 0.2)]];
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    let mut largest = 0.0_f64;
+    for (surface, material, view) in surfaces() {
+        let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: blockers.clone() };
+        let found = patch.run(&passes).mean();
+        let exact = exact(&light, &patch);
+        assert!((0.05..0.95).contains(&exact), "{surface}: {exact}, the case says nothing");
+        largest = largest.max((found - exact).abs());
+        // As above
+        assert!((found - exact).abs() < 4e-3, "{surface}: {found} and {exact}");
+    }
+    println!("largest error {largest:.1e}");
+}
+
+#[test]
+fn lights_are_picked_by_what_they_add() {
+    let Some(engine) = TestEngine::new() else { return };
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    // Of three lights the one in the middle is hidden
+    let light = |x: f64, radiance: f32| Light {
+        radiance: Vec3::splat(radiance),
+        ..flat(2.0, &[[x, -0.5], [x, 0.5], [x + 1.0, 0.5], [x + 1.0, -0.5]])
+    };
+    let lights = vec![light(-2.5, 1.0), light(-0.5, 0.2), light(1.5, 3.0)];
+    let at = |x: f32, y: f32| Vec3::new(x, y, 1.0);
+    let blockers = rectangle([at(-0.3, -0.3), at(0.3, -0.3), at(0.3, 0.3), at(-0.3, 0.3)]);
+    for (surface, material, view) in surfaces() {
+        let patch = ShadowPatch { material, view, lights: lights.clone(), blockers: blockers.clone() };
+        let found = patch.run(&passes);
+        let hidden = ShadowPatch { lights: vec![lights[1].clone()], ..patch.clone() };
+        let hidden = hidden.run(&passes);
+        let exact = 1.0 - hidden.unshadowed[0].y / found.unshadowed[0].y;
+        assert!((found.mean() - f64::from(exact)).abs() < 4e-3, "{surface}: {} and {exact}", found.mean());
+    }
+}
+
+#[test]
+fn rays_leave_the_pocket_and_the_hole_of_a_light_alone() {
+    let Some(engine) = TestEngine::new() else { return };
+    let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
+    let pocket = flat(
+        1.0,
+        &[
+            [-1.0, -1.0],
+            [-1.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 0.5],
+            [-0.5, 0.5],
+            [-0.5, -0.5],
+            [1.0, -0.5],
+            [1.0, -1.0],
+        ],
+    );
+    let mut frame = flat(1.0, &[[-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0], [1.0, -1.0]]);
+    let hole = [[-0.5, -0.5], [-0.5, 0.5], [0.8, 0.5], [0.8, -0.5]];
+    frame.cut_holes(&[hole.iter().map(|&xy| DVec2::from_array(xy).extend(1.0)).collect()]).unwrap();
+    let at = |x: f32, y: f32| Vec3::new(x, y, 0.5);
+    // Before the hole, but for what rounding takes at its rim
+    let within = rectangle([at(-0.24, -0.24), at(0.39, -0.24), at(0.39, 0.24), at(-0.24, 0.24)]);
+    let beyond = rectangle([at(-0.24, -0.4), at(0.6, -0.4), at(0.6, 0.4), at(-0.24, 0.4)]);
+    for (kind, light) in [("pocket", pocket), ("hole", frame)] {
+        for (surface, material, view) in surfaces() {
+            let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: within.clone() };
+            let found = patch.run(&passes).mean();
+            // Eight draws in the pocket after one another are as likely as .4^8 = 7e-4 for a lobe that looks into it
+            assert!(found > 0.99, "{kind}, {surface}: {found}");
+            // The twin: a blocker before a part of the light
+            let patch = ShadowPatch { blockers: beyond.clone(), ..patch };
+            let found = patch.run(&passes).mean();
+            assert!(found < 0.99, "{kind}, {surface}: {found}");
+        }
+    }
+}
+
+#[test]
+fn the_filter_takes_the_noise_and_leaves_the_mean() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (_, material, view) = surfaces().remove(0);
+    let (_, light) = symmetric_lights().remove(0);
+    let patch = ShadowPatch { material, view, lights: vec![light], blockers: plate_over_half(0.5) };
+    let one_ray = ShadeOptions { shadow_rays: 1, ..options() };
+    let deviation = |found: &PatchShadows| {
+        let parts = found.radiance.iter().zip(&found.unshadowed).map(|(a, b)| f64::from(a.y / b.y));
+        let parts: Vec<f64> = parts.collect();
+        let mean = parts.iter().sum::<f64>() / parts.len() as f64;
+        (mean, (parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / parts.len() as f64).sqrt())
+    };
+    let [(plain_mean, plain), (mean, filtered)] = [ShadowFilter::Off, ShadowFilter::Gather]
+        .map(|filter| deviation(&patch.run(&PatchPasses::new(&engine, one_ray, filter))));
+    assert!((plain - 0.5).abs() < 0.01, "a coin's: {plain}");
+    assert!((mean - plain_mean).abs() < 0.01, "{mean} and {plain_mean}");
+    // All pixels are at one place: the search's weights alone, a Gaussian of 3 pixels, would leave .05
+    assert!(filtered < 0.05, "{filtered}");
+}
+
+#[test]
+fn coats_and_both_horizons_draw_from_their_own_lobes() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (_, light) = symmetric_lights().remove(0);
+    let quality = Quality { horizon: Horizon::Both, ..Quality::default() };
+    let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::COAT;
+    let material = Material { roughness: 0.6, coat: 0.9, coat_roughness: 0.2, ..Material::default() };
+    for options in [
+        ShadeOptions { surfaces, ..options() },
+        ShadeOptions { quality, ..options() },
+        ShadeOptions { quality: Quality { fresnel: Fresnel::Split, ..Quality::default() }, ..options() },
+    ] {
+        let view = Vec3::new(-1.0, 0.0, 0.8);
+        let patch =
+            ShadowPatch { material, view, lights: vec![light.clone()], blockers: plate_over_half(0.01) };
+        let found = patch.run(&PatchPasses::new(&engine, options, ShadowFilter::Off)).mean();
+        assert!((found - 0.5).abs() < 4e-3, "{options:?}: {found}");
+    }
+}
