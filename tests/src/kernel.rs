@@ -90,6 +90,24 @@ pub static BLOCKERS: Kernel = Kernel {
     constants: &[],
 };
 
+/// Blockers along rays, from the buffers of a scene.
+pub static SCENE_BLOCKERS: Kernel = Kernel {
+    name: "scene_blockers",
+    spirv: include_bytes!("../spirv/scene_blockers.spv"),
+    local_size: [64, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        Binding::storage_buffer("nodes", Access::Read, "GpuBvhNode[]"),
+        Binding::storage_buffer("triangles", Access::Read, "GpuTriangle[]"),
+        Binding::storage_buffer("materials", Access::Read, "GpuMaterial[]"),
+        Binding::storage_buffer("textures", Access::Read, "GpuTexture[]"),
+        Binding::storage_buffer("texels", Access::Read, "uint[]"),
+        Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
+        Binding::storage_buffer("distances", Access::Write, "float a ray"),
+    ],
+    constants: &[],
+};
+
 /// The functions that the probe kernel calls: its specialisation constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u32)]

@@ -12,6 +12,7 @@ pub mod one_pixel;
 mod points;
 mod property;
 pub mod shadow_patch;
+pub mod scenes;
 pub mod shapes;
 pub mod spirv;
 

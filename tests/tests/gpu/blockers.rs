@@ -1,12 +1,15 @@
-//! Blockers along rays, found in a hierarchy on the GPU, against every triangle in turn in float64.
+//! Blockers along rays, found in a hierarchy on the GPU, against every triangle in turn in float64; and what blocks in a scene.
 
 use arealight::Blockers;
 use arealight::gpu::GpuBlockerTriangle;
+use arealight_engine::host::Buffer;
 use arealight_oracle::visibility::is_hidden;
-use arealight_tests::kernel::BLOCKERS;
+use arealight_scene::{Image, Scene, SceneBuffers, Texture, Wrap};
+use arealight_tests::kernel::{BLOCKERS, SCENE_BLOCKERS};
+use arealight_tests::scenes::{lambert, scene_of, without_textures};
 use arealight_tests::{Random, TestEngine};
 use arealight_vk::Resource;
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 type Triangle = [Vec3; 3];
 
@@ -41,18 +44,21 @@ impl Ray {
     }
 }
 
+/// Rays as a kernel reads them.
+fn upload(engine: &TestEngine, rays: &[Ray]) -> Buffer {
+    let record =
+        |ray: &Ray| [ray.origin.extend(0.0), ray.direction.extend(ray.distance)].map(|row| row.to_array());
+    engine.host().storage_buffer("rays", &rays.iter().map(record).collect::<Vec<_>>()).unwrap()
+}
+
 /// The kernel's distances.
 fn walked(engine: &TestEngine, blockers: &Blockers, rays: &[Ray]) -> Vec<f64> {
     let host = engine.host();
-    let rays: Vec<[[f32; 4]; 2]> = rays
-        .iter()
-        .map(|ray| [ray.origin.extend(0.0).to_array(), ray.direction.extend(ray.distance).to_array()])
-        .collect();
     let nodes = host.storage_buffer("nodes", &blockers.nodes).unwrap();
     let nothing = GpuBlockerTriangle::default();
     let triangles = if blockers.triangles.is_empty() { &[nothing][..] } else { &blockers.triangles };
     let triangles = host.storage_buffer("triangles", triangles).unwrap();
-    let given = host.storage_buffer("rays", &rays).unwrap();
+    let given = upload(engine, rays);
     let inputs = [&nodes, &triangles, &given].map(|buffer| Resource::buffer(buffer.handle()));
     let found: Vec<f32> = engine.dispatch(&BLOCKERS, &[], &inputs, rays.len());
     found.into_iter().map(f64::from).collect()
@@ -162,4 +168,63 @@ fn both_faces_block_and_nothing_behind_or_beyond() {
     // Without triangles all rays are free, also through zero
     let none = Blockers::new(&[]).unwrap();
     assert_eq!(walked(&engine, &none, &rays), [2.0, 2.0, 2.0, f64::from(0.9_f32), 5.0]);
+}
+
+/// The distances that the scene's own bridge gives.
+fn walked_in_scene(engine: &TestEngine, scene: &Scene, rays: &[Ray]) -> Vec<f64> {
+    let host = engine.host();
+    let buffers = SceneBuffers::new(scene, DVec3::ZERO).unwrap();
+    let given = [
+        host.storage_buffer("nodes", &buffers.nodes).unwrap(),
+        host.storage_buffer("triangles", &buffers.triangles).unwrap(),
+        host.storage_buffer("materials", &buffers.materials).unwrap(),
+        host.storage_buffer("textures", &buffers.textures).unwrap(),
+        host.storage_buffer("texels", &buffers.texels).unwrap(),
+        upload(engine, rays),
+    ];
+    let inputs = given.each_ref().map(|buffer| Resource::buffer(buffer.handle()));
+    let found: Vec<f32> = engine.dispatch(&SCENE_BLOCKERS, &[], &inputs, rays.len());
+    found.into_iter().map(f64::from).collect()
+}
+
+/// Three triangles above each other, and an image of two texels whose left one is transparent.
+fn masked_scene() -> Scene {
+    let at = |z: f64| [DVec3::Z * z, DVec3::new(4.0, 0.0, z), DVec3::new(0.0, 4.0, z)];
+    let mut scene = scene_of(&[at(1.0), at(2.0), at(3.0)], without_textures(lambert(0.5)));
+    let image = Image { name: "mask".into(), width: 2, height: 1, texels: vec![0x00ff_ffff, 0xffff_ffff] };
+    scene.images.push(image);
+    scene.textures.push(Texture { image: 0, srgb: true, wrap_u: Wrap::Clamp, wrap_v: Wrap::Clamp });
+    scene
+}
+
+#[test]
+fn a_scene_blocks_but_by_its_lamps_and_where_it_is_masked_out() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut scene = masked_scene();
+    let mut ray = Ray::new(DVec3::new(1.0, 1.0, 0.0), DVec3::Z, 10.0);
+    let walk = |scene: &Scene, ray: Ray| walked_in_scene(&engine, scene, &[ray])[0];
+    // Any of the three; from below they show their back, which is not seen
+    scene.materials[0].double_sided = false;
+    assert!([1.0, 2.0, 3.0].contains(&walk(&scene, ray)));
+    // Lamps do not block
+    scene.triangles[0].lamp = true;
+    scene.triangles[2].lamp = true;
+    assert_eq!(walk(&scene, ray), 2.0);
+    // What is at the light does not, nor is there anything before 1.9
+    for (distance, expected) in [(2.0, 2.0), (2.0003, 2.0003), (2.001, 2.0), (1.9, 1.9)] {
+        ray.distance = distance as f32;
+        assert_eq!(walk(&scene, ray), f64::from(expected as f32), "{distance}");
+    }
+    // A mask whose left texel is transparent
+    let masked = |cutoff| {
+        let mut scene = scene.clone();
+        scene.triangles[1].uvs = [Vec2::ZERO, Vec2::X * 4.0, Vec2::ZERO];
+        scene.materials[0].base_color_texture = Some(0);
+        scene.materials[0].alpha_cutoff = cutoff;
+        scene
+    };
+    for (x, cutoff, expected) in [(0.2, Some(0.5), 10.0), (0.8, Some(0.5), 2.0), (0.2, None, 2.0)] {
+        let ray = Ray::new(DVec3::new(x, 1.0, 0.0), DVec3::Z, 10.0);
+        assert_eq!(walk(&masked(cutoff), ray), expected, "{x} {cutoff:?}");
+    }
 }

@@ -89,7 +89,7 @@ fn every_effect_is_asked_for_and_no_other() {
 
 #[test]
 fn flags_have_the_same_bits_in_glsl() {
-    use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
+    use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle};
     use gpu::{GpuLight, TextureLoadConstants as Load};
     let flags = [
         ("TWO_SIDED", GpuLight::TWO_SIDED.into()),
@@ -102,6 +102,7 @@ fn flags_have_the_same_bits_in_glsl() {
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
+    assert_constants(SCENE_GLSL, "TRIANGLE_", &[("LAMP", GpuTriangle::LAMP.into())]);
     assert_constants(SCENE_GLSL, "MATERIAL_", &material);
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
     let texture = [

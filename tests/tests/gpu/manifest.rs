@@ -296,7 +296,7 @@ fn every_structure_has_the_same_offsets() {
             &visibility,
             "ArealightGpuTriangle",
             layout!(tool::gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
-                                                      u1, n2, u2, v2, reserved as "reserved0"),
+                                                      u1, n2, u2, v2, flags, reserved as "reserved0"),
         ),
         (
             &visibility,

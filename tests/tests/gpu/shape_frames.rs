@@ -10,11 +10,12 @@ use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
-use arealight_scene::{Scene, SceneBuffers, SceneMaterial, Triangle};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::scenes::{lambert, scene_of, without_textures};
 use arealight_tests::{Comparison, Random, TestEngine, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 use std::sync::{Arc, LazyLock};
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
@@ -243,41 +244,13 @@ fn effects_that_no_shape_needs_change_nothing() {
 /// A floor of two triangles at z = 0, of Lambert's lobe alone or of the GGX lobe alone.
 fn floor(glossy: bool) -> Scene {
     let corner = |x: f64, y: f64| DVec3::new(x, y, 0.0);
-    let triangle =
-        |positions| Triangle { positions, normals: [Vec3::Z; 3], uvs: [Vec2::ZERO; 3], material: 0 };
     let (a, b, c, d) = (corner(-2.0, -2.0), corner(2.0, -2.0), corner(2.0, 2.0), corner(-2.0, 2.0));
     let material = Material {
         base_color: Vec3::splat(0.75),
         metalness: if glossy { 1.0 } else { 0.0 },
-        roughness: 0.6,
-        dielectric_f0: Vec3::ZERO,
-        dielectric_f90: 0.0,
-        coat: 0.0,
-        coat_roughness: 0.0,
+        ..lambert(0.75)
     };
-    let mut scene = Scene {
-        triangles: vec![triangle([a, b, c]), triangle([a, c, d])],
-        materials: vec![SceneMaterial {
-            name: "floor".into(),
-            material,
-            base_alpha: 1.0,
-            emission: Vec3::ZERO,
-            base_color_texture: None,
-            metallic_roughness_texture: None,
-            normal_texture: None,
-            normal_scale: 1.0,
-            emission_texture: None,
-            coat_texture: None,
-            coat_roughness_texture: None,
-            coat_normal_texture: None,
-            coat_normal_scale: 1.0,
-            alpha_cutoff: None,
-            double_sided: true,
-        }],
-        ..Scene::default()
-    };
-    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
-    scene
+    scene_of(&[[a, b, c], [a, c, d]], without_textures(material))
 }
 
 #[test]

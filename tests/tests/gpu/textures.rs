@@ -28,7 +28,8 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             v0: v,
             v1: v,
             v2: v,
-            reserved: [0; 3],
+            flags: 0,
+            reserved: [0; 2],
         }
     };
     SceneBuffers {

@@ -23,9 +23,9 @@ struct ArealightGpuTriangle {
     vec3 n2;
     float u2;
     float v2;
+    uint flags;
     uint reserved0;
     uint reserved1;
-    uint reserved2;
 };
 
 struct ArealightGpuMaterial {
@@ -61,6 +61,7 @@ struct ArealightGpuTexture {
 };
 
 const uint NO_TEXTURE = 0xffffffffu;
+const uint TRIANGLE_LAMP = 1u;
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
 const uint TEXTURE_SRGB = 1u;

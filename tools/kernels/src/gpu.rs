@@ -113,8 +113,15 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
+    /// [`GpuTriangle::LAMP`], or zero.
+    pub flags: u32,
     /// Zero.
-    pub reserved: [u32; 3],
+    pub reserved: [u32; 2],
+}
+
+impl GpuTriangle {
+    /// It is what a light of the scene looks like, and blocks no light.
+    pub const LAMP: u32 = 1;
 }
 
 /// A material of the visibility kernel. Texture indices are [`GpuMaterial::NO_TEXTURE`] where there is none.

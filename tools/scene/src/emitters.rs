@@ -1,23 +1,44 @@
 //! Emissive geometry to polygon lights.
 
 use crate::light_textures::{self, TexturedLight};
-use crate::load::Loader;
+use crate::load::{Lamp, Loader};
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
 use crate::outlines::{Coordinates, outlines};
 use crate::shape_lights;
 use arealight::{Light, LightShape};
 use glam::Vec3;
+use std::ops::Range;
 
-/// Adds the lights that an instance is, if its material emits.
-pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
+/// Adds the lights that an instance is, if its material emits: which of the scene's.
+pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -> Range<usize> {
+    let first = loader.scene.lights.len();
     let material = &loader.scene.materials[instance.material as usize];
     if material.emission == Vec3::ZERO || instance.triangles.is_empty() {
-        return;
+        return first..first;
     }
     if shape_lights::add(loader, node, instance) {
-        return;
+        // The node's shape may have been added for another of its primitives
+        return loader.scene.lights.len() - 1..loader.scene.lights.len();
     }
+    add_polygons(loader, node, instance);
+    first..loader.scene.lights.len()
+}
+
+/// Drops the lights that are black, and marks the triangles that look like the others.
+pub(crate) fn finish(loader: &mut Loader) {
+    let scene = &mut loader.scene;
+    let shines = |light: &Light| light.radiance != Vec3::ZERO;
+    for Lamp { triangles, lights } in std::mem::take(&mut loader.lamps) {
+        let lamp = scene.lights[lights].iter().any(shines);
+        scene.triangles[triangles].iter_mut().for_each(|triangle| triangle.lamp = lamp);
+    }
+    // A black light lights nothing. None is that shows no texture: its material would not emit
+    scene.lights.retain(shines);
+}
+
+/// Adds an instance's flat parts as lights.
+fn add_polygons(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     let material = &loader.scene.materials[instance.material as usize];
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());
     let (radiance, texture) = (material.emission, material.emission_texture);

@@ -157,7 +157,8 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
         n2,
         u2: uv2.x,
         v2: uv2.y,
-        reserved: [0; 3],
+        flags: if triangle.lamp { GpuTriangle::LAMP } else { 0 },
+        reserved: [0; 2],
     }
 }
 

@@ -13,7 +13,7 @@ use crate::shown::{Images, Key, Rectangle, Shown};
 use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{Light, LightShape, LightTexture, TexturePart};
-use glam::{DVec2, Vec3};
+use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 
 /// The most light textures a scene has; further lights have the mean colour of what they show. As many layers as every
@@ -117,7 +117,7 @@ pub(crate) fn tolerance(scene: &Scene, texture: u32) -> DVec2 {
     (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))
 }
 
-/// Gives the textured lights their layers; those that show one colour get that, and those that show black go.
+/// Gives the textured lights their layers; those that show one colour get that, or black.
 pub(crate) fn assign(loader: &mut Loader) {
     let textured = std::mem::take(&mut loader.textured);
     let scene = &mut loader.scene;
@@ -152,8 +152,6 @@ pub(crate) fn assign(loader: &mut Loader) {
         let text = format!("emissiveTexture: {loss}: its mean colour is everywhere");
         loader.warn(format!("light '{name}'{more}"), text);
     }
-    // A black light lights nothing. None is that shows no texture: its material would not emit
-    loader.scene.lights.retain(|light| light.radiance != Vec3::ZERO);
 }
 
 /// Textures of which there are more pieces than a few that make up at least half of it.

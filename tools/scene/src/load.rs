@@ -4,6 +4,7 @@ use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
 use crate::{Bounds, Scene, SceneError, Warning, area_lights, emitters, materials, meshes, nodes};
 use glam::Vec3;
+use std::ops::Range;
 use std::path::Path;
 
 /// A scene in the making.
@@ -18,8 +19,16 @@ pub(crate) struct Loader {
     pub images: Vec<Option<u32>>,
     /// The lights that a texture shines through, until all are known.
     pub textured: Vec<TexturedLight>,
+    /// What the lights look like, until all are known.
+    pub lamps: Vec<Lamp>,
     /// The node whose mesh was last found to stand for a shape, and what it shines with.
     pub shaped: Option<(usize, Vec3)>,
+}
+
+/// A primitive's triangles and the lights that they look like, as ranges of the scene's.
+pub(crate) struct Lamp {
+    pub triangles: Range<usize>,
+    pub lights: Range<usize>,
 }
 
 impl Loader {
@@ -45,7 +54,8 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let materials = vec![None; document.root.materials.len() + 1];
     let images = vec![None; document.root.images.len()];
     let scene = Scene { name, ..Scene::default() };
-    let mut loader = Loader { document, scene, materials, images, textured: Vec::new(), shaped: None };
+    let mut loader =
+        Loader { document, scene, materials, images, textured: Vec::new(), lamps: Vec::new(), shaped: None };
     warn_of_what_is_ignored(&mut loader);
     // Place the nodes in the world
     let placed = nodes::place(&mut loader)?;
@@ -54,11 +64,14 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     for node in &placed {
         for primitive in &*primitives.of_node(&mut loader, node)? {
             let material = materials::resolve(&mut loader, primitive)?;
+            let first = loader.scene.triangles.len();
             let instance = meshes::place(&mut loader, node, primitive, material)?;
-            emitters::add(&mut loader, node, &instance);
+            let lights = emitters::add(&mut loader, node, &instance);
+            loader.lamps.push(Lamp { triangles: first..loader.scene.triangles.len(), lights });
         }
     }
     light_textures::assign(&mut loader);
+    emitters::finish(&mut loader);
     // Lights and cameras that hang on nodes
     area_lights::add(&mut loader, &placed)?;
     let Loader { scene, .. } = &mut loader;

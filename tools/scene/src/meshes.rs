@@ -201,7 +201,7 @@ pub(crate) fn place<'a>(
         let Some(flat) = (q - p).cross(r - p).try_normalize() else { continue };
         let normals = corners.map(|i| if normals[i] == Vec3::ZERO { flat.as_vec3() } else { normals[i] });
         let uvs = corners.map(|i| primitive.uvs[i]);
-        loader.scene.triangles.push(Triangle { positions: [p, q, r], normals, uvs, material });
+        loader.scene.triangles.push(Triangle { positions: [p, q, r], normals, uvs, material, lamp: false });
         kept.push(corners.map(|i| i as u32));
     }
     let largest =

@@ -48,6 +48,8 @@ pub struct Triangle {
     pub uvs: [Vec2; 3],
     /// Index into [`Scene::materials`].
     pub material: u32,
+    /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is where the lamp is, nor another's.
+    pub lamp: bool,
 }
 
 /// A material: factors, and the textures that multiply them.

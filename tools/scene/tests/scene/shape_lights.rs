@@ -21,6 +21,7 @@ fn area_lights_may_be_disks() {
                         "extensions": { "EXT_lights_area": { "light": 0 } } }));
     let scene = load(writer);
     assert_eq!(warnings(&scene), [""; 0]);
+    assert!(!scene.triangles.iter().any(|triangle| triangle.lamp), "the floor is none");
     let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
     assert_eq!((light.name.as_str(), light.radiance, light.two_sided), ("round", Vec3::ONE, false));
     let LightShape::Disk { center, axis_u, axis_v } = light.shape else { panic!("{light:?}") };
@@ -65,8 +66,9 @@ fn emissive_meshes_may_stand_for_shapes() {
         assert!(!light.two_sided, "solids shine outwards");
         let [found, expected] = [light.shape.clone(), expected].map(|shape| shape.bounds());
         assert!((found[0] - expected[0]).length() < 1e-6 && (found[1] - expected[1]).length() < 1e-6);
-        // The mesh is drawn, and is no light besides
+        // The mesh is drawn, and is no light besides; it does not block its own
         assert!(scene.triangles.len() > 32);
+        assert!(scene.triangles.iter().all(|triangle| triangle.lamp));
     }
 }
 
@@ -83,6 +85,7 @@ fn a_mesh_of_two_materials_is_one_shape() {
     };
     let scene = two(1.0);
     assert_eq!((scene.lights.len(), warnings(&scene).len()), (1, 0));
+    assert!(scene.triangles.iter().all(|triangle| triangle.lamp));
     let scene = two(0.5);
     assert_eq!((scene.lights.len(), scene.lights[0].radiance), (1, Vec3::new(3.0, 2.0, 1.0)));
     assert!(warnings(&scene)[0].contains("shines with the emission of its first primitive"));

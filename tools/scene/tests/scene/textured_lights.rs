@@ -230,7 +230,9 @@ fn black_parts_are_no_lights() {
     let scene = scene_of(&corner, &shapes, &json!({}));
     assert_eq!((scene.lights.len(), scene.light_textures.len()), (1, 1));
     assert!(scene.lights[0].shape.center().x > 5.0, "the third");
-    assert_eq!(scene.triangles.len(), 8, "all are seen");
+    // All are seen, and only what shines is a lamp
+    let lamps: Vec<bool> = scene.triangles.iter().map(|triangle| triangle.lamp).collect();
+    assert_eq!(lamps, [false, false, false, false, true, true, false, false]);
 }
 
 #[test]

@@ -1,0 +1,77 @@
+//! Scenes made of a few triangles.
+
+use arealight::Material;
+use arealight_scene::{Scene, SceneMaterial, Triangle};
+use glam::{DVec3, Vec2, Vec3};
+
+/// Of Lambert's lobe alone.
+pub fn lambert(albedo: f32) -> Material {
+    Material {
+        base_color: Vec3::splat(albedo),
+        metalness: 0.0,
+        roughness: 0.6,
+        dielectric_f0: Vec3::ZERO,
+        dielectric_f90: 0.0,
+        coat: 0.0,
+        coat_roughness: 0.0,
+    }
+}
+
+/// A material seen from both sides, without any texture.
+pub fn without_textures(material: Material) -> SceneMaterial {
+    SceneMaterial {
+        name: "plain".into(),
+        material,
+        base_alpha: 1.0,
+        emission: Vec3::ZERO,
+        base_color_texture: None,
+        metallic_roughness_texture: None,
+        normal_texture: None,
+        normal_scale: 1.0,
+        emission_texture: None,
+        coat_texture: None,
+        coat_roughness_texture: None,
+        coat_normal_texture: None,
+        coat_normal_scale: 1.0,
+        alpha_cutoff: None,
+        double_sided: true,
+    }
+}
+
+/// Flat triangles of one material; their normals face where their vertices run counter-clockwise.
+pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
+    let triangle = |positions: &[DVec3; 3]| {
+        let [a, b, c] = *positions;
+        let normal = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        Triangle {
+            positions: *positions,
+            normals: [normal; 3],
+            uvs: [Vec2::ZERO; 3],
+            material: 0,
+            lamp: false,
+        }
+    };
+    Scene {
+        triangles: triangles.iter().map(triangle).collect(),
+        materials: vec![material],
+        bounds: triangles.iter().flatten().copied().collect(),
+        ..Scene::default()
+    }
+}
+
+/// The 12 triangles of a box along the axes, facing outwards.
+pub fn box_of(low: DVec3, high: DVec3) -> Vec<[DVec3; 3]> {
+    let corner = |x: f64, y: f64, z: f64| low + (high - low) * DVec3::new(x, y, z);
+    let face = |axis: usize, side: f64| {
+        // Around the face counter-clockwise as seen from outside
+        let at = |u: f64, v: f64| {
+            let (u, v) = if side > 0.0 { (u, v) } else { (v, u) };
+            let mut place = [side; 3];
+            (place[(axis + 1) % 3], place[(axis + 2) % 3]) = (u, v);
+            corner(place[0], place[1], place[2])
+        };
+        let [a, b, c, d] = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
+        [[a, b, c], [a, c, d]]
+    };
+    (0..6).flat_map(|i| face(i % 3, if i < 3 { 0.0 } else { 1.0 })).collect()
+}

@@ -1,0 +1,30 @@
+#ifndef SCENE_BLOCKER_GLSL
+#define SCENE_BLOCKER_GLSL
+
+// What blocks light in a scene: a bridge for shadow rays over the scene's own buffers. The including kernel defines SCENE_BINDING, as scene.glsl
+// has it.
+
+#include "scene.glsl"
+
+// Rays end before the light by this factor, 1 - 2^-12: what lies in the light's plane does not block it.
+const float BLOCKER_REACH = 0.999755859375;
+
+// Both faces of a triangle block, as far as its alpha mask lets it be seen; lamps do not.
+void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
+    ArealightGpuTriangle triangle = triangles[index];
+    BvhHit met;
+    if ((triangle.flags & TRIANGLE_LAMP) == 0u
+        && bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
+        && !masked_out(met)) {
+        hit = met;
+    }
+}
+
+// The distance of a blocker, not always the nearest, on the way from `origin`, relative to the lights' origin, along a unit direction to a light at
+// `distance`; `distance` if there is none.
+float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance) {
+    BvhHit hit = bvh_trace(origin, direction, distance * BLOCKER_REACH, true);
+    return hit.triangle == BVH_NO_TRIANGLE ? distance : hit.distance;
+}
+
+#endif
