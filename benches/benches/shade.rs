@@ -4,7 +4,7 @@
 //! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
 
 use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
-use arealight_engine::{Engine, Host, HostOptions, SceneRenderer};
+use arealight_engine::{Engine, Host, HostOptions, Reference, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::Vec3;
@@ -64,7 +64,11 @@ fn shade(criterion: &mut Criterion) {
     }
     group.bench_function("reference", |bencher| {
         bencher.iter_custom(|count| {
-            repeat(count, || renderer.reference(1, 0, |_| {}).expect("the device works"))
+            repeat(count, || {
+                renderer
+                    .reference(Reference { samples: 1, ..Reference::default() }, |_| {})
+                    .expect("the device works")
+            })
         });
     });
     group.finish();

@@ -3,7 +3,7 @@
 use arealight::plan::{PositionSource, ShadeOptions};
 use arealight::{Coat, Effects, Light, Quality, Surface};
 use arealight_engine::host::{Image, Usage};
-use arealight_engine::{EvalPoint, SceneRenderer};
+use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
@@ -176,7 +176,7 @@ fn reference_converges(engine: &TestEngine, name: &str) {
     let mut view = view(engine, &scene);
     let emitted = view.renderer.radiance().unwrap();
     let samples = 256;
-    view.renderer.reference(samples, 7, |_| {}).unwrap();
+    view.renderer.reference(Reference { samples, seed: 7, shadows: false }, |_| {}).unwrap();
     let sampled = view.renderer.radiance().unwrap();
 
     // The truth at every 37th pixel, by cubature
@@ -221,7 +221,7 @@ fn the_fitted_lobes_look_like_the_reference() {
         fitted.renderer.shade(scene.effects(), Quality::default()).unwrap();
         let fitted = fitted.renderer.radiance().unwrap();
         let mut sampled = view(&engine, &scene);
-        sampled.renderer.reference(64, 3, |_| {}).unwrap();
+        sampled.renderer.reference(Reference { samples: 64, seed: 3, shadows: false }, |_| {}).unwrap();
         let sampled = sampled.renderer.radiance().unwrap();
         let mean = |picture: &[Vec4]| {
             picture.iter().zip(&emitted).map(|(p, e)| (*p - *e).truncate().as_dvec3()).sum::<DVec3>()

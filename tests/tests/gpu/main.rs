@@ -33,6 +33,7 @@ mod resize;
 mod shading;
 mod shadow_rays;
 mod shadows;
+mod shadowed_reference;
 mod shape_frames;
 mod shape_lights;
 mod shape_points;

@@ -2,7 +2,7 @@
 //! against the Monte Carlo reference.
 
 use arealight::{Effects, Horizon, Light, LightShape, LightTable, Quality};
-use arealight_engine::{EvalPoint, SceneRenderer};
+use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_scene::{Camera, SceneBuffers};
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{
@@ -265,7 +265,7 @@ impl Frame<'_> {
     /// The mean of the first channel by the reference.
     fn reference(&self) -> f64 {
         let mut renderer = self.renderer();
-        renderer.reference(32, 1, |_| ()).expect("it samples");
+        renderer.reference(Reference { samples: 32, seed: 1, shadows: false }, |_| ()).expect("it samples");
         let texels = renderer.radiance().expect("radiance");
         texels.iter().map(|texel| f64::from(texel.x)).sum::<f64>() / texels.len() as f64
     }

@@ -7,7 +7,7 @@ use arealight::{
 };
 use arealight_benches::pictures;
 use arealight_engine::host::{Image, ImageDescription, Usage};
-use arealight_engine::{Engine, SceneRenderer};
+use arealight_engine::{Engine, Reference, SceneRenderer};
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};
@@ -281,7 +281,8 @@ fn the_reference_samples_shapes() {
             let renderer = SceneRenderer::new(&engine, &buffers, shapes, constants, SIZE);
             let mut renderer = renderer.expect("a renderer");
             if sampled {
-                renderer.reference(SAMPLES, 10, |_| {}).expect("a reference");
+                let reference = Reference { samples: SAMPLES, seed: 10, shadows: false };
+                renderer.reference(reference, |_| {}).expect("a reference");
             } else {
                 let lobe = if glossy { Effects::GLOSSY } else { Effects::DIFFUSE };
                 renderer.shade(lobe | Effects::SPECULAR_INPUT, Quality::default()).expect("a frame");

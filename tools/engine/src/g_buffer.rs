@@ -7,7 +7,7 @@ use ash::vk;
 
 /// The images of a G-buffer and the radiance image, all of one size.
 pub struct GBuffer {
-    /// Position relative to the origin; w = 0 where there is no surface.
+    /// Position relative to the origin; w is one more than the triangle's index, exactly, and 0 where there is no surface.
     pub position: Image,
     /// Normal and roughness.
     pub normal: Image,

@@ -23,9 +23,9 @@ pub use g_buffer::GBuffer;
 pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
-pub use render::SceneRenderer;
 pub use render::shadowed::ShadowedView;
 pub use render::tiled::{TileCounts, TileLists, TiledView};
+pub use render::{Reference, SceneRenderer};
 pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 

@@ -12,11 +12,30 @@ use arealight::{Effects, Light, LightSummary, PackedLights, Quality};
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
-use arealight_tool_kernels::kernels::{REFERENCE, VISIBILITY};
+use arealight_tool_kernels::kernels::{REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use glam::{Vec3, Vec4};
 use std::time::Duration;
+
+/// What the Monte Carlo reference does: [`SceneRenderer::reference`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reference {
+    /// Samples a pixel: of each light a point, and of the BRDF a direction.
+    pub samples: u32,
+    /// Another seed gives independent noise.
+    pub seed: u32,
+    /// Whether the scene's triangles block light, but for [its lamps](arealight_scene::Triangle::lamp). Without, light passes through
+    /// everything, as in the shade pass.
+    pub shadows: bool,
+}
+
+impl Default for Reference {
+    /// 256 samples, without shadows.
+    fn default() -> Self {
+        Self { samples: 256, seed: 0, shadows: false }
+    }
+}
 
 /// A scene on the device, with the images of one view of it.
 ///
@@ -171,15 +190,14 @@ impl<'a> SceneRenderer<'a> {
         })
     }
 
-    /// Adds the light that surfaces reflect, by `samples` Monte Carlo samples a pixel of the true BRDF.
-    /// `progress` is told how many samples are done. GPU time, where the queue has timestamps.
+    /// Adds the light that surfaces reflect, by Monte Carlo samples of the true BRDF. `progress` is told how many samples are done. GPU
+    /// time, where the queue has timestamps.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn reference(
         &mut self,
-        samples: u32,
-        seed: u32,
+        reference: Reference,
         mut progress: impl FnMut(u32),
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
@@ -200,14 +218,15 @@ impl<'a> SceneRenderer<'a> {
                 Resource::buffer(self.shape_buffer.handle()),
                 coat,
             ])
+            .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
             .collect();
-        let pass = self.engine.pass(&REFERENCE, &[], &resources)?;
+        let pass = self.engine.pass(&REFERENCE, &[(SHADOWS, reference.shadows.into())], &resources)?;
 
         let mut total = Some(Duration::ZERO);
         let mut done = 0;
-        while done < samples {
-            let sample_count = self.samples_a_dispatch().min(samples - done);
-            let took = self.reference_step(&pass, done, sample_count, samples, seed)?;
+        while done < reference.samples {
+            let sample_count = self.samples_a_dispatch(reference.shadows).min(reference.samples - done);
+            let took = self.reference_step(&pass, done, sample_count, reference)?;
             total = total.zip(took).map(|(total, took)| total + took);
             done += sample_count;
             progress(done);
@@ -220,8 +239,7 @@ impl<'a> SceneRenderer<'a> {
         pass: &BoundPass,
         first_sample: u32,
         sample_count: u32,
-        samples: u32,
-        seed: u32,
+        Reference { samples, seed, .. }: Reference,
     ) -> Result<Option<Duration>, EngineError> {
         let constants = ReferenceConstants {
             camera: self.camera.camera,
@@ -239,11 +257,12 @@ impl<'a> SceneRenderer<'a> {
     }
 
     /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset the
-    /// device after two seconds; at least one for each pixel and light, however many there are.
-    fn samples_a_dispatch(&self) -> u32 {
+    /// device after two seconds; at least one for each pixel and light, however many there are. With shadows each sample is two rays, which
+    /// cost some eight times as much.
+    fn samples_a_dispatch(&self, shadows: bool) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let light_samples = pixels * u64::from(self.lights.light_count + self.lights.shape_count).max(1);
-        ((1 << 23) / light_samples).clamp(1, 64) as u32
+        ((1 << if shadows { 20 } else { 23 }) / light_samples).clamp(1, 64) as u32
     }
 
     /// The radiance image: rgb, and in w whether there is a surface; rows from the top.

@@ -3,8 +3,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The yardstick: integrates the true BRDF (Lambert + GGX, and a coat above them) over the same lights by Monte Carlo, at the
-// same G-buffer, without visibility, as the shade kernel. For each light one direction drawn from its area and
-// the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995).
+// same G-buffer as the shade kernel: without visibility, as that one, or with shadows. For each light one direction drawn from its area and
+// the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995); with shadows each of them is
+// a ray, and what is blocked adds nothing.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -13,6 +14,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define LIGHT_TEXTURES_BINDING 9
 #define SHAPES_BINDING 10
 #define COAT_BINDING 11
+#define SCENE_BINDING 12
 #define AREALIGHT_COAT 1
 #define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_LIGHT_TEXTURES 1
@@ -22,10 +24,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_SPHERES 1
 #define AREALIGHT_TUBES 1
 const bool HAS_SPECULAR_INPUT = true;
+
+// 1: triangles of the scene block light.
+layout(constant_id = 100) const uint SHADOWS = 0u;
+
 #include "arealight/ggx.glsl"
+#include "arealight/shadows/ray_origin.glsl"
 #include "polygon_lights.glsl"
 #include "g_buffer.glsl"
 #include "random.glsl"
+#include "scene_blocker.glsl"
 #include "shape_sampling.glsl"
 
 struct ArealightGpuLightSampling {
@@ -74,6 +82,7 @@ struct CoatLobe {
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
     vec3 position;
+    vec3 ray_origin; // of shadow rays
     mat3 to_surface;
     vec3 view;
     vec3 diffuse_albedo;
@@ -95,13 +104,34 @@ CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share, probability);
 }
 
-Lobes load_lobes(ArealightSurface surface) {
+// Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen.
+vec3 load_ray_origin(ArealightSurface surface, uint index) {
+    if (SHADOWS == 0u) {
+        return surface.position;
+    }
+    ArealightGpuTriangle triangle = triangles[index];
+    vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
+    vec3 normal = arealight_normalize_or(face, surface.normal);
+    return arealight_ray_origin(surface.position, dot(normal, surface.view) < 0.0 ? -normal : normal, 0.0);
+}
+
+// Whether light arrives from a light's point, `offset` from the surface.
+bool arrives(Lobes lobes, vec3 offset) {
+    if (SHADOWS == 0u) {
+        return true;
+    }
+    vec3 way = offset + (lobes.position - lobes.ray_origin);
+    float distance = length(way);
+    return arealight_bridge_blocker(lobes.ray_origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
+}
+
+Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     float alpha = max(surface.roughness * surface.roughness, AREALIGHT_MIN_ALPHA);
     float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
-    return Lobes(surface.position, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
+    return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
                  surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability,
                  load_coat_lobe(frame, surface.coat, glossy + diffuse));
 }
@@ -210,7 +240,7 @@ vec3 estimate_by_light(Lobes lobes, ArealightPolygonLight light, ArealightGpuLig
     float by_light = light_density(light, sampling.area, point.normal, offset);
     vec3 direction = lobes.to_surface * arealight_normalize_or(offset, vec3(0.0));
     float by_brdf = density(lobes, direction);
-    if (by_light <= 0.0 || by_brdf <= 0.0) {
+    if (by_light <= 0.0 || by_brdf <= 0.0 || !arrives(lobes, offset)) {
         return vec3(0.0);
     }
     return light_radiance(light, point.offset) * evaluate(lobes, direction) / (by_light + by_brdf);
@@ -229,7 +259,7 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
     }
     vec3 offset = ray * distance;
     float by_light = light_density(light, sampling.area, sampling.normal, offset);
-    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center)) {
+    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center) || !arrives(lobes, offset)) {
         return vec3(0.0);
     }
     return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
@@ -254,7 +284,7 @@ vec3 estimate_mesh_by_brdf(Lobes lobes, vec3 direction, float by_brdf, Arealight
         float distance = dot(normal, a) / dot(normal, ray);
         if (inside && distance > 0.0 && distance < 1e30) {
             float by_light = light_density(light, sampling.area, normal, ray * distance);
-            sum += by_light > 0.0 ? 1.0 / (by_light + by_brdf) : 0.0;
+            sum += by_light > 0.0 && arrives(lobes, ray * distance) ? 1.0 / (by_light + by_brdf) : 0.0;
         }
     }
     return light.radiance * evaluate(lobes, direction) * sum;
@@ -266,15 +296,15 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
     float towards_density = density(lobes, towards);
-    if (drawn.density > 0.0 && towards_density > 0.0) {
+    if (drawn.density > 0.0 && towards_density > 0.0 && arrives(lobes, drawn.offset)) {
         vec3 color = shape_color(shape, lobes.position, drawn.offset);
         sum += color * evaluate(lobes, towards) / (drawn.density + towards_density);
     }
     if (by_brdf > 0.0) {
         vec3 ray = direction * lobes.to_surface;
-        float by_light = ray_shape_density(shape, lobes.position, ray);
-        if (by_light > 0.0) {
-            sum += shape_color(shape, lobes.position, ray) * evaluate(lobes, direction) / (by_light + by_brdf);
+        ShapeSample met = meet_shape(shape, lobes.position, ray);
+        if (met.density > 0.0 && arrives(lobes, met.offset)) {
+            sum += shape_color(shape, lobes.position, ray) * evaluate(lobes, direction) / (met.density + by_brdf);
         }
     }
     return shape.radiance * sum;
@@ -312,7 +342,8 @@ void main() {
     if (position.w == 0.0) {
         return;
     }
-    Lobes lobes = load_lobes(load_surface(pixel, position.xyz, constants.camera));
+    ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera);
+    Lobes lobes = load_lobes(surface, load_ray_origin(surface, uint(position.w) - 1u));
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

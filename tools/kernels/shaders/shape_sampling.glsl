@@ -10,10 +10,10 @@ bool is_two_sided(ArealightGpuShape shape) {
     return (shape.flags & SHAPE_TWO_SIDED) != 0u;
 }
 
-// A point that was drawn.
+// A point that was drawn, or that a ray meets.
 struct ShapeSample {
     vec3 offset;   // from the shading point
-    float density; // in solid angle; 0 where it does not shine towards the shading point
+    float density; // in solid angle; 0 where it does not shine towards the shading point, or is none
 };
 
 // The density in solid angle of a point that was drawn by area.
@@ -41,6 +41,15 @@ float sphere_density(vec3 center, float radius, bool two_sided) {
     // 1 - cosine, without a cancellation
     float height = square / (1.0 + sqrt(1.0 - square));
     return 0.5 * AREALIGHT_INVERSE_PI / height;
+}
+
+// How far a ray from the shading point goes to a sphere's surface, `center` being from there: into it, or out of it from inside. A ray that
+// misses it goes as far as it comes near.
+float sphere_distance(vec3 center, float radius, vec3 ray) {
+    float approach = dot(center, ray);
+    vec3 beside = center - approach * ray;
+    float depth = sqrt(max(radius * radius - dot(beside, beside), 0.0));
+    return dot(center, center) > radius * radius ? approach - depth : approach + depth;
 }
 
 float ellipse_area(ArealightGpuShape shape) {
@@ -72,7 +81,8 @@ ShapeSample sample_sphere(ArealightGpuShape shape, vec3 center, inout RandomStat
     float depth = random_float(random) * 0.5 * AREALIGHT_INVERSE_PI / max(density, AREALIGHT_TINY);
     float sine = sqrt(max(depth * (2.0 - depth), 0.0));
     float angle = 2.0 * AREALIGHT_PI * random_float(random);
-    return ShapeSample((1.0 - depth) * axis + sine * (cos(angle) * across + sin(angle) * up), density);
+    vec3 ray = (1.0 - depth) * axis + sine * (cos(angle) * across + sin(angle) * up);
+    return ShapeSample(ray * sphere_distance(center, shape.radius, ray), density);
 }
 
 ShapeSample sample_tube(ArealightGpuShape shape, vec3 center, inout RandomState random) {
@@ -115,14 +125,16 @@ ShapeSample sample_shape(ArealightGpuShape shape, vec3 position, inout RandomSta
     return sample_ellipse(shape, center, random);
 }
 
-// Below, the density with which sample_shape draws what a ray from the shading point meets: 0 where it meets nothing that
+// Below, what a ray from the shading point meets, with the density with which sample_shape draws that: 0 where it meets nothing that
 // shines. `ray` is a unit vector.
 
-float ray_ellipse_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
+const ShapeSample NO_SHAPE = ShapeSample(vec3(0.0), 0.0);
+
+ShapeSample meet_ellipse(ArealightGpuShape shape, vec3 center, vec3 ray) {
     vec3 normal = arealight_normalize_or(cross(shape.axis_u, shape.axis_v), vec3(0.0));
     float distance = dot(normal, center) / dot(normal, ray);
     if (!(distance > 0.0 && distance < 1e30)) {
-        return 0.0;
+        return NO_SHAPE;
     }
     // Where in the ellipse's own axes the plane is met
     vec3 point = ray * distance - center;
@@ -131,23 +143,26 @@ float ray_ellipse_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
     float vv = dot(shape.axis_v, shape.axis_v);
     vec2 along = vec2(dot(point, shape.axis_u), dot(point, shape.axis_v));
     vec2 place = vec2(along.x * vv - along.y * uv, along.y * uu - along.x * uv) / (uu * vv - uv * uv);
-    return dot(place, place) <= 1.0 ? area_density(ray * distance, normal, ellipse_area(shape), is_two_sided(shape)) : 0.0;
+    float density = area_density(ray * distance, normal, ellipse_area(shape), is_two_sided(shape));
+    return ShapeSample(ray * distance, dot(place, place) <= 1.0 ? density : 0.0);
 }
 
-float ray_sphere_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
+ShapeSample meet_sphere(ArealightGpuShape shape, vec3 center, vec3 ray) {
     vec3 beside = cross(ray, center);
     bool inside = dot(center, center) <= shape.radius * shape.radius;
     bool met = inside || (dot(ray, center) > 0.0 && dot(beside, beside) <= shape.radius * shape.radius);
-    return met ? sphere_density(center, shape.radius, is_two_sided(shape)) : 0.0;
+    float density = sphere_density(center, shape.radius, is_two_sided(shape));
+    return ShapeSample(ray * sphere_distance(center, shape.radius, ray), met ? density : 0.0);
 }
 
-// The density of the point at `distance`, from where the tube's outside is seen: as it is convex, a ray enters it once.
-float tube_point_density(ArealightGpuShape shape, vec3 ray, float distance, vec3 normal) {
+// The point at `distance`, from where the tube's outside is seen: as it is convex, a ray enters it once.
+ShapeSample tube_point(ArealightGpuShape shape, vec3 ray, float distance, vec3 normal) {
     vec2 areas = tube_areas(shape);
-    return distance > 0.0 ? area_density(ray * distance, normal, areas.x + areas.y, false) : 0.0;
+    float density = area_density(ray * distance, normal, areas.x + areas.y, false);
+    return ShapeSample(ray * distance, distance > 0.0 ? density : 0.0);
 }
 
-float ray_tube_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
+ShapeSample meet_tube(ArealightGpuShape shape, vec3 center, vec3 ray) {
     float half_length = length(shape.axis_u);
     vec3 axis = shape.axis_u / half_length;
     float speed = dot(ray, axis);
@@ -162,7 +177,7 @@ float ray_tube_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
     if (c > 0.0 && discriminant > 0.0 && a > 0.0) {
         float distance = (-b - sqrt(discriminant)) / a;
         if (abs(height + distance * speed) <= half_length) {
-            return tube_point_density(shape, ray, distance, (from + distance * across) / shape.radius);
+            return tube_point(shape, ray, distance, (from + distance * across) / shape.radius);
         }
     }
     // The end that the ray comes from, or both half spheres
@@ -171,7 +186,7 @@ float ray_tube_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
         float distance = (side * half_length - height) / speed;
         vec3 beside = from + distance * across;
         bool met = dot(beside, beside) <= shape.radius * shape.radius;
-        return met ? tube_point_density(shape, ray, distance, side * axis) : 0.0;
+        return met ? tube_point(shape, ray, distance, side * axis) : NO_SHAPE;
     }
     if (int(shape.detail) == AREALIGHT_TUBE_ROUND) {
         for (float side = -1.0; side <= 1.0; side += 2.0) {
@@ -181,11 +196,11 @@ float ray_tube_density(ArealightGpuShape shape, vec3 center, vec3 ray) {
             float distance = approach - sqrt(max(inside, 0.0));
             vec3 normal = (ray * distance - middle) / shape.radius;
             if (inside > 0.0 && dot(normal, axis) * side >= 0.0 && dot(normal, ray) < 0.0) {
-                return tube_point_density(shape, ray, distance, normal);
+                return tube_point(shape, ray, distance, normal);
             }
         }
     }
-    return 0.0;
+    return NO_SHAPE;
 }
 
 // What multiplies the radiance of a shape that a ray from the shading point meets: its image, if it shows one. The ray has any length.
@@ -199,15 +214,15 @@ vec3 shape_color(ArealightGpuShape shape, vec3 position, vec3 ray) {
     return arealight_image_color(image, ray * (dot(normal, center) / dot(normal, ray)) - center);
 }
 
-float ray_shape_density(ArealightGpuShape shape, vec3 position, vec3 ray) {
+ShapeSample meet_shape(ArealightGpuShape shape, vec3 position, vec3 ray) {
     vec3 center = shape.center - position;
     if (shape.kind == SHAPE_TUBE) {
-        return ray_tube_density(shape, center, ray);
+        return meet_tube(shape, center, ray);
     }
     if (shape.kind == SHAPE_SPHERE) {
-        return ray_sphere_density(shape, center, ray);
+        return meet_sphere(shape, center, ray);
     }
-    return ray_ellipse_density(shape, center, ray);
+    return meet_ellipse(shape, center, ray);
 }
 
 #endif

@@ -68,7 +68,7 @@ void main() {
         return;
     }
     ScenePoint point = scene_point(hit);
-    imageStore(out_position, pixel, vec4(point.position, 1.0));
+    imageStore(out_position, pixel, vec4(point.position, float(hit.triangle + 1u)));
     imageStore(out_normal, pixel, vec4(point.normal, point.roughness));
     imageStore(out_base_color, pixel, vec4(point.base_color, point.metalness));
     imageStore(out_specular, pixel, vec4(point.dielectric_f0, point.dielectric_f90));

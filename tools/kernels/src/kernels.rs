@@ -62,6 +62,18 @@ pub static EVAL_SHAPES: Kernel = Kernel {
     ],
 };
 
+/// Id of a specialisation constant of [`REFERENCE`]: 1 where the triangles of the scene block light, else 0.
+pub const SHADOWS: u32 = 100;
+
+/// The buffers of a scene: a hierarchy of its triangles, and what they look like.
+const SCENE: [Binding; 5] = [
+    read("nodes", BindingKind::StorageBuffer, "GpuBvhNode[]"),
+    read("triangles", BindingKind::StorageBuffer, "GpuTriangle[]"),
+    read("materials", BindingKind::StorageBuffer, "GpuMaterial[]"),
+    read("textures", BindingKind::StorageBuffer, "GpuTexture[]"),
+    read("texels", BindingKind::StorageBuffer, "uint[]: RGBA8, red in the low byte"),
+];
+
 /// Integrates the true BRDF over the same lights by Monte Carlo, on the same G-buffer. Push constants:
 /// [`crate::gpu::ReferenceConstants`].
 pub static REFERENCE: Kernel = Kernel {
@@ -87,8 +99,13 @@ pub static REFERENCE: Kernel = Kernel {
         LIGHT_TEXTURES,
         SHAPES,
         G_COAT,
+        SCENE[0],
+        SCENE[1],
+        SCENE[2],
+        SCENE[3],
+        SCENE[4],
     ],
-    constants: &[],
+    constants: &[SHADOWS],
 };
 
 /// Finds the surface that each pixel sees, in a hierarchy of triangles, and writes a G-buffer. Push constants: [`crate::gpu::VisibilityConstants`].
@@ -98,16 +115,16 @@ pub static VISIBILITY: Kernel = Kernel {
     local_size: [8, 8, 1],
     push_constant_size: size_of::<crate::gpu::VisibilityConstants>() as u32,
     bindings: &[
-        read("nodes", BindingKind::StorageBuffer, "GpuBvhNode[]"),
-        read("triangles", BindingKind::StorageBuffer, "GpuTriangle[]"),
-        read("materials", BindingKind::StorageBuffer, "GpuMaterial[]"),
-        read("textures", BindingKind::StorageBuffer, "GpuTexture[]"),
-        read("texels", BindingKind::StorageBuffer, "uint[]: RGBA8, red in the low byte"),
+        SCENE[0],
+        SCENE[1],
+        SCENE[2],
+        SCENE[3],
+        SCENE[4],
         write(
             "out_position",
             BindingKind::StorageImage,
             Access::Write,
-            "g_position of the shade kernel (rgba32f)",
+            "g_position of the shade kernel (rgba32f); in w one more than the triangle's index",
         ),
         write(
             "out_normal",

@@ -12,7 +12,7 @@ use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight::{Effects, Quality};
 use arealight_benches::budget::{FrameLoad, ProfileLevel};
 use arealight_benches::ladder::LevelNames;
-use arealight_engine::{Engine, EngineError, SceneRenderer, TileCounts};
+use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
 use serde_json::json;
@@ -257,7 +257,8 @@ fn render(
         (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
-            let took = renderer.reference(samples, 0, |done| bar.set_position(u64::from(done)))?;
+            let reference = Reference { samples, ..Reference::default() };
+            let took = renderer.reference(reference, |done| bar.set_position(u64::from(done)))?;
             bar.finish_and_clear();
             took
         }
