@@ -58,9 +58,9 @@ pub struct Arguments {
     /// together contribute less than this fraction of what the others do
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
-    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra (filtered:N) [default: filtered:4,
-    /// off with --tiles and --reference]
-    #[arg(long, value_name = "LEVEL", conflicts_with_all = ["tiles", "reference"])]
+    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra (filtered:N). With --reference
+    /// they are exact, or off [default: filtered:4; off with --tiles]
+    #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
     #[command(flatten)]
     quality: QualityArguments,
@@ -257,7 +257,8 @@ fn render(
         (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
-            let reference = Reference { samples, ..Reference::default() };
+            let shadows = arguments.shadows.unwrap_or_default() != Shadows::Off;
+            let reference = Reference { samples, shadows, ..Reference::default() };
             let took = renderer.reference(reference, |done| bar.set_position(u64::from(done)))?;
             bar.finish_and_clear();
             took

@@ -5,6 +5,7 @@ use crate::{Engine, EngineError, Kept, SceneRenderer};
 use arealight::Blockers;
 use arealight::plan::{Output, ShadeOptions, ShadowFilter};
 use arealight_scene::{BufferError, SceneBuffers};
+use arealight_tool_kernels::gpu::GpuTriangle;
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowOptions, ShadowPass,
     ShadowResources,
@@ -48,10 +49,9 @@ impl ShadowedView {
     }
 }
 
-/// What of a scene blocks light: every triangle that does not emit, so that lamps do not hide the lights that they are.
+/// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they are.
 fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
-    let blocks = |material: u32| scene.materials[material as usize].emission == [0.0; 3];
-    let triangles = scene.triangles.iter().filter(|triangle| blocks(triangle.material));
+    let triangles = scene.triangles.iter().filter(|triangle| triangle.flags & GpuTriangle::LAMP == 0);
     let triangles: Vec<_> =
         triangles.map(|triangle| [triangle.p0, triangle.p1, triangle.p2].map(Vec3::from_array)).collect();
     Ok(Blockers::new(&triangles)?)
