@@ -1,9 +1,10 @@
 //! The files of `scenes/`: what the program writes, and what a test holds them to.
 
-use crate::{clock, coats, demo, lamps, room, screen, sweep};
+use crate::shadows::Floor;
+use crate::{clock, coats, demo, hundred_lamps, lamps, room, screen, shadows, sweep};
 
 /// Each file's name and bytes.
-pub fn files() -> [(&'static str, Vec<u8>); 7] {
+pub fn files() -> [(&'static str, Vec<u8>); 10] {
     [
         ("sweep.glb", sweep::glb()),
         ("room.glb", room::glb()),
@@ -12,5 +13,8 @@ pub fn files() -> [(&'static str, Vec<u8>); 7] {
         ("shapes.glb", lamps::glb()),
         ("clock.glb", clock::glb()),
         ("coats.glb", coats::glb()),
+        ("shadows.glb", shadows::glb(Floor::Matt)),
+        ("shadows-glossy.glb", shadows::glb(Floor::Glossy)),
+        ("hundred-lamps.glb", hundred_lamps::glb()),
     ]
 }

@@ -200,6 +200,23 @@ pub fn torus_knot(p: f64, q: f64, radius: f64, thickness: f64, segments: u32, si
     tube(curve, thickness, segments, sides)
 }
 
+/// A box around the origin with sharp edges.
+pub fn cuboid(size: [f64; 3]) -> Shape {
+    let mut shape = Shape::default();
+    for face in 0..6 {
+        let first = shape.positions.len() as u32;
+        let axis = [DVec3::X, DVec3::Y, DVec3::Z][face % 3] * if face < 3 { 1.0 } else { -1.0 };
+        let across = [DVec3::Y, DVec3::Z, DVec3::X][face % 3];
+        let up = axis.cross(across);
+        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+            let corner = (axis + across * x + up * y) * DVec3::from(size) * 0.5;
+            shape.vertex(corner, axis, DVec2::new(x + 1.0, 1.0 - y) * 0.5);
+        }
+        shape.indices.extend([0, 1, 2, 0, 2, 3].map(|corner| first + corner));
+    }
+    shape
+}
+
 /// A box around the origin with rounded edges, `steps` cells a quarter of a rounding.
 pub fn rounded_box(size: [f64; 3], rounding: f64, steps: u32) -> Shape {
     let mut shape = Shape::default();

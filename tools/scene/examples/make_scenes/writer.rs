@@ -157,6 +157,15 @@ impl Writer {
         )
     }
 
+    /// [`Writer::surface`] of Lambert's lobe alone.
+    pub fn matt(&mut self, name: &str, color: [f32; 3]) -> usize {
+        self.use_extension("KHR_materials_specular");
+        let material = self.surface(name, color, 0.0, 1.0);
+        self.root["materials"][material]["extensions"] =
+            json!({ "KHR_materials_specular": { "specularFactor": 0 } });
+        material
+    }
+
     /// A camera at `eye` that looks at `target`.
     pub fn camera(&mut self, name: &str, eye: [f64; 3], target: [f64; 3], yfov: f64, aspect: f64) {
         let camera = json!({ "type": "perspective",

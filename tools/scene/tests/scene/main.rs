@@ -19,12 +19,16 @@ mod coats;
 mod demo;
 #[path = "../../examples/make_scenes/files.rs"]
 mod files;
+#[path = "../../examples/make_scenes/hundred_lamps.rs"]
+mod hundred_lamps;
 #[path = "../../examples/make_scenes/lamps.rs"]
 mod lamps;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;
 #[path = "../../examples/make_scenes/screen.rs"]
 mod screen;
+#[path = "../../examples/make_scenes/shadows.rs"]
+mod shadows;
 #[path = "../../examples/make_scenes/shapes.rs"]
 mod shapes;
 #[path = "../../examples/make_scenes/sweep.rs"]

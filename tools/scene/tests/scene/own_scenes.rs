@@ -1,6 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
-use crate::{clock, coats, files, lamps, room, screen, sweep, test_card};
+use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -163,6 +163,40 @@ fn the_clock_is_a_disk_that_shows_its_face_upright() {
     assert!(
         (source.part.low.abs().max_element() < 1e-4) && (source.part.size - 1.0).abs().max_element() < 1e-4
     );
+}
+
+#[test]
+fn the_shadows_are_of_one_rectangle_on_two_floors() {
+    let (matt, glossy) = (load("shadows.glb"), load("shadows-glossy.glb"));
+    for scene in [&matt, &glossy] {
+        let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
+        // Files hold 16 bits of fraction
+        let size = light.shape.bounds()[1] - light.shape.bounds()[0];
+        assert!((size - DVec3::new(shadows::LIGHT[0], 0.0, shadows::LIGHT[1])).length() < 1e-4, "{size}");
+        assert_eq!(scene.triangles.iter().filter(|triangle| triangle.lamp).count(), 2);
+        assert!(light.shape.area_vector().y < 0.0, "it faces the floor");
+    }
+    assert_eq!(matt.triangles.len(), glossy.triangles.len());
+    // Lambert alone, and GGX alone
+    let floor = |scene: &Scene| scene.materials[scene.triangles[0].material as usize].material;
+    let (matt, glossy) = (floor(&matt), floor(&glossy));
+    assert_eq!((matt.metalness, matt.dielectric_f0, matt.dielectric_f90), (0.0, glam::Vec3::ZERO, 0.0));
+    assert_eq!((glossy.metalness, glossy.roughness), (1.0, shadows::ROUGHNESS));
+}
+
+#[test]
+fn the_hundred_lamps_are_quads_above_boxes() {
+    let scene = load("hundred-lamps.glb");
+    assert_eq!(scene.lights.len() as u32, hundred_lamps::ROWS * hundred_lamps::ROWS);
+    assert!(scene.lights.iter().all(|light| light.shape.is_convex_quad() && !light.two_sided));
+    let (boxes, floor) = (12 * hundred_lamps::BOXES as usize, 2);
+    assert_eq!(scene.triangles.iter().filter(|triangle| !triangle.lamp).count(), boxes + floor);
+    assert!(scene.materials.iter().any(|m| m.material.roughness == hundred_lamps::ROUGHNESS));
+    // No lamp is in a box: all hang above them
+    let heights =
+        scene.triangles.iter().filter(|triangle| !triangle.lamp).flat_map(|t| t.positions.map(|p| p.y));
+    let lowest = scene.lights.iter().map(|light| light.shape.bounds()[0].y).fold(f64::MAX, f64::min);
+    assert!(lowest > heights.fold(0.0, f64::max), "{lowest}");
 }
 
 #[test]
