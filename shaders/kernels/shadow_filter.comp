@@ -24,11 +24,11 @@ const float SEARCH_WIDTH = 3.0;
 // Pixels to a side of what a workgroup loads.
 const int PATCH = 8 + 2 * SEARCH;
 // The filter's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
-const float PENUMBRA_PART = 0.2;
+const float PENUMBRA_PART = 0.12;
 const float LEAST_WIDTH = 2.0;
 // The farthest neighbour, in pixels; steps to it on each side.
 const float FARTHEST = 20.0;
-const int STEPS = 6;
+const int STEPS = 20;
 // Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this power of their normals' cosine.
 const float PLANE_PART = 0.004;
 const float NORMAL_POWER = 32.0;
