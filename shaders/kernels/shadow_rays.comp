@@ -91,7 +91,7 @@ float penumbra_width(PickedLight light, float part, float distance, float alpha)
 }
 
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
-vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec3 normal, uint index) {
+vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, uint index) {
     PickedLight light = picked_light(pick, point.position);
     vec2 random = arealight_sequence_2d(index);
     bool is_specular = (pick & PICK_SPECULAR) != 0u;
@@ -102,8 +102,8 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec3 norm
     if (!arealight_draw_ray(outline, point.to_frame, space, random, ray)) {
         return vec2(1.0, 0.0);
     }
-    // What is below the surface does not arrive
-    if (dot(ray.direction, normal) <= 0.0) {
+    // What is below the surface does not arrive; where its geometry is above its shading, the ray meets it
+    if ((point.to_frame * ray.direction).z <= 0.0) {
         return vec2(0.0);
     }
     float end = ray.distance * RAY_PART;
@@ -127,7 +127,7 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
     vec2 sum = vec2(0.0);
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
         uint index = arealight_sequence_index(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
-        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, normal, index);
+        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, index);
     }
     return vec4(sum / float(SHADOW_RAYS), 1.0, float(SHADOW_RAYS));
 }
