@@ -18,73 +18,79 @@ layout(constant_id = 16) const int SHADOW_FILTER = 1;
 layout(set = 0, binding = UNSHADOWED_BINDING, rgba32f) uniform readonly image2D unshadowed_image;
 layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform image2D radiance_image;
 
-// Pixels to each side of the search for blockers, and the standard deviation of its weights.
-const int SEARCH = 6;
+// Pixels to each side that are searched for blockers, and that the mean is over. Wider means change the error by less than a tenth.
+const int REACH = 6;
+// The standard deviation of the search's weights, in pixels.
 const float SEARCH_WIDTH = 3.0;
 // Pixels to a side of what a workgroup loads.
-const int PATCH = 8 + 2 * SEARCH;
-// The filter's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
+const int PATCH = 8 + 2 * REACH;
+// The mean's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
 const float PENUMBRA_PART = 0.12;
 const float LEAST_WIDTH = 2.0;
-// The farthest neighbour, in pixels; steps to it on each side.
-const float FARTHEST = 20.0;
-const int STEPS = 20;
 // Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this power of their normals' cosine.
 const float PLANE_PART = 0.004;
 const float NORMAL_POWER = 32.0;
 
-// What is known of a pixel.
-struct Pixel {
-    vec3 position;
-    vec3 normal; // unit
-    vec4 shadow; // a texel of shadow_image
-};
-
-shared vec4 patch_position[PATCH * PATCH]; // and in w the shadow's first two numbers
-shared uint patch_normal[PATCH * PATCH];   // 0 where no light is
-
-Pixel load_pixel(ivec2 pixel, ivec2 size) {
-    Pixel loaded = Pixel(vec3(0.0), vec3(0.0), vec4(0.0));
-    if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, loaded.position)) {
-        loaded.shadow = imageLoad(shadow_image, pixel);
-        loaded.normal = arealight_normalize_or(load_surface(pixel, loaded.position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
-    }
-    return loaded;
-}
+// What a workgroup knows of its pixels and those around them: the position, and in w (what arrives, the penumbra's width) as halves.
+shared vec4 patch_texels[PATCH * PATCH];
+// The normal; 0 where there is no light.
+shared uint patch_normals[PATCH * PATCH];
 
 void load_patch(ivec2 corner, ivec2 size) {
     for (int i = int(gl_LocalInvocationIndex); i < PATCH * PATCH; i += 64) {
-        Pixel pixel = load_pixel(corner + ivec2(i % PATCH, i / PATCH), size);
-        patch_position[i] = vec4(pixel.position, uintBitsToFloat(packHalf2x16(pixel.shadow.rg)));
-        vec3 normal = 0.5 * pixel.normal + 0.5;
-        patch_normal[i] = pixel.shadow.b > 0.0 ? packUnorm4x8(vec4(normal, 1.0)) : 0u;
+        ivec2 pixel = corner + ivec2(i % PATCH, i / PATCH);
+        vec3 position = vec3(0.0);
+        vec4 shadow = vec4(0.0);
+        uint normal = 0u;
+        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
+            shadow = imageLoad(shadow_image, pixel);
+            vec3 unit = arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
+            normal = shadow.b > 0.0 ? packUnorm4x8(vec4(0.5 * unit + 0.5, 1.0)) : 0u;
+        }
+        patch_texels[i] = vec4(position, uintBitsToFloat(packHalf2x16(shadow.rg)));
+        patch_normals[i] = normal;
     }
     barrier();
 }
 
+vec3 patch_normal(int i) {
+    return normalize(2.0 * unpackUnorm4x8(patch_normals[i]).xyz - 1.0);
+}
+
+// What arrives at a pixel of the patch, and the width of its penumbra.
+vec2 patch_shadow(int i) {
+    return unpackHalf2x16(floatBitsToUint(patch_texels[i].w));
+}
+
+// A pixel of the patch to which its neighbours are compared.
+struct Center {
+    int place;
+    vec3 position;
+    vec3 normal;
+    float distance; // from the camera
+};
+
 // How much a neighbour counts as of the same surface.
-float likeness(Pixel pixel, vec3 position, vec3 normal, float distance) {
-    float plane = abs(dot(pixel.normal, position - pixel.position)) / (PLANE_PART * distance);
-    return exp(-plane) * pow(clamp(dot(pixel.normal, normal), 0.0, 1.0), NORMAL_POWER);
+float likeness(Center center, int i) {
+    float plane = abs(dot(center.normal, patch_texels[i].xyz - center.position)) / (PLANE_PART * center.distance);
+    return exp(-plane) * pow(clamp(dot(center.normal, patch_normal(i)), 0.0, 1.0), NORMAL_POWER);
 }
 
 // The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is hidden. In y how far pixels are apart.
-vec2 search(Pixel pixel, ivec2 place, float distance) {
+vec2 search(Center center) {
     float hidden = 0.0;
     float width = 0.0;
     float spacing = 3e38;
-    for (int y = -SEARCH; y <= SEARCH; y++) {
-        for (int x = -SEARCH; x <= SEARCH; x++) {
-            int i = (place.y + y) * PATCH + place.x + x;
-            if (patch_normal[i] != 0u) {
-                vec4 there = patch_position[i];
-                vec3 normal = normalize(2.0 * unpackUnorm4x8(patch_normal[i]).xyz - 1.0);
-                vec2 shadow = unpackHalf2x16(floatBitsToUint(there.w));
-                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH))) * likeness(pixel, there.xyz, normal, distance);
+    for (int y = -REACH; y <= REACH; y++) {
+        for (int x = -REACH; x <= REACH; x++) {
+            int i = center.place + y * PATCH + x;
+            if (patch_normals[i] != 0u) {
+                vec2 shadow = patch_shadow(i);
+                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH))) * likeness(center, i);
                 hidden += weight * (1.0 - shadow.x);
                 width += weight * shadow.y;
                 if (abs(x) + abs(y) == 1) {
-                    spacing = min(spacing, length(there.xyz - pixel.position));
+                    spacing = min(spacing, distance(patch_texels[i].xyz, center.position));
                 }
             }
         }
@@ -92,20 +98,17 @@ vec2 search(Pixel pixel, ivec2 place, float distance) {
     return vec2(hidden > 1e-6 ? width / hidden : -1.0, spacing);
 }
 
-// The mean of what arrives at a pixel and its neighbours, by weights of this standard deviation.
-float gathered(Pixel pixel, ivec2 place, ivec2 size, float deviation, float spacing, float distance) {
-    float reach = min(2.5 * deviation / spacing, FARTHEST);
-    int stride = max(int(ceil(reach / float(STEPS))), 1);
-    int steps = int(reach) / stride;
-    float arrives = pixel.shadow.r;
+// The mean of what arrives at a pixel and its neighbours, by a Gaussian of this standard deviation.
+float gathered(Center center, float deviation) {
+    float arrives = patch_shadow(center.place).x;
     float sum = 1.0;
-    for (int y = -steps; y <= steps; y++) {
-        for (int x = -steps; x <= steps; x++) {
-            Pixel there = load_pixel(place + stride * ivec2(x, y), size);
-            if (there.shadow.b > 0.0 && (x != 0 || y != 0)) {
-                vec3 offset = there.position - pixel.position;
-                float weight = exp(-0.5 * dot(offset, offset) / (deviation * deviation)) * likeness(pixel, there.position, there.normal, distance);
-                arrives += weight * there.shadow.r;
+    for (int y = -REACH; y <= REACH; y++) {
+        for (int x = -REACH; x <= REACH; x++) {
+            int i = center.place + y * PATCH + x;
+            if (patch_normals[i] != 0u && (x != 0 || y != 0)) {
+                vec3 offset = (patch_texels[i].xyz - center.position) / deviation;
+                float weight = exp(-0.5 * dot(offset, offset)) * likeness(center, i);
+                arrives += weight * patch_shadow(i).x;
                 sum += weight;
             }
         }
@@ -113,43 +116,43 @@ float gathered(Pixel pixel, ivec2 place, ivec2 size, float deviation, float spac
     return arrives / sum;
 }
 
-// The part of a pixel's light that arrives.
-float arriving(Pixel pixel, ivec2 place, ivec2 size) {
+// The part of a pixel's light that arrives; its texel of shadow_image.
+float arriving(vec4 shadow) {
     if (SHADOW_FILTER == 0) {
-        return pixel.shadow.r;
+        return shadow.r;
     }
-    float distance = length(constants.camera - pixel.position);
-    vec2 found = search(pixel, ivec2(gl_LocalInvocationID.xy) + SEARCH, distance);
+    ivec2 place = ivec2(gl_LocalInvocationID.xy) + REACH;
+    int i = place.y * PATCH + place.x;
+    vec3 position = patch_texels[i].xyz;
+    Center center = Center(i, position, patch_normal(i), distance(constants.camera, position));
+    vec2 found = search(center);
     if (found.x < 0.0) {
         return 1.0;
     }
-    float deviation = max(PENUMBRA_PART * found.x, LEAST_WIDTH * found.y) * pow(pixel.shadow.a, -1.0 / 3.0);
-    return gathered(pixel, place, size, deviation, found.y, distance);
+    float deviation = max(PENUMBRA_PART * found.x, LEAST_WIDTH * found.y) * pow(shadow.a, -1.0 / 3.0);
+    return gathered(center, deviation);
 }
 
 void main() {
-    ivec2 place = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = ivec2(constants.size);
     if (SHADOW_FILTER != 0) {
-        load_patch(ivec2(gl_WorkGroupID.xy) * 8 - SEARCH, size);
+        load_patch(ivec2(gl_WorkGroupID.xy) * 8 - REACH, size);
     }
-    if (any(greaterThanEqual(place, size))) {
+    if (any(greaterThanEqual(pixel, size))) {
         return;
     }
-    vec4 texel = imageLoad(unshadowed_image, place);
-    if (texel.a == 0.0) {
-        if ((OUTPUT & OUTPUT_ADD) == 0) {
-            imageStore(radiance_image, place, vec4(0.0));
-        }
-        return;
-    }
-    Pixel pixel = load_pixel(place, size);
-    vec3 radiance = texel.rgb;
-    if (pixel.shadow.b > 0.0) {
-        radiance *= arriving(pixel, place, size);
+    vec4 unshadowed = imageLoad(unshadowed_image, pixel);
+    vec3 radiance = unshadowed.rgb;
+    vec4 shadow = imageLoad(shadow_image, pixel);
+    if (shadow.b > 0.0) {
+        radiance *= arriving(shadow);
     }
     if ((OUTPUT & OUTPUT_ADD) != 0) {
-        radiance += imageLoad(radiance_image, place).rgb;
+        if (unshadowed.a == 0.0) {
+            return;
+        }
+        radiance += imageLoad(radiance_image, pixel).rgb;
     }
-    imageStore(radiance_image, place, output_texel(radiance, true));
+    imageStore(radiance_image, pixel, output_texel(radiance, unshadowed.a != 0.0));
 }
