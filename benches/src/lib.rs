@@ -18,6 +18,7 @@
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
 //! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
+//! | [`shadows`] | how far a picture with shadows is from the reference |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
 //! | [`svg`] | drawing charts |
@@ -37,6 +38,7 @@ pub mod pictures;
 pub mod published;
 pub mod report;
 pub mod school;
+pub mod shadows;
 pub mod shape_cost;
 pub mod shape_stability;
 pub mod shapes;
