@@ -137,7 +137,7 @@ fn check(field: &'static str, given: usize, wanted: usize) -> Result<(), SizeErr
 struct Sum {
     count: usize,
     not_finite: usize,
-    sum: f64,
+    total: f64,
     square: f64,
 }
 
@@ -145,7 +145,7 @@ impl Sum {
     fn add(&mut self, error: f64) {
         self.count += 1;
         if error.is_finite() {
-            self.sum += error;
+            self.total += error;
             self.square += error * error;
         } else {
             self.not_finite += 1;
@@ -157,7 +157,7 @@ impl Sum {
     }
 
     fn mean(&self) -> f64 {
-        self.sum / self.finite()
+        self.total / self.finite()
     }
 
     fn rms(&self) -> f64 {

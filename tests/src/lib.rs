@@ -11,8 +11,8 @@ pub mod lobe;
 pub mod one_pixel;
 mod points;
 mod property;
-pub mod shadow_patch;
 pub mod scenes;
+pub mod shadow_patch;
 pub mod shapes;
 pub mod spirv;
 
