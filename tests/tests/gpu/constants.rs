@@ -1,7 +1,9 @@
 //! The constants of the GLSL sources, which Rust and the shaders must number alike: effects, flags, choices.
 
 use arealight::gpu;
-use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages};
+use arealight::plan::{
+    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions,
+};
 use arealight::pyramid::LevelKernel;
 use arealight::{
     Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, blockers, tiles,
@@ -44,7 +46,8 @@ const SCENE_GLSL: &str = include_str!("../../../tools/kernels/shaders/scene.glsl
 const TEXTURE_LOAD_COMP: &str = include_str!("../../../shaders/kernels/texture_load.comp");
 const TEXTURE_BLUR_COMP: &str = include_str!("../../../shaders/kernels/texture_blur.comp");
 const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl");
-const OUTPUT_GLSL: &str = include_str!("../../../shaders/kernels/output.glsl");
+const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_texel.glsl");
+const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_picks.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
 const BVH_GLSL: &str = include_str!("../../../shaders/kernels/bvh.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
@@ -173,7 +176,9 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("APART", number(RadianceImages::Separate as u32)),
         ("HALF", number(RadianceFormat::Rgba16Float as u32)),
     ];
-    assert_constants(OUTPUT_GLSL, "OUTPUT_", &output);
+    assert_constants(OUTPUT_TEXEL_GLSL, "OUTPUT_", &output);
+    let most = number(ShadeOptions::MOST_SHADOW_RAYS);
+    assert_constants(SHADOW_PICKS_GLSL, "MOST_SHADOW_RAYS", &[("", most)]);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
     let shapes = [
         ("DISK", number(gpu::GpuShape::DISK)),

@@ -98,8 +98,13 @@ fn reflected(module: &Module, variable: &Instruction) -> (BindingKind, Access) {
         if literal(&kind.operands[5]) == 1 {
             return (BindingKind::SampledImage, Access::Read);
         }
-        let write_only = decoration(module, id, Decoration::NonReadable).is_some();
-        return (BindingKind::StorageImage, if write_only { Access::Write } else { Access::ReadWrite });
+        let has = |wanted| decoration(module, id, wanted).is_some();
+        let access = match (has(Decoration::NonWritable), has(Decoration::NonReadable)) {
+            (true, _) => Access::Read,
+            (false, true) => Access::Write,
+            (false, false) => Access::ReadWrite,
+        };
+        return (BindingKind::StorageImage, access);
     }
     let block = kind.result_id.expect("a type has an id");
     let all = |wanted| {
@@ -266,7 +271,15 @@ fn every_structure_has_the_same_offsets() {
         (
             &shade,
             "ShadeConstants",
-            layout!(gpu::ShadeConstants, position_from_clip, camera, light_count, shape_count, quad_count),
+            layout!(
+                gpu::ShadeConstants,
+                position_from_clip,
+                camera,
+                light_count,
+                shape_count,
+                quad_count,
+                seed
+            ),
         ),
         (&eval, "EvalConstants", layout!(tool::gpu::EvalConstants, case_count)),
         (
@@ -367,8 +380,11 @@ fn the_structures_of_tiles_have_the_same_offsets() {
         horizon_cells,
         shape_count,
         quad_count,
-        cull_threshold
+        cull_threshold,
+        seed
     );
+    let shadow = layout!(gpu::ShadowConstants, position_from_clip, camera, seed, size);
+    assert_eq!(offsets(&module(&kernels::SHADOW_RAYS), "ShadowConstants"), Some(shadow));
     let horizon = layout!(
         arealight::table::LobeHorizon,
         lobe,
@@ -506,9 +522,13 @@ fn push_constants_have_the_size_in_the_manifest() {
         let id = block.result_id.unwrap();
         let last = member_decorations(&module, id, Decoration::Offset);
         let (member, offset) = last.iter().next_back().unwrap();
-        // Every last member is a 32-bit scalar
+        // Every last member is of 32-bit scalars
         let kind = definition(&module, literal(&block.operands[*member as usize]));
-        assert!(matches!(kind.class.opcode, Op::TypeInt | Op::TypeFloat), "{}", kernel.name);
-        assert_eq!(literal(&offset[0]) + 4, kernel.push_constant_size, "{}", kernel.name);
+        let scalars = match kind.class.opcode {
+            Op::TypeInt | Op::TypeFloat => 1,
+            Op::TypeVector => literal(&kind.operands[1]),
+            other => panic!("{}: {other:?}", kernel.name),
+        };
+        assert_eq!(literal(&offset[0]) + 4 * scalars, kernel.push_constant_size, "{}", kernel.name);
     }
 }
