@@ -100,7 +100,7 @@ const REPEATS: u32 = 64;
 /// The disks, across the horizon.
 fn disks() -> Vec<Ellipse> {
     let family = Family::find("crossing").unwrap_or(&arealight_cases::hard::ellipse::FAMILIES[0]);
-    (0..WORK_ITEMS as u64).map(|index| family.case(index)).collect()
+    (0..WORK_ITEMS as u64).map(|index| family.case(index, 0)).collect()
 }
 
 /// The shapes of a kind: about each disk's center, as long as its longer axis, as thick as the shorter one.

@@ -14,7 +14,7 @@ const FORM_FACTORS: [u32; 2] = [0, 1];
 
 fn generic(count: u64) -> Vec<Ellipse> {
     let families = ["generic", "crossing"].map(|name| Family::find(name).unwrap());
-    (0..count).map(|index| families[index as usize % 2].case(index)).collect()
+    (0..count).map(|index| families[index as usize % 2].case(index, 0)).collect()
 }
 
 /// Form factors of both rounded ellipses of each pair.
@@ -297,7 +297,7 @@ fn any_bits_give_a_form_factor() {
     // Hard cases of ordinary size, and those with one bad number each
     for family in FAMILIES {
         for index in 0..1000 {
-            let mut given = ellipse_arguments(&family.case(index));
+            let mut given = ellipse_arguments(&family.case(index, 0));
             arguments.push(given);
             given[index as usize % 3][index as usize / 3 % 3] = [f32::NAN, f32::INFINITY][index as usize % 2];
             arguments.push(given);

@@ -1,6 +1,7 @@
 //! Ellipses and spheres on the device against float64, over the families that are hard for float32.
 
-use arealight_cases::hard::ellipse::{FAMILIES, Family, nearby};
+use arealight_cases::hard::ellipse::{FAMILIES, Family};
+use arealight_cases::hard::nearby_shape;
 use arealight_cases::hard::promise::MOVE;
 use arealight_oracle::ellipse::{Ellipse, form_factor};
 use arealight_oracle::sphere::{self, Sphere};
@@ -16,7 +17,7 @@ const SAMPLES: u64 = 1000;
 const BACKWARD: f64 = 6e-7;
 
 fn cases(family: &Family) -> Vec<Ellipse> {
-    (0..SAMPLES).map(|index| family.case(index)).collect()
+    (0..SAMPLES).map(|index| family.case(index, 0)).collect()
 }
 
 #[test]
@@ -33,10 +34,10 @@ fn hard_ellipses_are_as_good_as_their_rounding() {
             let mut twin = Comparison::new("a result off by twice the bound");
             let bound = BACKWARD;
             for (case, &found) in cases.iter().zip(found) {
-                let error = nearby::distance(case, found, 1e-7);
+                let error = nearby_shape::distance(case, found, 1e-7);
                 comparison.add(error, 0.0, bound, || format!("{case:?}"));
                 // In contact with the rim every value may be near by; elsewhere few are
-                twin.add(nearby::distance(case, found + 3.0 * bound, 1e-7), 0.0, bound, String::new);
+                twin.add(nearby_shape::distance(case, found + 3.0 * bound, 1e-7), 0.0, bound, String::new);
             }
             comparison.assert_all();
             let needed = if ["huge", "contact-rim", "contact-interior", "needle-tip"].contains(&family.name) {
@@ -298,12 +299,12 @@ fn spheres_in_cosine_space_are_their_silhouettes() {
         // its vectors had moved by 2^-22 of the product of lengths, the matrix's largest entry being about one
         let disk = sphere.silhouette().unwrap();
         let ellipse = disk.transformed(matrix);
-        let error = nearby::distance(&ellipse, found, 1e-7);
+        let error = nearby_shape::distance(&ellipse, found, 1e-7);
         let [low, high] = sphere_interval(sphere, |s| sphere::transformed_form_factor(matrix, s));
         let error = error.min((low - found).max(found - high).max(0.0));
         let bound = 2e-6;
         comparison.add(error, 0.0, bound, || format!("{sphere:?}, {matrix:?}: {found}, {truth}"));
-        twin += usize::from(nearby::distance(&ellipse, found + 4.0 * bound, 1e-7) > bound);
+        twin += usize::from(nearby_shape::distance(&ellipse, found + 4.0 * bound, 1e-7) > bound);
     }
     println!("largest error {forward:.1e}");
     comparison.assert_all();

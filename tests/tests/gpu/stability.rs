@@ -176,7 +176,7 @@ fn the_last_guard_survives_the_compilers() {
 #[test]
 fn shapes_keep_their_promises_and_the_published_disk_does_not() {
     let Some(host) = device_or_skip() else { return };
-    let rows = shape_stability::run(&host, 200, &|_| {}).unwrap();
+    let rows = shape_stability::run(&host, 200, 0, &|_| {}).unwrap();
     let table = shape_stability::markdown(&rows);
     println!("{table}");
     assert!(rows.iter().all(|row| row.is_kept() && row.samples == 200), "{table}");

@@ -9,7 +9,7 @@ fn the_closed_form_holds_where_float32_is_hard_put() {
     for family in FAMILIES {
         let (mut largest, mut light) = (0.0_f64, 0);
         for index in 0..60 {
-            let ellipse = family.case(index);
+            let ellipse = family.case(index, 0);
             let (closed, contour) = (form_factor(&ellipse), contour_form_factor(&ellipse));
             largest = largest.max((closed - contour).abs());
             light += usize::from(contour.abs() > 1e-8);

@@ -7,8 +7,6 @@ use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::stream::Stream;
 use glam::DVec3;
 
-pub mod nearby;
-
 /// A family of hard cases.
 #[derive(Debug, Clone, Copy)]
 pub struct Family {
@@ -51,9 +49,9 @@ impl Family {
         FAMILIES.iter().find(|family| family.name == name)
     }
 
-    /// The family's case of an index: numbers that float32 holds. Every other one has slanting axes.
-    pub fn case(&self, index: u64) -> Ellipse {
-        let mut stream = Stream::new(self.name, index, 0);
+    /// The family's case of an index and a seed: numbers that float32 holds. Every other one has slanting axes.
+    pub fn case(&self, index: u64, seed: u64) -> Ellipse {
+        let mut stream = Stream::new(self.name, index, seed);
         let ellipse = (self.make)(&mut stream);
         let [cos, sin] = if stream.one_in(2) { [1.0, 0.0] } else { stream.circle() };
         rounded(&Ellipse {
@@ -195,7 +193,7 @@ mod tests {
     #[test]
     fn every_family_has_light_in_it() {
         for family in FAMILIES {
-            let values: Vec<f64> = (0..200).map(|index| form_factor(&family.case(index)).abs()).collect();
+            let values: Vec<f64> = (0..200).map(|index| form_factor(&family.case(index, 0)).abs()).collect();
             assert!(values.iter().all(|value| (0.0..=1.0).contains(value)), "{}", family.name);
             assert!(values.iter().filter(|value| **value > 0.0).count() > 60, "{}", family.name);
             assert_eq!(Family::find(family.name).map(|found| found.description), Some(family.description));

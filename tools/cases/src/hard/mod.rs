@@ -9,6 +9,7 @@
 //! | [`mod@reference`] | the truth about a case |
 //! | [`promise`] | what a way to compute form factors promises |
 //! | [`nearby`] | the values that polygons nearby have: the backward error |
+//! | [`nearby_shape`] | the same of ellipses, spheres and tubes |
 //! | [`judge`] | a family's results against its promises |
 //! | [`ellipse`] | families of ellipses, which are disk lights |
 
@@ -18,6 +19,7 @@ pub mod ellipse;
 pub mod family;
 pub mod judge;
 pub mod nearby;
+pub mod nearby_shape;
 mod outline;
 pub mod promise;
 pub mod reference;

@@ -20,10 +20,10 @@ use std::process::ExitCode;
 /// Exit code 1 if a level falls short of its promises; what the yardsticks do changes nothing.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Polygons of each family.
+    /// Polygons of each family, or shapes.
     #[arg(long, default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     samples: u64,
-    /// Another seed makes other polygons.
+    /// Another seed makes other ones.
     #[arg(long, default_value_t = 0)]
     seed: u64,
     /// Only this family; may be given several times.
@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = method)]
     level: Vec<&'static Method>,
     /// Disks, spheres and tubes in the polygons' place.
-    #[arg(long, conflicts_with_all = ["family", "level", "seed"])]
+    #[arg(long, conflicts_with_all = ["family", "level"])]
     shapes: bool,
     #[command(flatten)]
     ends: Ends,
@@ -78,23 +78,24 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 /// What is promised of shapes, for the document.
 const SHAPE_PROMISES: &str = "\
 Each result is held against float64, by its bits: a finite number in [0, 1]; a backward error (the distance to the values of shapes \
-whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights (of tubes those whose radius is \
-a 64th of their distance or less, by the difference form) an error of at most 1e-5 of what they would send from the zenith. Beside the \
+whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights (disks and tubes by the \
+difference form; tubes whose radius is a 64th of their distance or less) an error of at most 1e-5 of what they would send from the zenith. Beside the \
 disks is the published disk, its discriminant kept from being negative, on the same device: how many of its results are not finite, \
 and the largest error of those that are.";
 
 fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
     let bar = progress::bar(arguments.samples * shape_stability::family_count(), "shapes");
-    let rows = shape_stability::run(&host, arguments.samples, &|count| bar.inc(count));
+    let rows = shape_stability::run(&host, arguments.samples, arguments.seed, &|count| bar.inc(count));
     bar.finish_and_clear();
     let rows = rows.map_err(|error| Failure::Device(error.to_string()))?;
 
     let table = shape_stability::markdown(&rows);
     let document = format!(
-        "# Hard disks, spheres and tubes\n\nMade by `arealight bench stability --shapes --samples {} --markdown FILE` on \
+        "# Hard disks, spheres and tubes\n\nMade by `arealight bench stability --shapes --samples {} --seed {} --markdown FILE` on \
          {}.\n\n{SHAPE_PROMISES}\n\n{table}",
         arguments.samples,
+        arguments.seed,
         host.device_name()
     );
     arguments.ends.report(&rows, &document, &table)?;
