@@ -140,14 +140,18 @@ fn vector(ellipse: &Principal, root: f64) -> DVec3 {
 
 fn cone(ellipse: &Principal, root: f64) -> Cone {
     let (a2, b2) = (ellipse.major.powi(2), ellipse.minor.powi(2));
-    let axis = cone_axis(ellipse, root).try_normalize().unwrap_or(DVec3::Z);
+    let axis = cone_axis(ellipse, root);
+    let square = axis.length_squared() / root;
+    let axis = axis.try_normalize().unwrap_or(DVec3::Z);
     // Two perpendiculars along which no component cancels
     let across = axis.y.hypot(axis.z);
     let first = DVec3::new(across, -axis.x * axis.y / across, -axis.x * axis.z / across);
     let second = DVec3::new(0.0, axis.z / across, -axis.y / across);
-    let center =
-        DVec3::new(ellipse.center.x * (a2 / (a2 + root)), ellipse.center.y * (b2 / (b2 + root)), 0.0);
-    let form = |m: DVec3, n: DVec3| a2 * m.x * n.x + b2 * m.y * n.y - center.dot(m) * center.dot(n);
+    // Between them, a sum in which nothing cancels
+    let turned = DVec3::new(ellipse.center.y / (b2 + root), -ellipse.center.x / (a2 + root), 0.0);
+    let form = |m: DVec3, n: DVec3| {
+        square * (a2 * m.x * n.x + b2 * m.y * n.y) + a2 * b2 * turned.dot(m) * turned.dot(n)
+    };
     let (m11, m12, m22) = (form(first, first), form(first, second), form(second, second));
     let difference = m22 - m11;
     let hypotenuse = difference.hypot(2.0 * m12);

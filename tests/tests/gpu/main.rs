@@ -39,6 +39,7 @@ mod shape_lights;
 mod shape_points;
 mod shape_properties;
 mod shapes;
+mod slim_tubes;
 mod stability;
 mod surfaces;
 mod sweep;

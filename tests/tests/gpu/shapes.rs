@@ -50,6 +50,26 @@ fn hard_ellipses_are_as_good_as_their_rounding() {
     }
 }
 
+/// The worst cases of long batteries: the point before a needle's tip, which the horizon cuts.
+#[test]
+fn before_a_needles_tip_no_digit_cancels() {
+    let Some(engine) = TestEngine::new() else { return };
+    let family = Family::find("needle-tip").unwrap();
+    // With what a cone gave whose axes were taken from a difference: its entry along a needle is a difference of squares
+    let known = [(1, 3803, 1.208_563_9e-5), (2, 8754, 1.301_127_3e-4), (3, 3255, 1.911_504_3e-6)];
+    let cases = known.map(|(seed, index, _)| family.case(index, seed));
+    let mut comparison = Comparison::new("before a needle's tip");
+    for (case, found) in cases.iter().zip(engine.ellipses(ShapeFunction::Ellipse, EXACT, &cases)) {
+        comparison.add(nearby_shape::distance(case, found, 1e-7), 0.0, BACKWARD, || format!("{case:?}"));
+    }
+    comparison.assert_all();
+    // The twin: no needle nearby has what the difference gave
+    for (case, (_, _, difference)) in cases.iter().zip(known) {
+        let error = nearby_shape::distance(case, difference, 1e-7);
+        assert!(error > 2.0 * BACKWARD, "{error:e}: {case:?}");
+    }
+}
+
 /// The yardstick fails where it is known to: the families are hard.
 #[test]
 fn the_published_disk_breaks() {

@@ -7,12 +7,12 @@ use arealight_tests::shapes::tube_arguments;
 use arealight_tests::{Comparison, Random, TestEngine};
 use glam::{DMat3, DVec3, Mat3, Vec3};
 
-const EXACT: u32 = 0;
-const DIFFERENCE: u32 = 1;
-const ENDS: [Ends; 3] = [Ends::Open, Ends::Flat, Ends::Round];
-const COUNT: usize = 100;
+pub(super) const EXACT: u32 = 0;
+pub(super) const DIFFERENCE: u32 = 1;
+pub(super) const ENDS: [Ends; 3] = [Ends::Open, Ends::Flat, Ends::Round];
+pub(super) const COUNT: usize = 100;
 
-fn round(v: DVec3) -> DVec3 {
+pub(super) fn round(v: DVec3) -> DVec3 {
     v.as_vec3().as_dvec3()
 }
 
@@ -81,7 +81,7 @@ fn ends_of(tubes: &[Tube]) -> Vec<Ends> {
     tubes.iter().map(|tube| tube.ends).collect()
 }
 
-fn found(engine: &TestEngine, level: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
+pub(super) fn found(engine: &TestEngine, level: u32, tubes: &[Tube], matrices: &[DMat3]) -> Vec<f64> {
     let arguments: Vec<_> = tubes.iter().zip(matrices).map(|(t, m)| tube_arguments(t, m)).collect();
     let found = engine.tubes(false, level, &arguments, &ends_of(tubes));
     let bits = found.iter().all(|factor| factor.to_bits() <= 1.0_f32.to_bits());
@@ -163,13 +163,13 @@ fn thin_and_far_tubes_keep_relative_precision() {
 }
 
 /// The point's distance from the axis as a line.
-fn distance(tube: &Tube) -> f64 {
+pub(super) fn distance(tube: &Tube) -> f64 {
     let axis = (tube.end - tube.start).try_normalize().expect("long enough");
     tube.start.cross(axis).length()
 }
 
 /// Whether a tube is thin in its own space and a lobe's, so that it may be a line.
-fn is_thin(tube: &Tube, lobe: &DMat3) -> bool {
+pub(super) fn is_thin(tube: &Tube, lobe: &DMat3) -> bool {
     let axis = (tube.end - tube.start).try_normalize().expect("long enough");
     let plane = tube.start.cross(axis);
     let area = (*lobe * axis).cross(*lobe * plane.cross(axis)).length() / plane.length();

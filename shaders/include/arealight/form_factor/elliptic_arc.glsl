@@ -33,25 +33,34 @@ struct ArealightArcSpan {
 //
 // The planes through the point that touch the ellipse have normals n with n.D n = 0, D = a^2 uu + b^2 vv - cc for the
 // principal half axes and the center c. The eigenvalues of D are the cone's a^2, b^2 and -c^2 (the last one -root), the
-// axis being the eigenvector of the last one; b follows from the determinant, where it does not cancel.
+// axis being the eigenvector of the last one; b follows from the determinant, where it does not cancel. Across that axis, w of
+// the length |w|, D equals
+//
+//     |w|^2 / root (a^2 uu + b^2 vv) + a^2 b^2 jj,    j = y / (b^2 + root) u - x / (a^2 + root) v,
+//
+// for the center (x, y, h) in the ellipse's frame: a sum in which nothing cancels, where the one above loses all digits before a
+// needle's tip.
 ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     ArealightCone cone;
     float a2 = ellipse.major * ellipse.major;
     float b2 = ellipse.minor * ellipse.minor;
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    axis *= inversesqrt(dot(axis, axis));
+    float square = dot(axis, axis);
+    axis *= inversesqrt(square);
     // Two perpendiculars, along which no component cancels: the second has none along the ellipse's longer axis
     float across = sqrt(axis.y * axis.y + axis.z * axis.z);
     float reciprocal = 1.0 / max(across, 1e-37);
     vec3 first = vec3(across, -axis.x * axis.y * reciprocal, -axis.x * axis.z * reciprocal);
     vec3 second = vec3(0.0, axis.z * reciprocal, -axis.y * reciprocal);
-    // D between them. The center's part along the cone's axis is left out: it does not count
-    vec2 less = ellipse.center.xy * vec2(a2, b2) * arealight_confocal_reciprocals(ellipse, root);
-    float along_first = dot(less, first.xy);
-    float along_second = less.y * second.y;
-    float m11 = a2 * first.x * first.x + b2 * first.y * first.y - along_first * along_first;
-    float m12 = b2 * first.y * second.y - along_first * along_second;
-    float m22 = b2 * second.y * second.y - along_second * along_second;
+    // D between them: all of a sum's terms have one sign
+    float c_reciprocal = inversesqrt(root);
+    square *= c_reciprocal * c_reciprocal;
+    vec2 place = ellipse.center.xy * arealight_confocal_reciprocals(ellipse, root);
+    float along_first = place.y * first.x - place.x * first.y;
+    float along_second = -place.x * second.y;
+    float m11 = square * (a2 * first.x * first.x + b2 * first.y * first.y) + a2 * b2 * along_first * along_first;
+    float m12 = b2 * (square * first.y * second.y + a2 * along_first * along_second);
+    float m22 = b2 * (square * second.y * second.y + a2 * along_second * along_second);
     // Its eigenvectors, by one rotation of Jacobi's
     float difference = m22 - m11;
     float hypotenuse = sqrt(difference * difference + 4.0 * m12 * m12);
@@ -59,8 +68,8 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     float cosine = inversesqrt(1.0 + tangent * tangent);
     float sine = cosine * tangent;
     cone.a = sqrt(max(0.5 * (m11 + m22 + hypotenuse), 1e-37));
-    cone.c = sqrt(root);
-    cone.b = min(ellipse.center.z * ellipse.major * ellipse.minor / (cone.a * cone.c), cone.a);
+    cone.c = root * c_reciprocal;
+    cone.b = min(ellipse.center.z * ellipse.major * ellipse.minor * c_reciprocal / cone.a, cone.a);
     vec2 turn = difference > 0.0 ? vec2(sine, cosine) : vec2(cosine, sine);
     cone.frame = mat3(turn.x * first + turn.y * second, turn.x * second - turn.y * first, axis);
     return cone;

@@ -90,8 +90,9 @@ ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends
     tube.start = dot(start, tube.axis);
     tube.end = dot(end, tube.axis);
     tube.half_length = dot(half_axis, tube.axis);
-    // From the axis to the point, by the nearer end
+    // From the axis to the point, by the nearer end, or the center where that is nearer: its error is a part of this distance
     vec3 near = dot(start, start) < dot(end, end) ? start : end;
+    near = dot(center, center) < dot(near, near) ? center : near;
     vec3 foot = near - tube.axis * dot(near, tube.axis);
     foot -= tube.axis * dot(foot, tube.axis);
     float square = dot(foot, foot);

@@ -118,9 +118,10 @@ ArealightSmallEnd arealight_small_end(ArealightAnchor anchor, vec3 offset, vec3 
 }
 
 // The form factor of a thin tube's lateral surface, clipped at the horizon, with relative precision: a line of the
-// tube's width as it is seen. It goes from `start` to `start` + `along`; `width` is half of the tube's in cosine space.
+// tube's width as it is seen. It goes from `start` to `start` + `along`; `width` is half of the tube's in cosine space, `slant` half the
+// difference of heights across it, which counts where the horizon cuts it between its ends.
 // Relative error: (width / distance)^2 and 4e-6.
-float arealight_line_form_factor(vec3 start, vec3 along, float width) {
+float arealight_line_form_factor(vec3 start, vec3 along, float width, float slant) {
     float end_height = start.z + along.z;
     if (max(start.z, end_height) <= 0.0) {
         return 0.0;
@@ -145,7 +146,11 @@ float arealight_line_form_factor(vec3 start, vec3 along, float width) {
     float turn = arealight_arctangent(distance * extent, square + begin * finish);
     float across = 0.5 * foot.z * (extent * (square - begin * finish) * both * reciprocal + turn / square);
     float slope = 0.5 * axis.z * distance * extent * (begin + finish) * both;
-    return 2.0 * width * AREALIGHT_INVERSE_PI * (across + slope);
+    // Cut at a slant, the height over the horizon has a larger integral than cut across, by slant^2 / (6 slope)
+    float cut = start.z < 0.0 ? begin : finish;
+    float cut_square = square + cut * cut;
+    float slanted = part < 1.0 ? slant * slant * distance / (6.0 * max(abs(axis.z), 1e-37) * cut_square * cut_square) : 0.0;
+    return 2.0 * width * AREALIGHT_INVERSE_PI * (across + slope + slanted);
 }
 
 // The form factor of a tube seen from outside, of which `is_small` becomes false, and the result means nothing, where an
@@ -176,12 +181,15 @@ float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, ou
     float width = tube.radius * abs(volume) / area;
     float distance = tube.distance * area * inversesqrt(max(dot(axis, axis), 1e-37));
     bool thin = width < AREALIGHT_TUBE_THIN * distance && tube.radius < AREALIGHT_TUBE_THIN * tube.distance;
-    // A line is cut across where the horizon cuts the tube at a slant
-    float slant = ends[0].cut || ends[1].cut ? max(ends[0].slant, ends[1].slant) : 0.0;
-    bool straight = slant * slant <= 2.0 * AREALIGHT_TUBE_CUT * distance * max(2.0 * abs(half_axis.z), slant);
+    // Where the horizon cuts an end at a slant, a line is cut across
+    bool cut = ends[0].cut || ends[1].cut;
+    float slant = max(ends[0].slant, ends[1].slant);
+    float away = anchor.distant ? anchor.distance : distance;
+    bool straight = !cut || slant * slant <= 2.0 * AREALIGHT_TUBE_CUT * away * max(2.0 * abs(half_axis.z), slant);
     bool slim = width < 2.0 * AREALIGHT_TUBE_SLIM * extent;
     if (thin && slim && straight) {
-        float line = arealight_line_form_factor(transform * arealight_on_axis(tube, tube.start), 2.0 * half_axis, width);
+        float line = arealight_line_form_factor(transform * arealight_on_axis(tube, tube.start), 2.0 * half_axis, width,
+                                                cut ? 0.0 : slant);
         float sides = segments * AREALIGHT_INVERSE_TWO_PI;
         float squares = tube.start * tube.start + tube.end * tube.end + tube.distance * tube.distance;
         return arealight_guarded_form_factor(volume < 0.0 ? line + sides : line - sides, squares);
