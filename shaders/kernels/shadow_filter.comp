@@ -9,9 +9,12 @@
 // Source of the filter's width: Fernando 2005 (percentage-closer soft shadows), with blockers found by the rays themselves.
 
 #include "shadow_resources.glsl"
+#include "shadow_history.glsl"
 
 layout(constant_id = 3) const int OUTPUT = 0;
 layout(constant_id = 16) const int SHADOW_FILTER = 1;
+// 1: of the history, else of this frame's rays alone.
+layout(constant_id = 18) const int SHADOW_HISTORY = 0;
 
 #include "output_texel.glsl"
 
@@ -36,6 +39,15 @@ shared vec4 patch_texels[PATCH * PATCH];
 // The normal; 0 where there is no light.
 shared uint patch_normals[PATCH * PATCH];
 
+// What is known of a pixel, as a texel of shadow_image.
+vec4 load_shadow(ivec2 pixel, ivec2 size) {
+    if (SHADOW_HISTORY == 0) {
+        return imageLoad(shadow_image, pixel);
+    }
+    HistoryPixel history = load_history(pixel, size, 0u);
+    return vec4(history.shadow, sign(history.frames), history.frames * float(SHADOW_RAYS));
+}
+
 void load_patch(ivec2 corner, ivec2 size) {
     for (int i = int(gl_LocalInvocationIndex); i < PATCH * PATCH; i += 64) {
         ivec2 pixel = corner + ivec2(i % PATCH, i / PATCH);
@@ -43,7 +55,7 @@ void load_patch(ivec2 corner, ivec2 size) {
         vec4 shadow = vec4(0.0);
         uint normal = 0u;
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
-            shadow = imageLoad(shadow_image, pixel);
+            shadow = load_shadow(pixel, size);
             vec3 unit = arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
             normal = shadow.b > 0.0 ? packUnorm4x8(vec4(0.5 * unit + 0.5, 1.0)) : 0u;
         }
@@ -144,7 +156,7 @@ void main() {
     }
     vec4 unshadowed = imageLoad(unshadowed_image, pixel);
     vec3 radiance = unshadowed.rgb;
-    vec4 shadow = imageLoad(shadow_image, pixel);
+    vec4 shadow = load_shadow(pixel, size);
     if (shadow.b > 0.0) {
         radiance *= arriving(shadow);
     }

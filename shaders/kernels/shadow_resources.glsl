@@ -24,6 +24,8 @@ layout(constant_id = 15) const int SHADOW_RAYS = 1;
 #define RADIANCE_BINDING 12
 #define BLOCKER_NODES_BINDING 13
 #define BLOCKER_TRIANGLES_BINDING 14
+#define HISTORY_BINDING 15
+#define MOTION_BINDING 16
 
 layout(push_constant, std430) uniform ShadowConstants {
     mat4 position_from_clip;

@@ -5,8 +5,8 @@ use arealight::plan::{ShadeOptions, ShadowFilter};
 use arealight::{Blockers, Light, Material, PackedLights};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Usage};
 use arealight_vk::{
-    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowOptions, ShadowPass,
-    ShadowResources,
+    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
+    ShadowPass, ShadowResources,
 };
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -129,6 +129,8 @@ impl ShadowPatch {
             let of_shadows = ShadowResources {
                 shadow: of(&shadow),
                 radiance: Some(of(&shadowed)),
+                history: None,
+                motion: None,
                 blockers: Some(BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
             };
             shadows.write_set(sets[1], &resources, &of_shadows).unwrap();
@@ -141,7 +143,8 @@ impl ShadowPatch {
                 seed: 0,
             };
             host.submit(|commands| shade.record(commands, sets[0], &frame).unwrap()).unwrap();
-            host.submit(|commands| shadows.record(commands, sets[1], None, &frame).unwrap()).unwrap();
+            let frame = ShadowFrame { shade: &frame, host_set: None, origin_shift: Vec3::ZERO };
+            host.submit(|commands| shadows.record(commands, sets[1], &of_shadows, &frame).unwrap()).unwrap();
         }
         let pixels = |image: &Image| {
             let texels: Vec<[f32; 4]> = image.download(Usage::COMPUTE_WRITE).unwrap();

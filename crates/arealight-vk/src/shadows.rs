@@ -7,9 +7,10 @@ use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
 use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of, push_constants_of_view};
 use arealight::gpu::ShadowConstants;
-use arealight::kernels::{SHADOW_FILTER, SHADOW_RAYS, store_to};
-use arealight::plan::{self, Output, ShadeOptions, ShadowFilter};
+use arealight::kernels::{SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
+use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use ash::vk;
+use glam::Vec3;
 use std::sync::Arc;
 
 /// What a shadow pass does with the radiance of a shade pass.
@@ -17,6 +18,8 @@ use std::sync::Arc;
 pub struct ShadowOptions {
     /// How rays are filtered.
     pub filter: ShadowFilter,
+    /// Of how many frames' rays a mean is made before.
+    pub history: ShadowHistory,
     /// What is done to [`ShadowResources::radiance`].
     pub output: Output,
 }
@@ -29,8 +32,27 @@ pub struct ShadowResources {
     /// Where radiance goes, in the format of [`ShadeOptions::format`]. With none it replaces the unshadowed one in
     /// [`ShadeResources::radiance`].
     pub radiance: Option<Resource>,
+    /// With [`ShadowOptions::history`], a buffer of [`plan::shadow_history_size`] bytes with the usages `STORAGE_BUFFER` and `TRANSFER_DST`, which
+    /// holds zeros before the first frame and after each cut. The pass alone writes it; it is the same one for all frames of a view.
+    pub history: Option<Resource>,
+    /// With [`ShadowHistory::MotionVectors`], an image: for each pixel where its point was in the frame before less where it is, in parts of
+    /// the image's width and height.
+    pub motion: Option<Resource>,
     /// What blocks rays; none with a module that asks the host ([`ShadowPass::with_module`]).
     pub blockers: Option<BlockerResources>,
+}
+
+/// What differs from frame to frame.
+#[derive(Debug, Clone, Copy)]
+pub struct ShadowFrame<'a> {
+    /// That of the shade pass. With [`ShadowOptions::history`] it has [`ShadeFrame::position_from_clip`], also where positions come from an image,
+    /// and [`ShadeFrame::seed`] counts frames.
+    pub shade: &'a ShadeFrame,
+    /// Bound as set 1 for a module of the host's.
+    pub host_set: Option<vk::DescriptorSet>,
+    /// What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with
+    /// [`ShadowOptions::history`].
+    pub origin_shift: Vec3,
 }
 
 /// The buffers of [`arealight::Blockers`].
@@ -42,7 +64,7 @@ pub struct BlockerResources {
     pub triangles: Resource,
 }
 
-/// Shadow rays after a [`crate::ShadePass`] with [`ShadeOptions::shadow_rays`]: two dispatches. Each ray is drawn from the lobe that it was picked
+/// Shadow rays after a [`crate::ShadePass`] with [`ShadeOptions::shadow_rays`]: two dispatches, or three with a history. Each ray is drawn from the lobe that it was picked
 /// for, over the light that it was picked for, so that the part of the rays that arrive is, on average, the part of the radiance that does; where
 /// all or none arrive there is no noise.
 ///
@@ -50,6 +72,7 @@ pub struct BlockerResources {
 #[derive(Debug)]
 pub struct ShadowPass {
     rays: Pipelines,
+    history: Pipelines,
     filter: Pipelines,
     options: ShadeOptions,
     shadows: ShadowOptions,
@@ -118,6 +141,7 @@ impl ShadowPass {
         unsafe {
             Self {
                 rays: Pipelines::new(Arc::clone(layouts), &SHADOW_RAYS, module),
+                history: Pipelines::new(Arc::clone(layouts), &SHADOW_HISTORY, SHADOW_HISTORY.words()),
                 filter: Pipelines::new(Arc::clone(layouts), &SHADOW_FILTER, filter),
                 options,
                 shadows,
@@ -142,6 +166,9 @@ impl ShadowPass {
         let filter = accesses_of(&SHADOW_FILTER).into_iter();
         let is_new = |access: &ResourceAccess| ["unshadowed_image", "radiance_image"].contains(&access.name);
         accesses.extend(filter.filter(is_new));
+        let history = accesses_of(&SHADOW_HISTORY).into_iter();
+        let is_kept = |access: &ResourceAccess| ["shadow_history", "g_motion"].contains(&access.name);
+        accesses.extend(history.filter(|access| self.has_history() && is_kept(access)));
         accesses
     }
 
@@ -160,6 +187,18 @@ impl ShadowPass {
     ) -> Result<(), Error> {
         let missing = |field, message: &str| Error::InvalidArgument { field, message: message.into() };
         let picks = shade.picks.ok_or_else(|| missing("picks", "is missing: the shade pass writes it"))?;
+        if resources.history.is_none() && self.has_history() {
+            return Err(missing(
+                "history",
+                "is missing, but the pass keeps a history: see ShadowOptions::history",
+            ));
+        }
+        if resources.motion.is_none() && self.shadows.history == ShadowHistory::MotionVectors {
+            return Err(missing(
+                "motion",
+                "is missing, but the pass has motion vectors: see ShadowOptions::history",
+            ));
+        }
         let blockers = match (resources.blockers, self.rays.layouts().has_host_set()) {
             (Some(blockers), _) => blockers,
             (None, true) => BlockerResources { nodes: shade.lights, triangles: shade.lights },
@@ -186,6 +225,8 @@ impl ShadowPass {
             resources.radiance.unwrap_or(shade.radiance),
             blockers.nodes,
             blockers.triangles,
+            resources.history.unwrap_or(picks),
+            resources.motion.unwrap_or(shade.base_color),
         ];
         // SAFETY: the same contract.
         unsafe { self.rays.layouts().write_set(set, &all) }
@@ -197,6 +238,9 @@ impl ShadowPass {
     /// [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self) -> Result<(), Error> {
         self.rays.with(self.rays_constants(), |_| ())?;
+        if self.has_history() {
+            self.history.with(self.history_constants(), |_| ())?;
+        }
         self.filter.with(self.filter_constants(), |_| ())
     }
 
@@ -205,70 +249,154 @@ impl ShadowPass {
     }
 
     fn filter_constants(&self) -> Vec<(u32, u32)> {
-        plan::shadow_filter_specialization(self.options, self.shadows.filter, self.shadows.output)
+        let ShadowOptions { filter, history, output } = self.shadows;
+        plan::shadow_filter_specialization(self.options, filter, history, output)
     }
 
-    /// Records the pass, for the frame that the shade pass recorded. `host_set` is bound as set 1 for a module of the host's.
+    fn history_constants(&self) -> Vec<(u32, u32)> {
+        plan::shadow_history_specialization(self.options, self.shadows.history)
+    }
+
+    fn has_history(&self) -> bool {
+        self.shadows.history != ShadowHistory::Off
+    }
+
+    /// Records the pass, for the frame that the shade pass recorded. With a history, `resources` are those that `set` was written with: its
+    /// buffer is updated too.
     ///
     /// # Safety
-    /// As [`crate::ShadePass::record`]; `set` was written by [`ShadowPass::write_set`], and `host_set` allocated with the layout that the pass was
-    /// made with.
+    /// As [`crate::ShadePass::record`]; `set` was written by [`ShadowPass::write_set`] with `resources`, and [`ShadowFrame::host_set`] allocated
+    /// with the layout that the pass was made with. With a history, the frame before of this view was recorded earlier on the same queue.
     ///
     /// # Errors
-    /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] where `host_set` is missing or not to be.
+    /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] names the field of `frame` that is missing, not to be, or wrong.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
         set: vk::DescriptorSet,
-        host_set: Option<vk::DescriptorSet>,
-        frame: &ShadeFrame,
+        resources: &ShadowResources,
+        frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
-        let layouts = self.rays.layouts();
-        if host_set.is_some() != layouts.has_host_set() {
-            let message = if host_set.is_some() {
-                "is given, but the pass was made without a module of the host's"
-            } else {
-                "is missing, but the pass was made with a module of the host's"
-            };
-            return Err(Error::InvalidArgument { field: "host_set", message: message.into() });
-        }
         // Check everything, and make what is missing, before anything is recorded
-        let (position_from_clip, camera) = push_constants_of_view(self.options, frame)?;
-        let constants = ShadowConstants { position_from_clip, camera, seed: frame.seed, size: frame.size };
-        let (bytes, groups) =
-            (bytemuck::bytes_of(&constants), SHADOW_RAYS.groups_for([frame.size[0], frame.size[1], 1]));
+        self.check_host_set(frame.host_set)?;
+        let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
+        let head = self.history_head(resources, frame)?;
+        let ShadeFrame { seed, size, .. } = *frame.shade;
+        let constants = ShadowConstants { position_from_clip, camera, seed, size };
+        let bytes = bytemuck::bytes_of(&constants);
+        let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
         self.rays.check(set, bytes, groups)?;
         self.prepare()?;
 
-        let sets: Vec<_> = std::iter::once(set).chain(host_set).collect();
-        // SAFETY: the same contract.
+        let sets: Vec<_> = std::iter::once(set).chain(frame.host_set).collect();
+        // SAFETY: the same contract; the head is within the buffer, which nothing else uses now.
         unsafe {
-            let _label = layouts.context().names.label(command_buffer, c"arealight shadows");
+            let _label = self.rays.layouts().context().names.label(command_buffer, c"arealight shadows");
+            if let Some(HistoryHead { buffer, offset, words }) = head {
+                let device = self.rays.layouts().context().device();
+                self.record_barrier(command_buffer, COMPUTE, TRANSFER);
+                device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&words));
+                self.record_barrier(command_buffer, TRANSFER, COMPUTE);
+            }
             self.rays.with(self.rays_constants(), |pass| {
                 pass.record_checked(command_buffer, &sets, bytes, groups);
             })?;
-            self.record_barrier(command_buffer);
+            self.record_barrier(command_buffer, COMPUTE, COMPUTE);
+            if head.is_some() {
+                self.history.with(self.history_constants(), |pass| {
+                    pass.record_checked(command_buffer, &sets, bytes, groups);
+                })?;
+                self.record_barrier(command_buffer, COMPUTE, COMPUTE);
+            }
             self.filter.with(self.filter_constants(), |pass| {
                 pass.record_checked(command_buffer, &sets, bytes, groups);
             })
         }
     }
 
-    /// What the rays wrote is read by the filter.
+    fn check_host_set(&self, host_set: Option<vk::DescriptorSet>) -> Result<(), Error> {
+        let message = match (host_set.is_some(), self.rays.layouts().has_host_set()) {
+            (true, false) => "is given, but the pass was made without a module of the host's",
+            (false, true) => "is missing, but the pass was made with a module of the host's",
+            _ => return Ok(()),
+        };
+        Err(Error::InvalidArgument { field: "host_set", message: message.into() })
+    }
+
+    /// What a pass with a history writes into its head.
+    fn history_head(
+        &self,
+        resources: &ShadowResources,
+        frame: &ShadowFrame<'_>,
+    ) -> Result<Option<HistoryHead>, Error> {
+        if !self.has_history() {
+            return Ok(None);
+        }
+        let wrong = |field, message: &str| Err(Error::InvalidArgument { field, message: message.into() });
+        let Some(Resource::StorageBuffer { buffer, offset, .. }) = resources.history else {
+            return wrong("history", "is no buffer, but the pass keeps a history");
+        };
+        let Some(position_from_clip) = frame.shade.position_from_clip else {
+            return wrong("position_from_clip", "is missing, but the pass keeps a history");
+        };
+        let clip_from_position = position_from_clip.inverse();
+        if !clip_from_position.is_finite() {
+            return wrong("position_from_clip", "has no inverse");
+        }
+        if !frame.origin_shift.is_finite() {
+            return wrong("origin_shift", "holds NaN or infinity");
+        }
+        let mut words = [0.0; 20];
+        words[..16].copy_from_slice(&clip_from_position.to_cols_array());
+        words[16..19].copy_from_slice(&frame.origin_shift.to_array());
+        let parity = vk::DeviceSize::from(frame.shade.seed & 1);
+        Ok(Some(HistoryHead { buffer, offset: offset + parity * size_of_val(&words) as u64, words }))
+    }
+
+    /// What was written in one stage is used in another.
     ///
     /// # Safety
     /// As [`ShadowPass::record`].
-    unsafe fn record_barrier(&self, command_buffer: vk::CommandBuffer) {
-        let barrier = [vk::MemoryBarrier::default()
-            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
-            .dst_access_mask(vk::AccessFlags::SHADER_READ)];
-        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+    unsafe fn record_barrier(&self, command_buffer: vk::CommandBuffer, before: Stage, after: Stage) {
+        let barrier =
+            [vk::MemoryBarrier::default().src_access_mask(before.written).dst_access_mask(after.used)];
         let flags = vk::DependencyFlags::empty();
         let device = self.rays.layouts().context().device();
         // SAFETY: the same contract.
-        unsafe { device.cmd_pipeline_barrier(command_buffer, compute, compute, flags, &barrier, &[], &[]) };
+        unsafe {
+            device.cmd_pipeline_barrier(command_buffer, before.stage, after.stage, flags, &barrier, &[], &[]);
+        }
     }
 }
+
+/// Of a history's head, what one frame writes: see shadow_history.glsl.
+#[derive(Clone, Copy)]
+struct HistoryHead {
+    buffer: vk::Buffer,
+    offset: vk::DeviceSize,
+    words: [f32; 20],
+}
+
+/// A stage that the pass's barriers are between.
+#[derive(Clone, Copy)]
+struct Stage {
+    stage: vk::PipelineStageFlags,
+    written: vk::AccessFlags,
+    used: vk::AccessFlags,
+}
+
+const COMPUTE: Stage = Stage {
+    stage: vk::PipelineStageFlags::COMPUTE_SHADER,
+    written: vk::AccessFlags::SHADER_WRITE,
+    used: vk::AccessFlags::from_raw(
+        vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
+    ),
+};
+const TRANSFER: Stage = Stage {
+    stage: vk::PipelineStageFlags::TRANSFER,
+    written: vk::AccessFlags::TRANSFER_WRITE,
+    used: vk::AccessFlags::TRANSFER_WRITE,
+};
 
 fn check_rays(options: ShadeOptions) -> Result<(), Error> {
     if (1..=ShadeOptions::MOST_SHADOW_RAYS).contains(&options.shadow_rays) {

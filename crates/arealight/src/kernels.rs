@@ -316,6 +316,19 @@ const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blocke
 const BLOCKER_TRIANGLES: Binding =
     read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: GpuBlockerTriangle[]");
 
+const SHADOW_KEPT: Binding = write(
+    "shadow_history",
+    BindingKind::StorageBuffer,
+    Access::ReadWrite,
+    "plan::shadow_history_size bytes, zeros before the first frame; used only with ShadowOptions::history, else bind any buffer",
+);
+const MOTION: Binding = read(
+    "g_motion",
+    BindingKind::SampledImage,
+    "where a pixel's point was in the frame before less where it is, in parts of the image's size (rg16f); read only with \
+     ShadowHistory::MotionVectors, else bind any image",
+);
+
 /// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants: [`crate::gpu::ShadowConstants`].
 pub static SHADOW_RAYS: Kernel = Kernel {
     name: "shadow_rays",
@@ -338,6 +351,8 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         SHADOWED.unused(),
         BLOCKER_NODES,
         BLOCKER_TRIANGLES,
+        SHADOW_KEPT.unused(),
+        MOTION.unused(),
     ],
     constants: &[
         constant::EFFECTS,
@@ -347,6 +362,43 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         constant::LOBES,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
+    ],
+};
+
+/// Makes means over frames of the rays of [`SHADOW_RAYS`]. Its descriptor set is that kernel's. Push constants: [`crate::gpu::ShadowConstants`].
+pub static SHADOW_HISTORY: Kernel = Kernel {
+    name: "shadow_history",
+    spirv: include_bytes!("../spirv/shadow_history.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ShadowConstants>() as u32,
+    bindings: &[
+        TABLE.unused(),
+        LIGHTS.unused(),
+        LIGHT_VERTICES.unused(),
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        UNSHADOWED.unused(),
+        SHAPES.unused(),
+        G_COAT,
+        PICKS.unused(),
+        SHADOW,
+        SHADOWED.unused(),
+        BLOCKER_NODES.unused(),
+        BLOCKER_TRIANGLES.unused(),
+        SHADOW_KEPT,
+        MOTION,
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::POSITION_SOURCE,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::LAYOUT,
+        constant::SHADOW_RAYS,
+        constant::SHADOW_MOTION,
     ],
 };
 
@@ -373,6 +425,8 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         SHADOWED,
         BLOCKER_NODES.unused(),
         BLOCKER_TRIANGLES.unused(),
+        SHADOW_KEPT,
+        MOTION.unused(),
     ],
     constants: &[
         constant::EFFECTS,
@@ -384,6 +438,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         constant::LAYOUT,
         constant::SHADOW_RAYS,
         constant::SHADOW_FILTER,
+        constant::SHADOW_HISTORY,
     ],
 };
 
@@ -420,8 +475,16 @@ pub static TEXTURE_BLUR: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 7] =
-    [&SHADE, &CLASSIFY, &SHADE_TILES, &SHADOW_RAYS, &SHADOW_FILTER, &TEXTURE_LOAD, &TEXTURE_BLUR];
+pub static ALL: [&Kernel; 8] = [
+    &SHADE,
+    &CLASSIFY,
+    &SHADE_TILES,
+    &SHADOW_RAYS,
+    &SHADOW_HISTORY,
+    &SHADOW_FILTER,
+    &TEXTURE_LOAD,
+    &TEXTURE_BLUR,
+];
 
 #[cfg(test)]
 mod tests {

@@ -210,6 +210,32 @@ pub enum ShadowFilter {
     Gather = 1,
 }
 
+/// Over which frames a pixel's shadow rays are a mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(u32)]
+pub enum ShadowHistory {
+    /// One frame's.
+    #[default]
+    Off = 0,
+    /// Up to sixteen frames', as long as what rays find does not change: pixels are found again by the camera's motion alone.
+    Camera = 1,
+    /// Likewise, found again by motion vectors of the host's.
+    MotionVectors = 2,
+}
+
+/// Bytes of the buffer that keeps shadows from frame to frame, for images of `size` pixels. It holds zeros before the first frame.
+pub fn shadow_history_size(size: [u32; 2]) -> u64 {
+    let [head, pixel, frames] = [40, 6, 2];
+    4 * (head + frames * pixel * size.map(u64::from).iter().product::<u64>())
+}
+
+/// The values of the constants of the kernel [`kernels::SHADOW_HISTORY`].
+pub fn shadow_history_specialization(options: ShadeOptions, history: ShadowHistory) -> Vec<(u32, u32)> {
+    let mut values = shadow_rays_specialization(options);
+    values.push((kernels::constant::SHADOW_MOTION, u32::from(history == ShadowHistory::MotionVectors)));
+    values
+}
+
 /// The values of the constants of the kernel [`kernels::SHADOW_RAYS`].
 pub fn shadow_rays_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
     vec![
@@ -227,12 +253,14 @@ pub fn shadow_rays_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
 pub fn shadow_filter_specialization(
     options: ShadeOptions,
     filter: ShadowFilter,
+    history: ShadowHistory,
     output: Output,
 ) -> Vec<(u32, u32)> {
     let mut values = shadow_rays_specialization(options);
     values.extend([
         (kernels::constant::OUTPUT, output as u32 | options.format as u32),
         (kernels::constant::SHADOW_FILTER, filter as u32),
+        (kernels::constant::SHADOW_HISTORY, u32::from(history != ShadowHistory::Off)),
     ]);
     values
 }

@@ -1,9 +1,7 @@
 //! The constants of the GLSL sources, which Rust and the shaders must number alike: effects, flags, choices.
 
 use arealight::gpu;
-use arealight::plan::{
-    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions,
-};
+use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
 use arealight::pyramid::LevelKernel;
 use arealight::{
     Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, blockers, tiles,

@@ -1,6 +1,7 @@
 //! Data laid out as these kernels read it (std430). A test compares every offset with the SPIR-V.
 
 use bytemuck::{Pod, Zeroable};
+use glam::{Mat4, Vec3, Vec4};
 
 /// Push constants of the Monte Carlo reference kernel.
 #[repr(C)]
@@ -170,6 +171,21 @@ pub struct GpuMaterial {
     pub coat_normal_scale: f32,
     /// Zero.
     pub reserved: [u32; 2],
+}
+
+impl VisibilityConstants {
+    /// From clip space to positions, of a pinhole camera of this view whose depth is that of a far plane at infinity.
+    pub fn position_from_clip(&self) -> Mat4 {
+        let row = |axis: [f32; 3]| {
+            let axis = Vec3::from_array(axis);
+            axis / axis.length_squared()
+        };
+        let (right, down, forward) = (row(self.right), -row(self.up), row(self.forward));
+        // The depth is 1 over the distance along the axis
+        let rows = [right.extend(0.0), down.extend(0.0), Vec4::W, forward.extend(0.0)];
+        let clip_from_view = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
+        (clip_from_view * Mat4::from_translation(-Vec3::from_array(self.camera))).inverse()
+    }
 }
 
 impl GpuMaterial {

@@ -34,3 +34,7 @@ pub const CULL: u32 = 14;
 pub const SHADOW_RAYS: u32 = 15;
 /// [`crate::plan::ShadowFilter`].
 pub const SHADOW_FILTER: u32 = 16;
+/// 1 where the host gives motion vectors, else 0.
+pub const SHADOW_MOTION: u32 = 17;
+/// 1 where shadows are means over frames, else 0.
+pub const SHADOW_HISTORY: u32 = 18;

@@ -1,6 +1,7 @@
 #ifndef AREALIGHT_OUTLINE_SAMPLING_GLSL
 #define AREALIGHT_OUTLINE_SAMPLING_GLSL
 
+#include "arealight/options.glsl"
 #include "arealight/shadows/shadow_sampling.glsl"
 
 // Shadow rays drawn over outlines of any number of vertices, as shading points see lights of every kind: a polygon's or a face's vertices, or a

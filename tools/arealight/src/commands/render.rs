@@ -8,7 +8,7 @@ use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
-use arealight::plan::{Output, ShadeOptions, TileOptions};
+use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
 use arealight_benches::budget::{FrameLoad, ProfileLevel};
 use arealight_benches::ladder::LevelNames;
@@ -278,7 +278,7 @@ fn shade(
 ) -> Result<Option<Duration>, EngineError> {
     let Shadows::Rays(shadow_rays, filter) = shadows else { return renderer.shade(surfaces, quality) };
     let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
-    let view = renderer.shadowed(scene, options, filter)?;
+    let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
     renderer.shade_shadowed(&view, 0)
 }
 

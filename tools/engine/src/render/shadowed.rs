@@ -3,12 +3,12 @@
 use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
 use crate::{Engine, EngineError, Kept, SceneRenderer};
 use arealight::Blockers;
-use arealight::plan::{Output, ShadeOptions, ShadowFilter};
+use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight_scene::{BufferError, SceneBuffers};
 use arealight_tool_kernels::gpu::GpuTriangle;
 use arealight_vk::{
-    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowOptions, ShadowPass,
-    ShadowResources,
+    BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
+    ShadowPass, ShadowResources,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -24,6 +24,7 @@ pub struct ShadowedView {
     unshadowed: Image,
     shadows: Image,
     picks: Buffer,
+    history: Buffer,
     blockers: [Buffer; 2],
 }
 
@@ -66,12 +67,12 @@ impl SceneRenderer<'_> {
         &self,
         scene: &SceneBuffers,
         options: ShadeOptions,
-        filter: ShadowFilter,
+        (filter, history): (ShadowFilter, ShadowHistory),
     ) -> Result<ShadowedView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
         // SAFETY: As in Engine::pass.
         let (shade, shadow) = unsafe {
-            let output = ShadowOptions { filter, output: Output::Add };
+            let output = ShadowOptions { filter, history, output: Output::Add };
             (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), options, output)?)
         };
         let blockers = blockers(scene)?;
@@ -89,6 +90,7 @@ impl SceneRenderer<'_> {
             unshadowed: image("unshadowed radiance", vk::Format::R32G32B32A32_SFLOAT)?,
             shadows: image("shadows", ShadowPass::SHADOW_FORMAT)?,
             picks: engine.storage("shadow picks", &vec![0_u32; shade.picks_size(self.size) as usize / 4])?,
+            history: engine.shadow_history(if history == ShadowHistory::Off { [0; 2] } else { self.size })?,
             blockers: [
                 engine.storage("blocker nodes", &blockers.nodes)?,
                 engine.storage("blocker triangles", &blockers.triangles)?,
@@ -100,19 +102,24 @@ impl SceneRenderer<'_> {
         // SAFETY: The sets are new, and the resources live until submissions were waited for.
         unsafe {
             view.shade.write_set(view.sets[0], &resources)?;
-            let shadow = ShadowResources {
-                shadow: Resource::StorageImage { view: view.shadows.view() },
-                radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
-                blockers: Some(BlockerResources {
-                    nodes: Resource::buffer(view.blockers[0].handle()),
-                    triangles: Resource::buffer(view.blockers[1].handle()),
-                }),
-            };
-            view.shadow.write_set(view.sets[1], &resources, &shadow)?;
+            view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(&view))?;
         }
         view.shade.prepare(&self.shade_frame())?;
         view.shadow.prepare()?;
         Ok(view)
+    }
+
+    fn shadow_resources(&self, view: &ShadowedView) -> ShadowResources {
+        ShadowResources {
+            shadow: Resource::StorageImage { view: view.shadows.view() },
+            radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
+            history: Some(Resource::buffer(view.history.handle())),
+            motion: None,
+            blockers: Some(BlockerResources {
+                nodes: Resource::buffer(view.blockers[0].handle()),
+                triangles: Resource::buffer(view.blockers[1].handle()),
+            }),
+        }
     }
 
     fn shadowed_resources(&self, view: &ShadowedView) -> ShadeResources {
@@ -133,7 +140,13 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let frame = ShadeFrame { seed, ..self.shade_frame() };
+        let shade = ShadeFrame {
+            seed,
+            position_from_clip: Some(self.camera.position_from_clip()),
+            ..self.shade_frame()
+        };
+        let frame = ShadowFrame { shade: &shade, host_set: None, origin_shift: Vec3::ZERO };
+        let resources = self.shadow_resources(view);
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             view.unshadowed.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
@@ -141,9 +154,9 @@ impl SceneRenderer<'_> {
             // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
             // submissions are waited for.
             unsafe {
-                view.shade.record(commands, view.sets[0], &frame)?;
+                view.shade.record(commands, view.sets[0], &shade)?;
                 self.engine.compute_barrier(commands);
-                view.shadow.record(commands, view.sets[1], None, &frame)?;
+                view.shadow.record(commands, view.sets[1], &resources, &frame)?;
             }
             Ok(())
         })
@@ -151,6 +164,12 @@ impl SceneRenderer<'_> {
 }
 
 impl Engine {
+    /// A buffer for what is kept of shadows, of a view that has no frame yet.
+    fn shadow_history(&self, size: [u32; 2]) -> Result<Buffer, EngineError> {
+        let words = plan::shadow_history_size(size) as usize / 4;
+        self.storage("shadow history", &vec![0_u32; words])
+    }
+
     /// What dispatches before wrote is read by those after.
     ///
     /// # Safety

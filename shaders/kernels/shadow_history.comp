@@ -1,0 +1,188 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+// Makes one mean of the shadow rays of frames after one another. How far back it goes is measured: the rays of a pixel and its neighbours are coins
+// whose spread is known from their mean, so that what they differ from the history by beyond it is change, and shortens the history.
+
+#include "shadow_resources.glsl"
+#include "shadow_history.glsl"
+
+// 1: the host says where a pixel's point was, in g_motion; else nothing but the camera moves.
+layout(constant_id = 17) const int SHADOW_MOTION = 0;
+
+// Where a pixel's point was in the frame before, less where it is, in parts of the image's width and height.
+layout(set = 0, binding = MOTION_BINDING) uniform texture2D g_motion;
+
+// The most frames of a mean.
+const float MOST_FRAMES = 16.0;
+// Pixels to each side that a pixel's rays are compared with, and the standard deviation of their weights.
+const int REACH = 6;
+const float WIDTH = 3.0;
+// Pixels to each side whose change counts as the pixel's.
+const int POOL = 2;
+// Pixels to a side of what a workgroup loads, and of what it compares.
+const int PATCH = 8 + 2 * (REACH + POOL);
+const int INNER = 8 + 2 * POOL;
+// A pixel of the frame before is of the same surface within this part of the camera's distance out of its plane, and this cosine of the normals.
+const float SAME_PLANE = 0.01;
+const float SAME_NORMAL = 0.9;
+// Weights of neighbours: as in shadow_filter.comp.
+const float PLANE_PART = 0.004;
+const float NORMAL_POWER = 32.0;
+// What is left of the spread of rays that are all alike.
+const float LEAST_SPREAD = 1e-5;
+
+// Of each pixel around: the position and what arrives by this frame's rays; (what arrived before, of how many frames) as halves; the normal, 0 where
+// there is no light.
+shared vec4 patch_texels[PATCH * PATCH];
+shared uint patch_before[PATCH * PATCH];
+shared uint patch_normals[PATCH * PATCH];
+// Of each pixel compared: the squared difference, and the variance that rays alone give it; that is negative where there is no history.
+shared vec2 differences[INNER * INNER];
+
+vec3 patch_normal(int i) {
+    return normalize(2.0 * unpackUnorm4x8(patch_normals[i]).xyz - 1.0);
+}
+
+// Where a pixel's point was in the image of the frame before, in pixels; false where it was behind the camera.
+bool place_before(ivec2 pixel, ivec2 size, vec3 position, out vec2 place) {
+    if (SHADOW_MOTION != 0) {
+        place = vec2(pixel) + 0.5 + texelFetch(g_motion, pixel, 0).xy * vec2(size);
+        return true;
+    }
+    mat4 clip_from_position = mat4(history_head(0u, 1u), history_head(4u, 1u), history_head(8u, 1u), history_head(12u, 1u));
+    vec4 clip = clip_from_position * vec4(position, 1.0);
+    place = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
+    return clip.w > 0.0;
+}
+
+// What is known of a pixel's point from the frame before: the mean of those of the four pixels around its place that are of its surface.
+HistoryPixel reprojected(ivec2 pixel, ivec2 size, vec3 position, vec3 normal) {
+    HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, position, normal);
+    vec3 before = position + history_head(16u, 0u).xyz;
+    vec2 place;
+    if (!place_before(pixel, size, before, place)) {
+        return mean;
+    }
+    float tolerance = SAME_PLANE * distance(constants.camera, position);
+    vec2 corner = floor(place - 0.5);
+    vec2 part = place - 0.5 - corner;
+    float sum = 0.0;
+    for (int i = 0; i < 4; i++) {
+        ivec2 step = ivec2(i & 1, i >> 1);
+        vec2 there = corner + vec2(step);
+        if (all(greaterThanEqual(there, vec2(0.0))) && all(lessThan(there, vec2(size)))) {
+            HistoryPixel tap = load_history(ivec2(there), size, 1u);
+            bool is_same = tap.frames > 0.0 && abs(dot(normal, tap.position - before)) < tolerance && dot(normal, tap.normal) > SAME_NORMAL;
+            vec2 weights = mix(1.0 - part, part, vec2(step));
+            float weight = is_same ? weights.x * weights.y : 0.0;
+            mean.shadow += weight * tap.shadow;
+            mean.frames += weight * tap.frames;
+            sum += weight;
+        }
+    }
+    if (sum > 1e-3) {
+        mean.shadow /= sum;
+        mean.frames /= sum;
+    } else {
+        mean.shadow = vec2(0.0);
+        mean.frames = 0.0;
+    }
+    return mean;
+}
+
+void load_patch(ivec2 corner, ivec2 size) {
+    for (int i = int(gl_LocalInvocationIndex); i < PATCH * PATCH; i += 64) {
+        ivec2 pixel = corner + ivec2(i % PATCH, i / PATCH);
+        vec3 position = vec3(0.0);
+        patch_normals[i] = 0u;
+        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
+            vec4 shadow = imageLoad(shadow_image, pixel);
+            if (shadow.b > 0.0) {
+                vec3 normal = arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
+                HistoryPixel before = reprojected(pixel, size, position, normal);
+                patch_texels[i] = vec4(position, shadow.r);
+                patch_before[i] = packHalf2x16(vec2(before.frames > 0.0 ? before.shadow.x : shadow.r, before.frames));
+                patch_normals[i] = packUnorm4x8(vec4(0.5 * normal + 0.5, 1.0));
+            }
+        }
+    }
+    barrier();
+}
+
+// The squared difference of a pixel's rays and history, both means over its neighbours, and the variance of a ray's mean there.
+vec2 compared(int center, float rays) {
+    vec2 before = unpackHalf2x16(patch_before[center]);
+    if (patch_normals[center] == 0u || !(before.y > 0.0)) {
+        return vec2(0.0, -1.0);
+    }
+    vec3 position = patch_texels[center].xyz;
+    vec3 normal = patch_normal(center);
+    float plane_weight = 1.0 / (PLANE_PART * distance(constants.camera, position));
+    vec4 sums = vec4(0.0); // weights, their squares, this frame's, the history's
+    for (int y = -REACH; y <= REACH; y++) {
+        for (int x = -REACH; x <= REACH; x++) {
+            int i = center + y * PATCH + x;
+            if (patch_normals[i] != 0u) {
+                float likeness = exp(-abs(dot(normal, patch_texels[i].xyz - position)) * plane_weight)
+                                 * pow(clamp(dot(normal, patch_normal(i)), 0.0, 1.0), NORMAL_POWER);
+                float weight = exp(float(x * x + y * y) * (-0.5 / (WIDTH * WIDTH))) * likeness;
+                sums += weight * vec4(1.0, weight, patch_texels[i].w, unpackHalf2x16(patch_before[i]).x);
+            }
+        }
+    }
+    vec2 means = sums.zw / sums.x;
+    float difference = means.x - means.y;
+    float arrives = (means.x + before.y * means.y) / (1.0 + before.y);
+    float variance = arrives * (1.0 - arrives) * sums.y / (rays * sums.x * sums.x) + LEAST_SPREAD;
+    return vec2(difference * difference, variance);
+}
+
+void compare_patch(float rays) {
+    for (int i = int(gl_LocalInvocationIndex); i < INNER * INNER; i += 64) {
+        differences[i] = compared((i / INNER + REACH) * PATCH + i % INNER + REACH, rays);
+    }
+    barrier();
+}
+
+// Of how many frames the mean is to be, from 1 on, for a pixel whose history is of `frames`.
+float frames_of(ivec2 local, float frames) {
+    vec2 sums = vec2(0.0);
+    for (int y = 0; y <= 2 * POOL; y++) {
+        for (int x = 0; x <= 2 * POOL; x++) {
+            ivec2 place = local + ivec2(x, y);
+            vec2 found = differences[place.y * INNER + place.x];
+            if (found.y >= 0.0) {
+                float there = unpackHalf2x16(patch_before[(place.y + REACH) * PATCH + place.x + REACH]).y;
+                sums += vec2(found.x - found.y * (1.0 + 1.0 / there), 1.0);
+            }
+        }
+    }
+    float change = max(sums.x / max(sums.y, 1.0), 0.0);
+    ivec2 center = local + POOL;
+    float variance = differences[center.y * INNER + center.x].y;
+    float known = change + variance / frames;
+    return min(min(1.0 + variance / known, frames + 1.0), MOST_FRAMES);
+}
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    ivec2 size = ivec2(constants.size);
+    load_patch(ivec2(gl_WorkGroupID.xy) * 8 - (REACH + POOL), size);
+    compare_patch(float(SHADOW_RAYS));
+    if (any(greaterThanEqual(pixel, size))) {
+        return;
+    }
+    ivec2 local = ivec2(gl_LocalInvocationID.xy);
+    int center = (local.y + REACH + POOL) * PATCH + local.x + REACH + POOL;
+    HistoryPixel history = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0, 0.0, 1.0));
+    if (patch_normals[center] != 0u) {
+        history = reprojected(pixel, size, patch_texels[center].xyz, patch_normal(center));
+        vec2 now = imageLoad(shadow_image, pixel).rg;
+        float frames = history.frames > 0.0 ? frames_of(local, history.frames) : 1.0;
+        history.shadow = mix(history.shadow, now, 1.0 / frames);
+        history.frames = frames;
+    }
+    store_history(pixel, size, history);
+}
