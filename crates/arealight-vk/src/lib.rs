@@ -56,6 +56,6 @@ pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use prune::prune;
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
-pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources};
+pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
 pub use table_image::{TableFormat, TableImage};
 pub use tiles::{TileMemory, TileResources};

@@ -42,6 +42,17 @@ pub struct ShadowResources {
     pub blockers: Option<BlockerResources>,
 }
 
+/// A dispatch of a shadow pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ShadowStage {
+    /// Traces the rays.
+    Rays,
+    /// Makes means over frames of them, with [`ShadowOptions::history`].
+    History,
+    /// Filters them, and multiplies the radiance.
+    Filter,
+}
+
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowFrame<'a> {
@@ -277,6 +288,44 @@ impl ShadowPass {
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
+        // SAFETY: the same contract; barriers are between the stages.
+        unsafe {
+            let _label = self.rays.layouts().context().names.label(command_buffer, c"arealight shadows");
+            for stage in self.stages() {
+                if *stage != ShadowStage::Rays {
+                    self.record_barrier(command_buffer, COMPUTE, COMPUTE);
+                }
+                self.record_stage(*stage, command_buffer, set, resources, frame)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The dispatches of the pass, in order.
+    pub fn stages(&self) -> &'static [ShadowStage] {
+        if self.has_history() {
+            &[ShadowStage::Rays, ShadowStage::History, ShadowStage::Filter]
+        } else {
+            &[ShadowStage::Rays, ShadowStage::Filter]
+        }
+    }
+
+    /// One dispatch of [`ShadowPass::record`], for a host that has commands of its own between them, such as timestamps. What the one before
+    /// wrote is made visible to it by a barrier of the host's.
+    ///
+    /// # Safety
+    /// As [`ShadowPass::record`].
+    ///
+    /// # Errors
+    /// As [`ShadowPass::record`].
+    pub unsafe fn record_stage(
+        &self,
+        stage: ShadowStage,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        resources: &ShadowResources,
+        frame: &ShadowFrame<'_>,
+    ) -> Result<(), Error> {
         // Check everything, and make what is missing, before anything is recorded
         self.check_host_set(frame.host_set)?;
         let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
@@ -289,26 +338,22 @@ impl ShadowPass {
         self.prepare()?;
 
         let sets: Vec<_> = std::iter::once(set).chain(frame.host_set).collect();
+        let (pipelines, specialization) = match stage {
+            ShadowStage::Rays => (&self.rays, self.rays_constants()),
+            ShadowStage::History => (&self.history, self.history_constants()),
+            ShadowStage::Filter => (&self.filter, self.filter_constants()),
+        };
         // SAFETY: the same contract; the head is within the buffer, which nothing else uses now.
         unsafe {
-            let _label = self.rays.layouts().context().names.label(command_buffer, c"arealight shadows");
-            if let Some(HistoryHead { buffer, offset, words }) = head {
+            if let Some(HistoryHead { buffer, offset, words }) = head
+                && stage == ShadowStage::Rays
+            {
                 let device = self.rays.layouts().context().device();
                 self.record_barrier(command_buffer, COMPUTE, TRANSFER);
                 device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&words));
                 self.record_barrier(command_buffer, TRANSFER, COMPUTE);
             }
-            self.rays.with(self.rays_constants(), |pass| {
-                pass.record_checked(command_buffer, &sets, bytes, groups);
-            })?;
-            self.record_barrier(command_buffer, COMPUTE, COMPUTE);
-            if head.is_some() {
-                self.history.with(self.history_constants(), |pass| {
-                    pass.record_checked(command_buffer, &sets, bytes, groups);
-                })?;
-                self.record_barrier(command_buffer, COMPUTE, COMPUTE);
-            }
-            self.filter.with(self.filter_constants(), |pass| {
+            pipelines.with(specialization, |pass| {
                 pass.record_checked(command_buffer, &sets, bytes, groups);
             })
         }

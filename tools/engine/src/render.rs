@@ -15,7 +15,7 @@ use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight_tool_kernels::kernels::{REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 use std::time::Duration;
 
 /// What the Monte Carlo reference does: [`SceneRenderer::reference`].
@@ -176,14 +176,7 @@ impl<'a> SceneRenderer<'a> {
             Resource::buffer(self.light_buffer.handle()),
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;
-        let constants = ShadeConstants {
-            position_from_clip: glam::Mat4::IDENTITY.to_cols_array_2d(),
-            camera: self.camera.camera,
-            light_count: self.lights.light_count,
-            shape_count: self.lights.shape_count,
-            quad_count: self.lights.quad_count,
-            seed: 0,
-        };
+        let constants = self.shade_constants();
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             pass.record(commands, &constants, self.items())
@@ -275,6 +268,26 @@ impl<'a> SceneRenderer<'a> {
         Ok(texels.into_iter().map(Vec4::from_array).collect())
     }
 
+    /// Looks from elsewhere: the surfaces are found again by the next [`SceneRenderer::visibility`].
+    pub fn look(&mut self, camera: VisibilityConstants) {
+        self.camera = camera;
+        self.shown = false;
+    }
+
+    /// Other lights of the same kinds, at most as many, relative to `origin`.
+    ///
+    /// # Errors
+    /// [`EngineError`] names the light that cannot be shaded; where they do not fit, or the device fails.
+    pub fn set_lights(&mut self, lights: &[Light], origin: DVec3) -> Result<(), EngineError> {
+        let packed = PackedLights::new(lights, origin)?;
+        self.light_buffer.upload(&packed.lights)?;
+        self.vertex_buffer.upload(&packed.vertices)?;
+        self.shape_buffer.upload(&packed.shapes)?;
+        self.lights = packed.summary();
+        self.sampling = LightSampling::new(lights, &packed);
+        Ok(())
+    }
+
     /// What the lights are.
     pub fn lights(&self) -> LightSummary {
         self.lights
@@ -309,6 +322,18 @@ impl<'a> SceneRenderer<'a> {
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),
             picks: None,
             tiles: None,
+        }
+    }
+
+    /// Push constants of the shade kernel, and of those that are like it.
+    fn shade_constants(&self) -> ShadeConstants {
+        ShadeConstants {
+            position_from_clip: glam::Mat4::IDENTITY.to_cols_array_2d(),
+            camera: self.camera.camera,
+            light_count: self.lights.light_count,
+            shape_count: self.lights.shape_count,
+            quad_count: self.lights.quad_count,
+            seed: 0,
         }
     }
 

@@ -3,12 +3,14 @@
 use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
 use crate::{Engine, EngineError, Kept, SceneRenderer};
 use arealight::Blockers;
+use arealight::gpu::ShadeConstants;
+use arealight::kernels::Kernel;
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight_scene::{BufferError, SceneBuffers};
 use arealight_tool_kernels::gpu::GpuTriangle;
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
-    ShadowPass, ShadowResources,
+    ShadowPass, ShadowResources, ShadowStage,
 };
 use ash::vk;
 use glam::{Vec3, Vec4};
@@ -29,6 +31,29 @@ pub struct ShadowedView {
 }
 
 impl ShadowedView {
+    /// Makes the images that a run writes ready to be written.
+    fn begin(&self, commands: vk::CommandBuffer) {
+        for image in [&self.unshadowed, &self.shadows] {
+            image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
+        }
+    }
+
+    /// The dispatches of the shadow pass, in order.
+    pub fn stages(&self) -> &'static [ShadowStage] {
+        self.shadow.stages()
+    }
+
+    /// Other blockers than the scene's, relative to its origin, at most as many.
+    ///
+    /// # Errors
+    /// [`EngineError`] where they are not finite, do not fit, or the device fails.
+    pub fn set_blockers(&self, triangles: &[[Vec3; 3]]) -> Result<(), EngineError> {
+        let blockers = Blockers::new(triangles).map_err(BufferError::from)?;
+        self.blockers[0].upload(&blockers.nodes)?;
+        self.blockers[1].upload(&blockers.triangles)?;
+        Ok(())
+    }
+
     /// What the last run's rays found: of each pixel the part of its light that arrives, the penumbra's width, 1 where there is light, and the
     /// number of rays.
     ///
@@ -122,6 +147,11 @@ impl SceneRenderer<'_> {
         }
     }
 
+    fn shadowed_frame(&self, seed: u32) -> ShadeFrame {
+        let position_from_clip = Some(self.camera.position_from_clip());
+        ShadeFrame { seed, position_from_clip, ..self.shade_frame() }
+    }
+
     fn shadowed_resources(&self, view: &ShadowedView) -> ShadeResources {
         ShadeResources {
             radiance: Resource::StorageImage { view: view.unshadowed.view() },
@@ -140,17 +170,12 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let shade = ShadeFrame {
-            seed,
-            position_from_clip: Some(self.camera.position_from_clip()),
-            ..self.shade_frame()
-        };
+        let shade = self.shadowed_frame(seed);
         let frame = ShadowFrame { shade: &shade, host_set: None, origin_shift: Vec3::ZERO };
         let resources = self.shadow_resources(view);
         self.engine.host().try_submit_timed(|commands| {
+            view.begin(commands);
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            view.unshadowed.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
-            view.shadows.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE);
             // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
             // submissions are waited for.
             unsafe {
@@ -159,6 +184,76 @@ impl SceneRenderer<'_> {
                 view.shadow.record(commands, view.sets[1], &resources, &frame)?;
             }
             Ok(())
+        })
+    }
+
+    /// The first step of [`SceneRenderer::shade_shadowed`], as a submission of its own to tell its time apart: shades without shadows, and picks
+    /// lights and lobes for the rays.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shade_picking(&mut self, view: &ShadowedView, seed: u32) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let frame = self.shadowed_frame(seed);
+        self.engine.host().try_submit_timed(|commands| {
+            view.begin(commands);
+            // SAFETY: As in `shade_shadowed`.
+            unsafe { view.shade.record(commands, view.sets[0], &frame)? };
+            Ok(())
+        })
+    }
+
+    /// A step after it: a dispatch of the shadow pass.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shadow_stage(
+        &self,
+        view: &ShadowedView,
+        stage: ShadowStage,
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        let shade = self.shadowed_frame(seed);
+        let frame = ShadowFrame { shade: &shade, host_set: None, origin_shift: Vec3::ZERO };
+        let resources = self.shadow_resources(view);
+        self.engine.host().try_submit_timed(|commands| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            // SAFETY: As in `shade_shadowed`.
+            unsafe { view.shadow.record_stage(stage, commands, view.sets[1], &resources, &frame)? };
+            Ok(())
+        })
+    }
+
+    /// As [`SceneRenderer::shade`], with shadows, by one kernel of another's: one to compare with. Its bindings are the lights and their vertices,
+    /// the G-buffer's position, normal, base colour and reflectance, the radiance that it adds to, and [`arealight::Blockers`]' nodes and
+    /// triangles; its push constants are [`ShadeConstants`].
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails.
+    pub fn shade_shadowed_by(
+        &mut self,
+        view: &ShadowedView,
+        (kernel, specialization): (&'static Kernel, &[(u32, u32)]),
+        seed: u32,
+    ) -> Result<Option<Duration>, EngineError> {
+        self.ensure_visible()?;
+        let [position, normal, base_color, specular, _] = self.g_buffer.sampled();
+        let resources = [
+            Resource::buffer(self.light_buffer.handle()),
+            Resource::buffer(self.vertex_buffer.handle()),
+            position,
+            normal,
+            base_color,
+            specular,
+            Resource::StorageImage { view: self.g_buffer.radiance.view() },
+            Resource::buffer(view.blockers[0].handle()),
+            Resource::buffer(view.blockers[1].handle()),
+        ];
+        let pass = self.engine.pass(kernel, specialization, &resources)?;
+        let constants = ShadeConstants { seed, ..self.shade_constants() };
+        self.engine.host().try_submit_timed(|commands| {
+            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            pass.record(commands, &constants, self.items())
         })
     }
 }
