@@ -31,6 +31,7 @@ mod pyramid;
 mod recorder;
 mod resize;
 mod shading;
+mod shadow_history;
 mod shadow_rays;
 mod shadowed_reference;
 mod shadows;

@@ -1,11 +1,145 @@
 //! Shadows over frames: a still picture loses its noise, a moved camera finds its pixels again, and what changes is not dragged along.
 
-use arealight::Effects;
 use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory};
+use arealight::{Light, LightShape};
 use arealight_engine::{SceneRenderer, ShadowedView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::TestEngine;
-use arealight_tests::scenes;
+use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
 use glam::{DVec3, Vec3};
 
-const SIZE: [u32; 2] = [96, 64];
+const SIZE: [u32; 2] = [96, 72];
+
+fn scene() -> Scene {
+    let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+    let (a, b, c, d) = (corner(-3.0, 3.0), corner(3.0, 3.0), corner(3.0, -3.0), corner(-3.0, -3.0));
+    let mut triangles = vec![[a, b, c], [a, c, d]];
+    triangles.extend(box_of(DVec3::new(-0.5, 0.5, -0.4), DVec3::new(0.4, 0.8, 0.3)));
+    scene_of(&triangles, without_textures(lambert(0.8)))
+}
+
+/// A quad that faces down.
+fn light() -> Light {
+    let corner = |x: f64, z: f64| DVec3::new(x, 2.0, z);
+    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
+    Light {
+        radiance: Vec3::splat(5.0),
+        shape: LightShape::Polygon(outline.iter().map(|&(x, z)| corner(x, z)).collect()),
+        ..Light::default()
+    }
+}
+
+/// A camera on an orbit, at an angle in degrees.
+fn camera(degrees: f64) -> Camera {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let forward = DVec3::new(-sin, -1.4, -cos);
+    let bounds = [DVec3::new(-1.5, 0.0, -1.5), DVec3::new(1.5, 0.0, 1.5)].into_iter().collect();
+    Camera::framing("", bounds, forward, DVec3::Y, 4.0 / 3.0)
+}
+
+/// A scene that is looked at frame by frame.
+struct Film<'a> {
+    buffers: SceneBuffers,
+    renderer: SceneRenderer<'a>,
+    view: ShadowedView,
+}
+
+impl<'a> Film<'a> {
+    fn new(engine: &'a TestEngine, rays: u32, history: ShadowHistory) -> Self {
+        let scene = scene();
+        let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
+        let constants = buffers.constants(&camera(0.0), SIZE, Vec3::ZERO);
+        let renderer = SceneRenderer::new(engine, &buffers, &[light()], constants, SIZE).unwrap();
+        let options = ShadeOptions { shadow_rays: rays, ..ShadeOptions::default() };
+        let view = renderer.shadowed(&buffers, options, (ShadowFilter::Off, history)).unwrap();
+        Self { buffers, renderer, view }
+    }
+
+    /// What arrives at each pixel, in a frame from an angle.
+    fn frame(&mut self, degrees: f64, seed: u32) -> Vec<f64> {
+        self.renderer.look(self.buffers.constants(&camera(degrees), SIZE, Vec3::ZERO));
+        self.renderer.visibility().unwrap();
+        self.renderer.shade_shadowed(&self.view, seed).unwrap();
+        let unshadowed = self.view.unshadowed().unwrap();
+        let radiance = self.renderer.radiance().unwrap();
+        radiance.iter().zip(&unshadowed).map(|(a, b)| f64::from(a.y / b.y.max(1e-6))).collect()
+    }
+
+    /// The mean of many frames, of a film without history.
+    fn truth(&mut self, degrees: f64) -> Vec<f64> {
+        const FRAMES: u32 = 64;
+        let mut sum = vec![0.0; (SIZE[0] * SIZE[1]) as usize];
+        for seed in 0..FRAMES {
+            for (sum, part) in sum.iter_mut().zip(self.frame(degrees, 1000 + seed)) {
+                *sum += part / f64::from(FRAMES);
+            }
+        }
+        sum
+    }
+}
+
+fn rms(found: &[f64], truth: &[f64]) -> f64 {
+    let squares = found.iter().zip(truth).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / found.len() as f64).sqrt()
+}
+
+#[test]
+fn a_still_picture_loses_its_noise() {
+    let Some(engine) = TestEngine::new() else { return };
+    let truth = Film::new(&engine, 4, ShadowHistory::Off).truth(0.0);
+    let errors = |history| {
+        let mut film = Film::new(&engine, 1, history);
+        let errors: Vec<f64> = (0..24).map(|seed| rms(&film.frame(0.0, seed), &truth)).collect();
+        (errors[0], errors[23])
+    };
+    let (first, last) = errors(ShadowHistory::Camera);
+    println!("{first:.3} to {last:.3}");
+    // A mean of sixteen: a quarter, or less, as rays of frames after one another are spread evenly
+    assert!(last < 0.3 * first, "{first} to {last}");
+    // The twin: without history it stays
+    let (first, last) = errors(ShadowHistory::Off);
+    assert!(last > 0.9 * first, "{first} to {last}");
+}
+
+#[test]
+fn a_moved_camera_finds_its_pixels_again() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut film = Film::new(&engine, 1, ShadowHistory::Camera);
+    let mut plain = Film::new(&engine, 1, ShadowHistory::Off);
+    let degrees = |frame: u32| f64::from(frame);
+    for frame in 0..20 {
+        film.frame(degrees(frame), frame);
+    }
+    let truth = Film::new(&engine, 4, ShadowHistory::Off).truth(degrees(20));
+    let error = rms(&film.frame(degrees(20), 20), &truth);
+    let without = rms(&plain.frame(degrees(20), 20), &truth);
+    println!("{error:.3}, without {without:.3}");
+    assert!(error < 0.45 * without, "{error}, without {without}");
+    // The twin: a jump by a quarter turn is new for most pixels, and none is wrong
+    let truth = Film::new(&engine, 4, ShadowHistory::Off).truth(degrees(110));
+    let jumped = rms(&film.frame(degrees(110), 21), &truth);
+    let without = rms(&plain.frame(degrees(110), 21), &truth);
+    println!("after a jump {jumped:.3}, without {without:.3}");
+    assert!(jumped < 1.05 * without, "{jumped}, without {without}");
+}
+
+#[test]
+fn a_shadow_whose_blocker_is_gone_goes() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut film = Film::new(&engine, 1, ShadowHistory::Camera);
+    let mut before = Vec::new();
+    for frame in 0..24 {
+        before = film.frame(0.0, frame);
+    }
+    film.view.set_blockers(&[]).unwrap();
+    let hidden = |parts: &[f64]| -> f64 {
+        let dark = before.iter().zip(parts).filter(|(before, _)| **before < 0.2);
+        let parts: Vec<f64> = dark.map(|(_, part)| 1.0 - part).collect();
+        parts.iter().sum::<f64>() / parts.len() as f64
+    };
+    let ghost: Vec<f64> = (24..28).map(|frame| hidden(&film.frame(0.0, frame))).collect();
+    println!("ghost {ghost:.3?}");
+    assert!(hidden(&before) > 0.8);
+    // A mean of a fixed sixteen frames would leave (15/16)^4 of it, .77
+    assert!(ghost[0] < 0.5 && ghost[3] < 0.1, "{ghost:?}");
+}
