@@ -30,6 +30,8 @@ const float SAME_NORMAL = 0.9;
 // Weights of neighbours: as in shadow_filter.comp.
 const float PLANE_PART = 0.004;
 const float NORMAL_POWER = 32.0;
+// How much more than coins the rays of frames after one another differ: where one frame has too few the next has too many, by its numbers.
+const float SPREAD = 2.0;
 // What is left of the spread of rays that are all alike.
 const float LEAST_SPREAD = 1e-5;
 
@@ -155,7 +157,7 @@ float frames_of(ivec2 local, float frames) {
             vec2 found = differences[place.y * INNER + place.x];
             if (found.y >= 0.0) {
                 float there = unpackHalf2x16(patch_before[(place.y + REACH) * PATCH + place.x + REACH]).y;
-                sums += vec2(found.x - found.y * (1.0 + 1.0 / there), 1.0);
+                sums += vec2(found.x - SPREAD * found.y * (1.0 + 1.0 / there), 1.0);
             }
         }
     }
