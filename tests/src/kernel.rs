@@ -172,15 +172,28 @@ impl TestEngine {
 /// # Panics
 /// Where that is missing.
 pub fn shade_with_bridge() -> Vec<u32> {
+    with_bridge("shade", "AREALIGHT_HOST_G_BUFFER")
+}
+
+/// The kernel of shadow rays with the example's blocker, likewise.
+///
+/// # Panics
+/// As [`shade_with_bridge`].
+pub fn shadow_rays_with_bridge() -> Vec<u32> {
+    with_bridge("shadow_rays", "AREALIGHT_HOST_BLOCKER")
+}
+
+/// A kernel with what a macro asks for of the examples.
+fn with_bridge(kernel: &str, macro_name: &str) -> Vec<u32> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let folder = tempfile::tempdir().expect("a folder");
-    let module = folder.path().join("shade.spv");
+    let module = folder.path().join("kernel.spv");
     let output = Command::new("glslc")
-        .args(["--target-env=vulkan1.1", "-DAREALIGHT_HOST_G_BUFFER=1", "-I"])
+        .args(["--target-env=vulkan1.1", &format!("-D{macro_name}=1"), "-I"])
         .arg(root.join("shaders/include"))
         .arg("-I")
         .arg(root.join("shaders/examples"))
-        .arg(root.join("shaders/kernels/shade.comp"))
+        .arg(root.join(format!("shaders/kernels/{kernel}.comp")))
         .arg("-o")
         .arg(&module)
         .output()

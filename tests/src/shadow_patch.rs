@@ -52,6 +52,8 @@ pub struct PatchPasses<'a> {
     shade: ShadePass,
     shadow: ShadowPass,
     options: ShadeOptions,
+    /// Set 1 of a module of the host's.
+    pub host_set: Option<vk::DescriptorSet>,
 }
 
 impl<'a> PatchPasses<'a> {
@@ -65,7 +67,26 @@ impl<'a> PatchPasses<'a> {
         unsafe {
             let shade = ShadePass::new(engine.context(), options).unwrap();
             let shadow = ShadowPass::new(engine.context(), options, shadows).unwrap();
-            Self { engine, shade, shadow, options }
+            Self { engine, shade, shadow, options, host_set: None }
+        }
+    }
+
+    /// As [`PatchPasses::new`], where a module of the host's says what blocks, which reads set 1 of this layout.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn with_module(
+        engine: &'a TestEngine,
+        options: ShadeOptions,
+        module: Vec<u32>,
+        layout: vk::DescriptorSetLayout,
+    ) -> Self {
+        let shadows = ShadowOptions { filter: ShadowFilter::Off, ..ShadowOptions::default() };
+        // SAFETY: As above; the module is the test's, and the layout outlives the pass.
+        unsafe {
+            let shade = ShadePass::new(engine.context(), options).unwrap();
+            let shadow = ShadowPass::with_module(engine.context(), options, shadows, module, layout).unwrap();
+            Self { engine, shade, shadow, options, host_set: None }
         }
     }
 }
@@ -76,7 +97,7 @@ impl ShadowPatch {
     /// # Panics
     /// Where the device fails.
     pub fn run(&self, passes: &PatchPasses<'_>) -> PatchShadows {
-        let PatchPasses { engine, shade, shadow: shadows, options } = passes;
+        let PatchPasses { engine, shade, shadow: shadows, options, host_set } = passes;
         let host = engine.host();
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
         let blockers = Blockers::new(&self.blockers).unwrap();
@@ -131,7 +152,9 @@ impl ShadowPatch {
                 radiance: Some(of(&shadowed)),
                 history: None,
                 motion: None,
-                blockers: Some(BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
+                blockers: host_set
+                    .is_none()
+                    .then(|| BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
             };
             shadows.write_set(sets[1], &resources, &of_shadows).unwrap();
             let frame = ShadeFrame {
@@ -143,7 +166,7 @@ impl ShadowPatch {
                 seed: 0,
             };
             host.submit(|commands| shade.record(commands, sets[0], &frame).unwrap()).unwrap();
-            let frame = ShadowFrame { shade: &frame, host_set: None, origin_shift: Vec3::ZERO };
+            let frame = ShadowFrame { shade: &frame, host_set: *host_set, origin_shift: Vec3::ZERO };
             host.submit(|commands| shadows.record(commands, sets[1], &of_shadows, &frame).unwrap()).unwrap();
         }
         let pixels = |image: &Image| {

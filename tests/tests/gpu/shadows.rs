@@ -5,7 +5,9 @@ use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Material, Quality,
 use arealight_oracle::shading::{RelativeLight, ltc_on};
 use arealight_oracle::visibility::visible_parts;
 use arealight_tests::TestEngine;
+use arealight_tests::kernel::shadow_rays_with_bridge;
 use arealight_tests::shadow_patch::{PatchPasses, PatchShadows, ShadowPatch};
+use ash::vk;
 use glam::{DVec2, DVec3, Vec3};
 
 const RAYS: u32 = 4;
@@ -275,4 +277,48 @@ fn coats_and_both_horizons_draw_from_their_own_lobes() {
         let found = patch.run(&PatchPasses::new(&engine, options, ShadowFilter::Off)).mean();
         assert!((found - 0.5).abs() < 4e-3, "{options:?}: {found}");
     }
+}
+
+#[test]
+fn a_host_says_itself_what_blocks() {
+    let Some(engine) = TestEngine::new() else { return };
+    let host = engine.host();
+    // A set of the host's own, with what its module reads
+    let binding = [vk::DescriptorSetLayoutBinding::default()
+        .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+        .descriptor_count(1)
+        .stage_flags(vk::ShaderStageFlags::COMPUTE)];
+    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
+    // SAFETY: Handles are the device's; what is made is destroyed below, after the last submission was waited for.
+    let layout = unsafe { host.device().create_descriptor_set_layout(&info, None) }.unwrap();
+    let size = vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: 1 };
+    let pool = host.descriptor_pool(1, &[size]).unwrap();
+    let half = [[-100.0_f32, 0.0, 0.01, 0.0], [100.0, 100.0, 0.0, 0.0]];
+    let rectangle = host.storage_buffer("rectangle", &half).unwrap();
+    // SAFETY: As above.
+    let set = unsafe {
+        let set = pool.allocate(layout).unwrap();
+        let buffer = [vk::DescriptorBufferInfo::default().buffer(rectangle.handle()).range(vk::WHOLE_SIZE)];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(set)
+            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+            .buffer_info(&buffer);
+        host.device().update_descriptor_sets(&[write], &[]);
+        set
+    };
+    {
+        let module = shadow_rays_with_bridge();
+        let mut passes = PatchPasses::with_module(&engine, options(), module, layout);
+        passes.host_set = Some(set);
+        let (_, material, view) = surfaces().remove(0);
+        let (_, light) = symmetric_lights().remove(0);
+        let patch = ShadowPatch { material, view, lights: vec![light], blockers: Vec::new() };
+        let found = patch.run(&passes).mean();
+        assert!((found - 0.5).abs() < 4e-3, "{found}");
+        // The twin: its rectangle elsewhere
+        rectangle.upload(&[[0.0_f32, 0.0, -1.0, 0.0], [0.0; 4]]).unwrap();
+        assert!((patch.run(&passes).mean() - 1.0).abs() < 1e-6);
+    }
+    // SAFETY: As above.
+    unsafe { host.device().destroy_descriptor_set_layout(layout, None) };
 }
