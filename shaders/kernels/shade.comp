@@ -2,43 +2,103 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Shades a G-buffer with every light of two buffers: polygons and meshes; disks, spheres and tubes.
+// Shades a G-buffer with lights of two buffers: polygons and meshes; disks, spheres and tubes. By CLASS either whole frames, with every
+// light, an invocation per pixel; or the tiles of one class that the kernel classify found, with the lights of their lists, a workgroup
+// per tile. A pixel's radiance is the same in both, light by light and arc by arc.
 
-#include "shade_resources.glsl"
+layout(local_size_x = 8, local_size_y = 8) in;
 
-// Some polygon light is a convex quad without an image
+layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
+layout(constant_id = 1) const int FORM_FACTOR = 0;
+layout(constant_id = 2) const int POSITION_SOURCE = 0;
+layout(constant_id = 3) const int OUTPUT = 0;
+layout(constant_id = 4) const int HORIZON = 0;
+layout(constant_id = 5) const int FRESNEL = 0;
+layout(constant_id = 6) const int LOBES = 0;
+layout(constant_id = 7) const int FOOTPRINT = 0;
+// Whether the frame has convex quads without an image
 layout(constant_id = 11) const bool HAS_QUADS = true;
+// Of the tiles, or CLASS_FRAME
+layout(constant_id = 12) const uint CLASS = 3u;
+layout(constant_id = 13) const int LAYOUT = 0;
+layout(constant_id = 15) const int SHADOW_RAYS = 0;
 
-layout(push_constant, std430) uniform ShadeConstants {
-    mat4 position_from_clip;
-    vec3 camera;
-    uint light_count;
-    uint shape_count;
-    uint quad_count; // of the first lights: convex quads without an image
-    uint seed;       // of shadow rays
-} constants;
+#define LIGHTS_BINDING 1
+#define G_BUFFER_BINDING 3
+#define G_BUFFER_LAYOUT LAYOUT
+#define RADIANCE_BINDING 7
+#define LIGHT_TEXTURES_BINDING 8
+#define SHAPES_BINDING 9
+#define GLOSSY_BINDING 10
+#define COAT_BINDING 11
+#define PICKS_BINDING 12
+#define TILE_LISTS_BINDING 13
+#define TILE_LISTS_ACCESS readonly
+#include "effects.glsl"
+const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
+#include "table_image.glsl"
+#include "polygon_lights.glsl"
+#include "round_lights.glsl"
+#include "g_buffer.glsl"
+#include "output.glsl"
+#include "tiles.glsl"
 
-const bool HAS_LIGHTS = true;
+const bool BY_TILES = CLASS != CLASS_FRAME;
+const bool HAS_LIGHTS = CLASS != CLASS_EMPTY;
+// EFFECTS of tiles of quads have none of these: TileClass::lights in Rust
 const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
 const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 
-// The lights of the buffer.
+// The lights of a pixel: those of its tile's list, or those of the frame.
 struct LightList {
     uint quad_count;
     uint light_count;
     uint shape_count;
+    bool is_listed;
+    uint first; // where a tile's are
 };
 uint light_at(LightList list, uint index) {
+    if (BY_TILES) {
+        return list.is_listed ? tile_lists[list.first + index] : index;
+    }
     return index;
 }
 uint shape_at(LightList list, uint index) {
+    if (BY_TILES) {
+        return list.is_listed ? tile_lists[list.first + list.light_count + index] : index;
+    }
     return index;
 }
 
 #include "shade_pixel.glsl"
 
-void main() {
+LightList lights_of_frame() {
     uint quad_count = HAS_POLYGONS ? constants.quad_count : constants.light_count;
-    LightList list = LightList(quad_count, constants.light_count, constants.shape_count);
-    shade_pixel(ivec2(gl_GlobalInvocationID.xy), imageSize(radiance_image), list);
+    return LightList(quad_count, constants.light_count, constants.shape_count, false, 0u);
+}
+
+LightList lights_of_tile(uvec2 tile) {
+    uint record = tile_record(tile);
+    uvec3 counts = uvec3(tile_lists[record], tile_lists[record + 1u], tile_lists[record + 2u]);
+    bool is_listed = counts.x != TILE_ALL_LIGHTS;
+    counts = is_listed ? counts : uvec3(constants.quad_count, constants.light_count, constants.shape_count);
+    return LightList(counts.x, counts.y, counts.z, is_listed, record + TILE_RECORD_HEADER);
+}
+
+// Shades the workgroup's tile, if the class has so many.
+void shade_tile() {
+    uint index = gl_WorkGroupID.y * TILE_ROW + gl_WorkGroupID.x;
+    if (index >= tile_lists[CLASS * TILE_CLASS_WORDS + 3u]) {
+        return;
+    }
+    uvec2 tile = unpack_tile(tile_lists[class_list(CLASS) + index]);
+    shade_pixel(ivec2(tile) * TILE_SIDE + ivec2(gl_LocalInvocationID.xy), lights_of_tile(tile));
+}
+
+void main() {
+    if (BY_TILES) {
+        shade_tile();
+    } else {
+        shade_pixel(ivec2(gl_GlobalInvocationID.xy), lights_of_frame());
+    }
 }

@@ -1,8 +1,8 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// Shades a pixel with a list of lights. The including kernel has shade_resources.glsl, push constants with camera, a
-// struct LightList with quad_count, light_count and shape_count, and
+// Shades a pixel with a list of lights. The including kernel, shade.comp, has a struct LightList with quad_count, light_count and
+// shape_count, and
 // - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are convex quads without an image;
 // - uint shape_at(LightList list, uint index): a disk, sphere or tube of the list;
 // - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other polygons and meshes,
@@ -68,8 +68,9 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
     return sum;
 }
 
-// Shades a pixel of an image of that size, if it is one, and stores it.
-void shade_pixel(ivec2 pixel, ivec2 size, LightList list) {
+// Shades a pixel of the frame, if it is one, and stores it.
+void shade_pixel(ivec2 pixel, LightList list) {
+    ivec2 size = ivec2(constants.size);
     if (any(greaterThanEqual(pixel, size))) {
         return;
     }

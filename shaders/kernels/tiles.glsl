@@ -1,8 +1,10 @@
 #ifndef TILES_GLSL
 #define TILES_GLSL
 
-// What the kernel classify finds of each tile of 8 x 8 pixels, and shade_tiles reads. crates/arealight/src/tiles.rs has
+// What the kernel classify finds of each tile of 8 x 8 pixels, and shade reads. crates/arealight/src/tiles.rs has
 // the same numbers, and a test compares them. The including kernel defines TILE_LISTS_BINDING and TILE_LISTS_ACCESS.
+
+#include "shade_constants.glsl"
 
 const int TILE_SIDE = 8;
 
@@ -10,6 +12,8 @@ const int TILE_SIDE = 8;
 const uint CLASS_EMPTY = 0u;
 const uint CLASS_QUADS = 1u;
 const uint CLASS_ANY = 2u;
+// No class: of whole frames, which have no tiles.
+const uint CLASS_FRAME = 3u;
 
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
@@ -24,19 +28,6 @@ const uint TILE_ALL_LIGHTS = 0xffffffffu;
 
 // Workgroups of a class's dispatch in x. Vulkan promises 65535.
 const uint TILE_ROW = 32768u;
-
-layout(push_constant, std430) uniform TileConstants {
-    mat4 position_from_clip;
-    vec3 camera;
-    uint light_count;
-    uvec2 size;
-    uint capacity;
-    uint horizon_cells;
-    uint shape_count;
-    uint quad_count;
-    float cull_threshold;
-    uint seed; // of shadow rays
-} constants;
 
 layout(set = 0, binding = TILE_LISTS_BINDING, std430) TILE_LISTS_ACCESS buffer TileLists {
     uint tile_lists[];

@@ -154,8 +154,8 @@ pub fn rows() -> Vec<Row> {
         classify("quads", "culling", none, 0.01),
         classify("quads", "culling, coat with its own normal", COATS, 0.01),
         classify("every kind", "culling", every_kind, 0.01),
-        tiles("quads", "exact", TileClass::Quads, none),
-        tiles("every kind", "exact", TileClass::Any, every_kind),
+        tiles("tiles of quads", "exact", TileClass::Quads, none),
+        tiles("tiles of every kind", "exact", TileClass::Any, every_kind),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -216,7 +216,7 @@ fn classify(lights: &'static str, level: &'static str, kinds: Effects, cull_thre
 fn tiles(lights: &'static str, level: &'static str, class: TileClass, kinds: Effects) -> Row {
     let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
     let specialization = plan::shade_tiles_specialization(ShadeOptions::default(), frame, class);
-    row(&kernels::SHADE_TILES, lights, level, None, specialization)
+    row(&kernels::SHADE, lights, level, None, specialization)
 }
 
 fn load(level: &'static str, called_for: u32) -> Row {

@@ -182,7 +182,8 @@ impl<'a> Frame<'a> {
                 light_count,
                 shape_count: 0,
                 quad_count: self.summary.quad_count.min(light_count),
-                seed: 0,
+                size: self.size(),
+                ..ShadeConstants::default()
             };
             return device_seconds(self.engine, |commands| {
                 // SAFETY: `commands` is being recorded, outside a render pass.

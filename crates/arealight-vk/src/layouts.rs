@@ -3,7 +3,7 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::pass::Resource;
-use arealight::kernels::{BindingKind, Kernel};
+use arealight::kernels::{Binding, BindingKind, Kernel};
 use ash::vk;
 use std::sync::Arc;
 
@@ -25,6 +25,8 @@ pub fn filtered_image_sampler() -> vk::SamplerCreateInfo<'static> {
 pub(crate) struct Layouts {
     context: Context,
     kernel: &'static Kernel,
+    /// The kernel's, or the first of them.
+    bindings: &'static [Binding],
     /// Of set 1, where a module of the host's reads what is the host's.
     host_set: Option<vk::DescriptorSetLayout>,
     sampler: vk::Sampler,
@@ -37,7 +39,7 @@ impl Layouts {
     /// They are dropped before the device is destroyed, when no recorded use of them is pending.
     pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
         // SAFETY: the same contract.
-        unsafe { Self::with_host_set(context, kernel, None) }
+        unsafe { Self::with(context, kernel, kernel.bindings, None) }
     }
 
     /// As [`Layouts::new`], with the layout of a second set, which is the host's.
@@ -49,17 +51,32 @@ impl Layouts {
         kernel: &'static Kernel,
         host_set: Option<vk::DescriptorSetLayout>,
     ) -> Result<Arc<Self>, Error> {
-        check_limits(context, kernel)?;
+        // SAFETY: the same contract.
+        unsafe { Self::with(context, kernel, kernel.bindings, host_set) }
+    }
+
+    /// As [`Layouts::with_host_set`], with no more of the kernel's first bindings than its pipelines use.
+    ///
+    /// # Safety
+    /// As [`Layouts::with_host_set`].
+    pub(crate) unsafe fn with(
+        context: &Context,
+        kernel: &'static Kernel,
+        bindings: &'static [Binding],
+        host_set: Option<vk::DescriptorSetLayout>,
+    ) -> Result<Arc<Self>, Error> {
+        check_limits(context, kernel, bindings)?;
         // Handles that were made before a later call fails are destroyed with these half-made layouts
         let mut layouts = Self {
             context: context.clone(),
             kernel,
+            bindings,
             host_set,
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
         };
-        if kernel.bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
+        if bindings.iter().any(|binding| binding.kind == BindingKind::FilteredImage) {
             layouts.make_sampler()?;
         }
         layouts.make_layouts()?;
@@ -79,7 +96,7 @@ impl Layouts {
         let device = &self.context.device;
         let samplers = [self.sampler];
         let bindings: Vec<_> = (0u32..)
-            .zip(self.kernel.bindings)
+            .zip(self.bindings)
             .map(|(number, binding)| {
                 let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(number)
@@ -117,6 +134,10 @@ impl Layouts {
         self.pipeline_layout
     }
 
+    pub(crate) fn bindings(&self) -> &'static [Binding] {
+        self.bindings
+    }
+
     /// Whether set 1 is the host's.
     pub(crate) fn has_host_set(&self) -> bool {
         self.host_set.is_some()
@@ -130,7 +151,7 @@ impl Layouts {
         BindingKind::ALL
             .into_iter()
             .filter_map(|kind| {
-                let count = self.kernel.bindings.iter().filter(|b| b.kind == kind).count() as u32;
+                let count = self.bindings.iter().filter(|b| b.kind == kind).count() as u32;
                 (count > 0).then(|| vk::DescriptorPoolSize {
                     ty: descriptor_type(kind),
                     descriptor_count: count * sets,
@@ -160,7 +181,7 @@ impl Layouts {
         resources: &[Resource],
         absent: &[&'static str],
     ) -> Result<(), Error> {
-        let bindings = self.kernel.bindings;
+        let bindings = self.bindings;
         if resources.len() != bindings.len() {
             return Err(Error::InvalidArgument {
                 field: "resources",
@@ -260,7 +281,7 @@ impl Drop for Layouts {
 }
 
 /// Only tiles and the kernels of our own tools bind more than every Vulkan device can.
-fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error> {
+fn check_limits(context: &Context, kernel: &'static Kernel, bindings: &[Binding]) -> Result<(), Error> {
     use BindingKind::{FilteredImage, SampledImage, StorageBuffer, StorageImage};
     let limits = context.limits;
     for (kinds, limit, feature) in [
@@ -268,7 +289,7 @@ fn check_limits(context: &Context, kernel: &'static Kernel) -> Result<(), Error>
         (&[StorageImage], limits.storage_images, "maxPerStageDescriptorStorageImages"),
         (&[StorageBuffer], limits.storage_buffers, "maxPerStageDescriptorStorageBuffers"),
     ] {
-        let count = kernel.bindings.iter().filter(|binding| kinds.contains(&binding.kind)).count();
+        let count = bindings.iter().filter(|binding| kinds.contains(&binding.kind)).count();
         if count > limit as usize {
             return Err(Error::MissingFeature { feature, needed_by: kernel.name });
         }

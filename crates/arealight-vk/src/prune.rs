@@ -8,7 +8,7 @@ use constants::{Known, Value};
 use flow::{Callees, Flow};
 use rspirv::binary::Assemble;
 use rspirv::dr::{Function, Instruction, Module, Operand, load_words};
-use rspirv::spirv::{Op, Word};
+use rspirv::spirv::{Op, StorageClass, Word};
 use std::collections::{HashMap, HashSet};
 
 mod constants;
@@ -16,8 +16,8 @@ mod flow;
 mod pointers;
 
 /// The module without the branches that are never taken where specialisation constants have these values (pairs of id and value; the
-/// others have their defaults), and without the functions that then nobody calls. It has the same constants, bindings and entry
-/// points, is specialised in the same way, and computes the same to the bit.
+/// others have their defaults), without the functions that then nobody calls, and without the bindings that then nothing uses. It has the
+/// same constants and entry points, is specialised in the same way, and computes the same to the bit.
 ///
 /// What isn't understood is left as it is: a `switch`, what is computed of other than integers of 32 bits and truth values;
 /// and whole modules that have debug information beyond the core's (`NonSemantic.Shader.DebugInfo.100`), or cannot be read.
@@ -47,8 +47,9 @@ fn pruned(words: &[u32], specialization: &[(u32, u32)]) -> Option<Vec<u32>> {
         flow.prune(function);
     }
 
-    // Drop the functions that nobody calls, and what is said of what is gone
+    // Drop the functions that nobody calls, the bindings that nothing uses, and what is said of what is gone
     module.functions.retain(|function| calls.is_called(function));
+    drop_unused_bindings(&mut module);
     let defined: HashSet<Word> =
         module.all_inst_iter().filter_map(|instruction| instruction.result_id).collect();
     let is_defined = |about: &Instruction| match about.operands.first() {
@@ -58,6 +59,25 @@ fn pruned(words: &[u32], specialization: &[(u32, u32)]) -> Option<Vec<u32>> {
     module.debug_names.retain(is_defined);
     module.annotations.retain(is_defined);
     Some(module.assemble())
+}
+
+/// Drops the images and buffers that no instruction of a function uses. (Entry points of SPIR-V 1.3 do not name them.)
+fn drop_unused_bindings(module: &mut Module) {
+    let instructions = module.functions.iter().flat_map(Function::all_inst_iter);
+    let used: HashSet<Word> = instructions
+        .chain(&module.entry_points)
+        .flat_map(|instruction| instruction.operands.iter().filter_map(Operand::id_ref_any))
+        .collect();
+    let is_binding = |variable: &Instruction| {
+        variable.class.opcode == Op::Variable
+            && matches!(
+                variable.operands.first(),
+                Some(Operand::StorageClass(StorageClass::UniformConstant | StorageClass::StorageBuffer))
+            )
+    };
+    module
+        .types_global_values
+        .retain(|value| !is_binding(value) || value.result_id.is_none_or(|name| used.contains(&name)));
 }
 
 /// Whether the instructions end where the module does, as their lengths say.

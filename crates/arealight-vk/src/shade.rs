@@ -7,11 +7,12 @@ use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{Access, BindingKind, CLASSIFY, Kernel, SHADE, store_to};
+use arealight::kernels::{Access, BindingKind, CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, store_to};
 use arealight::plan::{self, Output, PositionSource, RadianceImages, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
+use std::sync::Arc;
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
 /// What may be missing is not read in some frames: in debug builds a frame that reads it is refused.
@@ -149,8 +150,8 @@ impl ShadePass {
         // SAFETY: the same contract; the modules are the kernels'.
         check_shadows(options)?;
         unsafe {
-            let layouts = Tiles::layouts(context)?;
-            let tiles = Tiles::new(&layouts, options, tiles, table_size)?;
+            let layouts = Layouts::new(context, &SHADE)?;
+            let tiles = Tiles::new(&layouts, tiles, table_size)?;
             let pipelines = Pipelines::new(layouts, &SHADE, SHADE.words_for(options.format));
             Ok(Self { pipelines, tiles: Some(tiles), options })
         }
@@ -173,7 +174,7 @@ impl ShadePass {
         check_shadows(options)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pipelines = unsafe { Pipelines::new(Layouts::new(context, &SHADE)?, &SHADE, module) };
+        let pipelines = unsafe { Pipelines::new(frame_layouts(context)?, &SHADE, module) };
         Ok(Self { pipelines, tiles: None, options })
     }
 
@@ -213,6 +214,7 @@ impl ShadePass {
     /// for those stages, as for any buffer that is written again.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
         let mut accesses = accesses_of(&SHADE);
+        accesses.retain(|access| access.name != TILE_LISTS);
         if self.tiles.is_some() {
             accesses
                 .extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
@@ -274,6 +276,8 @@ impl ShadePass {
             };
             all.extend([tiles.tile_lists, tiles.lobe_horizons]);
         }
+        // A whole module has bindings that no frame of this pass uses
+        all.resize(self.pipelines.layouts().bindings().len(), resources.lights);
         let absent =
             [(LIGHT_TEXTURES, resources.light_textures.is_none()), (SHAPES, resources.shapes.is_none())];
         let absent = absent.into_iter().filter_map(|(name, is_absent)| is_absent.then_some(name)).collect();
@@ -287,8 +291,8 @@ impl ShadePass {
     /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
     pub fn prepare(&self, frame: &ShadeFrame) -> Result<(), Error> {
         let constants = self.constants(frame)?;
-        match self.tiled(frame, &constants)? {
-            Some((tiles, frame)) => tiles.prepare(self.options, &frame),
+        match self.tiled(frame, constants)? {
+            Some((tiles, frame)) => tiles.prepare(&self.pipelines, self.options, &frame),
             None => self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |_| ()),
         }
     }
@@ -328,11 +332,11 @@ impl ShadePass {
         let constants = self.constants(frame)?;
         self.pipelines.layouts().check_present(set, &needed(frame.lights))?;
         let names = &self.pipelines.layouts().context().names;
-        if let Some((tiles, frame)) = self.tiled(frame, &constants)? {
+        if let Some((tiles, frame)) = self.tiled(frame, constants)? {
             // SAFETY: the same contract.
             return unsafe {
                 let _label = names.label(command_buffer, c"arealight tiles");
-                tiles.record(command_buffer, set, self.options, &frame)
+                tiles.record(command_buffer, set, &self.pipelines, self.options, &frame)
             };
         }
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
@@ -350,7 +354,7 @@ impl ShadePass {
     fn tiled(
         &self,
         frame: &ShadeFrame,
-        constants: &ShadeConstants,
+        constants: ShadeConstants,
     ) -> Result<Option<(&Tiles, TiledFrame)>, Error> {
         let Some(tiles) = &self.tiles else { return Ok(None) };
         let frame = tiles.checked(frame, constants)?;
@@ -367,9 +371,21 @@ impl ShadePass {
             light_count: frame.lights.light_count,
             shape_count: frame.lights.shape_count,
             quad_count: frame.lights.quad_count,
+            size: frame.size,
             seed: frame.seed,
+            ..ShadeConstants::default()
         })
     }
+}
+
+/// The layouts of passes without tiles.
+///
+/// # Safety
+/// As [`Layouts::new`].
+unsafe fn frame_layouts(context: &Context) -> Result<Arc<Layouts>, Error> {
+    let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
+    // SAFETY: the same contract.
+    unsafe { Layouts::with(context, &SHADE, bindings, None) }
 }
 
 /// A frame's matrix from clip space and its camera, as kernels have them.
@@ -413,6 +429,9 @@ fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
     }
     Ok(())
 }
+
+/// The name of the lists of tiles in the manifest.
+const TILE_LISTS: &str = "tile_lists";
 
 /// The names of bindings that may have nothing, in the manifest.
 const LIGHT_TEXTURES: &str = "light_textures";

@@ -1,14 +1,13 @@
 //! Tiles of the shade pass: how they are classified, and how the classes are shaded.
 
-use crate::context::Context;
 use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::pass::Resource;
 use crate::pipelines::Pipelines;
 use crate::shade::ShadeFrame;
 use arealight::LightSummary;
-use arealight::gpu::{GpuTileClass, ShadeConstants, TileConstants};
-use arealight::kernels::{CLASSIFY, SHADE_TILES};
+use arealight::gpu::{GpuTileClass, ShadeConstants};
+use arealight::kernels::CLASSIFY;
 use arealight::plan::{self, ShadeOptions, TileOptions};
 use arealight::tiles::{self, TileClass, tile_counts};
 use ash::vk;
@@ -32,38 +31,27 @@ pub struct TileMemory {
     pub usage: vk::BufferUsageFlags,
 }
 
-/// The pipelines of tiles: one that classifies them, and one for each class.
+/// How tiles are classified. They are shaded by pipelines of the shade pass, one for each class.
 #[derive(Debug)]
 pub(crate) struct Tiles {
     classify: Pipelines,
-    shade: Pipelines,
     options: TileOptions,
     horizon_cells: u32,
 }
 
 /// A frame, checked.
 pub(crate) struct TiledFrame {
-    constants: TileConstants,
+    constants: ShadeConstants,
     lights: LightSummary,
     /// The buffer of the tile lists, and where in it they begin.
     lists: (vk::Buffer, vk::DeviceSize),
 }
 
 impl Tiles {
-    /// The layouts that all kernels of a pass with tiles have in common.
-    ///
     /// # Safety
-    /// As [`Layouts::new`].
-    pub(crate) unsafe fn layouts(context: &Context) -> Result<Arc<Layouts>, Error> {
-        // SAFETY: the same contract.
-        unsafe { Layouts::new(context, &SHADE_TILES) }
-    }
-
-    /// # Safety
-    /// As [`Pipelines::new`]; the layouts are those of [`Tiles::layouts`].
+    /// As [`Pipelines::new`]; the layouts have every binding of the shade kernel.
     pub(crate) unsafe fn new(
         layouts: &Arc<Layouts>,
-        options: ShadeOptions,
         tiles: TileOptions,
         table_size: u32,
     ) -> Result<Self, Error> {
@@ -78,16 +66,9 @@ impl Tiles {
         if table_size < 2 {
             return wrong("table_size", format!("is {table_size}, but a table has at least 2 nodes a side"));
         }
-        let shade = SHADE_TILES.words_for(options.format);
-        // SAFETY: the same contract; the bindings of both kernels are those of the layouts.
-        unsafe {
-            Ok(Self {
-                classify: Pipelines::new(Arc::clone(layouts), &CLASSIFY, CLASSIFY.words()),
-                shade: Pipelines::new(Arc::clone(layouts), &SHADE_TILES, shade),
-                options: tiles,
-                horizon_cells: table_size - 1,
-            })
-        }
+        // SAFETY: the same contract; the kernel has the shade kernel's bindings.
+        let classify = unsafe { Pipelines::new(Arc::clone(layouts), &CLASSIFY, CLASSIFY.words()) };
+        Ok(Self { classify, options: tiles, horizon_cells: table_size - 1 })
     }
 
     pub(crate) fn options(&self) -> TileOptions {
@@ -107,7 +88,7 @@ impl Tiles {
     pub(crate) fn checked(
         &self,
         frame: &ShadeFrame,
-        constants: &ShadeConstants,
+        constants: ShadeConstants,
     ) -> Result<Option<TiledFrame>, Error> {
         let wrong = |message: &str| Error::InvalidArgument { field: "tile_lists", message: message.into() };
         let lists = match frame.tile_lists {
@@ -120,28 +101,25 @@ impl Tiles {
         if !self.options.classifies(frame.lights) {
             return Ok(None);
         }
-        let &ShadeConstants { position_from_clip, camera, light_count, shape_count, quad_count, seed } =
-            constants;
-        let constants = TileConstants {
-            position_from_clip,
-            camera,
-            light_count,
-            size: frame.size,
+        let constants = ShadeConstants {
             capacity: self.options.capacity,
             horizon_cells: self.horizon_cells,
-            shape_count,
-            quad_count,
             cull_threshold: self.options.cull_threshold,
-            seed,
+            ..constants
         };
         Ok(Some(TiledFrame { constants, lights: frame.lights, lists }))
     }
 
-    /// Makes the pipelines of a frame that are not made yet.
-    pub(crate) fn prepare(&self, options: ShadeOptions, frame: &TiledFrame) -> Result<(), Error> {
+    /// Makes the pipelines of a frame that are not made yet; those that shade among `shade`.
+    pub(crate) fn prepare(
+        &self,
+        shade: &Pipelines,
+        options: ShadeOptions,
+        frame: &TiledFrame,
+    ) -> Result<(), Error> {
         self.classify.with(self.classify_constants(options, frame), |_| ())?;
         for class in dispatched(options, frame) {
-            self.shade.with(plan::shade_tiles_specialization(options, frame.lights, class), |_| ())?;
+            shade.with(plan::shade_tiles_specialization(options, frame.lights, class), |_| ())?;
         }
         Ok(())
     }
@@ -158,6 +136,7 @@ impl Tiles {
         &self,
         command_buffer: vk::CommandBuffer,
         set: vk::DescriptorSet,
+        shade: &Pipelines,
         options: ShadeOptions,
         frame: &TiledFrame,
     ) -> Result<(), Error> {
@@ -165,7 +144,7 @@ impl Tiles {
         let [columns, rows] = tile_counts(frame.constants.size);
         let (bytes, groups) = (bytemuck::bytes_of(&frame.constants), [columns, rows, 1]);
         self.classify.check(set, bytes, groups)?;
-        self.prepare(options, frame)?;
+        self.prepare(shade, options, frame)?;
 
         let (buffer, offset) = frame.lists;
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
@@ -192,7 +171,7 @@ impl Tiles {
             for class in dispatched(options, frame) {
                 let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;
                 let specialization = plan::shade_tiles_specialization(options, frame.lights, class);
-                self.shade.with(specialization, |pass| {
+                shade.with(specialization, |pass| {
                     pass.record_indirect(command_buffer, set, bytes, (buffer, place));
                 })?;
             }

@@ -78,9 +78,9 @@ impl GpuShape {
     pub const ANY: u32 = 3;
 }
 
-/// Push constants of the shade kernel.
+/// Push constants of the kernels that shade frames and classify their tiles.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
 pub struct ShadeConstants {
     /// The inverse of (projection × view), from clip space (depth as stored, 0 to 1) to positions relative to
     /// the origin, column-major. Read only when positions come from depth.
@@ -93,34 +93,16 @@ pub struct ShadeConstants {
     pub shape_count: u32,
     /// How many of the first polygon lights are convex quads without a texture, see [`crate::LightSummary::quad_count`].
     pub quad_count: u32,
-    /// Of the random numbers that lights are picked for shadow rays with; other kernels do not read it.
+    /// Of the random numbers that lights are picked for shadow rays with; not read without those.
     pub seed: u32,
-}
-
-/// Push constants of the kernels that classify tiles and shade them.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct TileConstants {
-    /// As [`ShadeConstants::position_from_clip`].
-    pub position_from_clip: [[f32; 4]; 4],
-    /// The camera's position relative to the origin.
-    pub camera: [f32; 3],
-    /// How many lights are shaded.
-    pub light_count: u32,
+    /// The most lights that a tile's list holds; not read without tiles.
+    pub capacity: u32,
     /// The image's size in pixels.
     pub size: [u32; 2],
-    /// The most lights that a tile's list holds.
-    pub capacity: u32,
-    /// Cells a side of the table's lobe horizons: its size less one.
+    /// Cells a side of the table's lobe horizons: its size less one. Not read without tiles.
     pub horizon_cells: u32,
-    /// How many shapes are shaded.
-    pub shape_count: u32,
-    /// As [`ShadeConstants::quad_count`].
-    pub quad_count: u32,
-    /// As [`crate::plan::TileOptions::cull_threshold`].
+    /// As [`crate::plan::TileOptions::cull_threshold`]. Not read without tiles.
     pub cull_threshold: f32,
-    /// As [`ShadeConstants::seed`].
-    pub seed: u32,
 }
 
 /// Push constants of the kernels that trace shadow rays and filter them.

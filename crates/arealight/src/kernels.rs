@@ -175,42 +175,6 @@ const PICKS: Binding = write(
      buffer",
 );
 
-/// Shades a G-buffer with polygon lights and shapes. Push constants: [`crate::gpu::ShadeConstants`].
-pub static SHADE: Kernel = Kernel {
-    name: "shade",
-    spirv: include_bytes!("../spirv/shade.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
-    bindings: &[
-        TABLE,
-        LIGHTS,
-        LIGHT_VERTICES,
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        RADIANCE,
-        LIGHT_TEXTURES,
-        SHAPES,
-        GLOSSY,
-        G_COAT,
-        PICKS,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::FORM_FACTOR,
-        constant::POSITION_SOURCE,
-        constant::OUTPUT,
-        constant::HORIZON,
-        constant::FRESNEL,
-        constant::LOBES,
-        constant::FOOTPRINT,
-        constant::HAS_QUADS,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-    ],
-};
-
 const LOBE_HORIZONS: Binding =
     read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]");
 const TILE_LISTS: Binding = write(
@@ -220,48 +184,16 @@ const TILE_LISTS: Binding = write(
     "tiles::memory bytes; begins with a GpuTileClass per class, {0, 0, 1, 0}",
 );
 
-/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE_TILES`]. Push constants:
-/// [`crate::gpu::TileConstants`].
-pub static CLASSIFY: Kernel = Kernel {
-    name: "classify",
-    spirv: include_bytes!("../spirv/classify.spv"),
+/// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by [`constant::CLASS`]. Push constants:
+/// [`crate::gpu::ShadeConstants`].
+///
+/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone. A module that was pruned for them has no other, so that its pipeline
+/// layout needs no more; the module as it is has `tile_lists`, too.
+pub static SHADE: Kernel = Kernel {
+    name: "shade",
+    spirv: include_bytes!("../spirv/shade.spv"),
     local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::TileConstants>() as u32,
-    bindings: &[
-        TABLE.unused(),
-        LIGHTS,
-        LIGHT_VERTICES.unused(),
-        G_POSITION,
-        G_NORMAL,
-        G_BASE_COLOR,
-        G_SPECULAR,
-        RADIANCE.unused(),
-        LIGHT_TEXTURES.unused(),
-        SHAPES,
-        GLOSSY.unused(),
-        G_COAT,
-        PICKS.unused(),
-        TILE_LISTS,
-        LOBE_HORIZONS,
-    ],
-    constants: &[
-        constant::EFFECTS,
-        constant::POSITION_SOURCE,
-        constant::HORIZON,
-        constant::FRESNEL,
-        constant::LOBES,
-        constant::LAYOUT,
-        constant::CULL,
-    ],
-};
-
-/// As [`SHADE`], of the tiles of one class; a workgroup per tile, dispatched indirectly. Push constants:
-/// [`crate::gpu::TileConstants`].
-pub static SHADE_TILES: Kernel = Kernel {
-    name: "shade_tiles",
-    spirv: include_bytes!("../spirv/shade_tiles.spv"),
-    local_size: [8, 8, 1],
-    push_constant_size: size_of::<crate::gpu::TileConstants>() as u32,
+    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
     bindings: &[
         TABLE,
         LIGHTS,
@@ -292,6 +224,44 @@ pub static SHADE_TILES: Kernel = Kernel {
         constant::CLASS,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
+    ],
+};
+
+/// How many of the first bindings of [`SHADE`] whole frames use.
+pub const FRAME_BINDINGS: usize = 13;
+
+/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
+/// [`crate::gpu::ShadeConstants`].
+pub static CLASSIFY: Kernel = Kernel {
+    name: "classify",
+    spirv: include_bytes!("../spirv/classify.spv"),
+    local_size: [8, 8, 1],
+    push_constant_size: size_of::<crate::gpu::ShadeConstants>() as u32,
+    bindings: &[
+        TABLE.unused(),
+        LIGHTS,
+        LIGHT_VERTICES.unused(),
+        G_POSITION,
+        G_NORMAL,
+        G_BASE_COLOR,
+        G_SPECULAR,
+        RADIANCE.unused(),
+        LIGHT_TEXTURES.unused(),
+        SHAPES,
+        GLOSSY.unused(),
+        G_COAT,
+        PICKS.unused(),
+        TILE_LISTS,
+        LOBE_HORIZONS,
+    ],
+    constants: &[
+        constant::EFFECTS,
+        constant::POSITION_SOURCE,
+        constant::HORIZON,
+        constant::FRESNEL,
+        constant::LOBES,
+        constant::LAYOUT,
+        constant::CULL,
     ],
 };
 
@@ -475,16 +445,8 @@ pub static TEXTURE_BLUR: Kernel = Kernel {
 };
 
 /// Every kernel.
-pub static ALL: [&Kernel; 8] = [
-    &SHADE,
-    &CLASSIFY,
-    &SHADE_TILES,
-    &SHADOW_RAYS,
-    &SHADOW_HISTORY,
-    &SHADOW_FILTER,
-    &TEXTURE_LOAD,
-    &TEXTURE_BLUR,
-];
+pub static ALL: [&Kernel; 7] =
+    [&SHADE, &CLASSIFY, &SHADOW_RAYS, &SHADOW_HISTORY, &SHADOW_FILTER, &TEXTURE_LOAD, &TEXTURE_BLUR];
 
 #[cfg(test)]
 mod tests {

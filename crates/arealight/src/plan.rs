@@ -4,7 +4,8 @@
 use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
 use crate::kernels::{self, Kernel};
 use crate::pyramid::{LevelKernel, PyramidSize};
-use crate::{Effects, LightSummary, Quality, TileClass};
+use crate::tiles::{self, TileClass};
+use crate::{Effects, LightSummary, Quality};
 
 /// Where the shade kernel takes positions from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -159,6 +160,19 @@ pub fn shade(options: ShadeOptions, lights: LightSummary, width: u32, height: u3
 
 /// The values of the shade kernel's specialisation constants, for a frame's lights: what none of them needs is not in the pipeline.
 pub fn shade_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<(u32, u32)> {
+    specialization_of_class(options, lights, tiles::NO_CLASS)
+}
+
+/// Likewise, for the tiles of a class in a frame of these lights.
+pub fn shade_tiles_specialization(
+    options: ShadeOptions,
+    lights: LightSummary,
+    class: TileClass,
+) -> Vec<(u32, u32)> {
+    specialization_of_class(options, class.lights(lights), class as u32)
+}
+
+fn specialization_of_class(options: ShadeOptions, lights: LightSummary, class: u32) -> Vec<(u32, u32)> {
     let mut values = lobe_specialization(options.effects(lights), options.quality);
     values.extend([
         (kernels::constant::POSITION_SOURCE, options.position as u32),
@@ -166,6 +180,7 @@ pub fn shade_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
         (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
+        (kernels::constant::CLASS, class),
         (kernels::constant::SHADOW_RAYS, options.shadow_rays),
     ]);
     values
@@ -280,17 +295,6 @@ pub fn classify_specialization(
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::CULL, u32::from(tiles.cull_threshold > 0.0)),
     ]
-}
-
-/// The values of the tile kernel's specialisation constants, for the lights of a frame in tiles of `class`.
-pub fn shade_tiles_specialization(
-    options: ShadeOptions,
-    lights: LightSummary,
-    class: TileClass,
-) -> Vec<(u32, u32)> {
-    let mut values = shade_specialization(options, class.lights(lights));
-    values.push((kernels::constant::CLASS, class as u32));
-    values
 }
 
 /// The values of the constants that every kernel has that integrates lobes over lights.

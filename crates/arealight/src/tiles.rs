@@ -1,4 +1,4 @@
-//! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and `shade_tiles` share.
+//! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and `shade` share.
 //!
 //! A frame may have many lights of every kind, of which few contribute to a pixel. Each tile of 8 × 8 pixels gets a list of
 //! the lights that contribute to it, and each class of tiles has a pipeline with no more code than their lights need. docs/tiles.md
@@ -20,6 +20,9 @@ pub const ALL_LIGHTS: u32 = u32::MAX;
 
 /// Workgroups of a class's dispatch in x.
 pub const ROW: u32 = 32768;
+
+/// In the place of a [`TileClass`]: a whole frame is shaded, which has no tiles.
+pub const NO_CLASS: u32 = 3;
 
 /// The classes of tiles, from the cheapest on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -101,6 +104,7 @@ mod tests {
     fn the_cheapest_class_comes_first_and_numbers_are_places() {
         for (number, class) in (0..).zip(TileClass::ALL) {
             assert_eq!(class as u32, number);
+            assert_ne!(class as u32, NO_CLASS);
         }
         let frame = |light_count, quad_count, shape_count| LightSummary {
             light_count,

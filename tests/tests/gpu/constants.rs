@@ -152,6 +152,7 @@ fn choices_have_the_same_numbers_in_glsl() {
         };
         (name, number(class as u32))
     });
+    let classes = [classes.as_slice(), &[("FRAME", number(tiles::NO_CLASS))]].concat();
     assert_constants(TILES_GLSL, "CLASS_", &classes);
     let tiles = [
         ("SIDE", number(tiles::SIDE)),

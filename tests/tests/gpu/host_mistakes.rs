@@ -1,7 +1,6 @@
 //! Devices that lack something, images that are gone, and names for debuggers: on devices that lie about themselves, so
 //! that every answer can be had on any.
 
-use arealight::kernels::SHADE;
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary};
 use arealight_engine::host::Location;
@@ -98,7 +97,7 @@ fn what_a_device_lacks_is_named() {
     let context_of_least = context(&engine, &lying_instance(&engine, &[limits])).unwrap();
     // SAFETY: no submission uses the passes.
     unsafe {
-        ComputePass::new(&context_of_least, &SHADE, &[]).unwrap();
+        ShadePass::new(&context_of_least, ShadeOptions::default()).unwrap();
         let error = ComputePass::new(&context_of_least, &VISIBILITY, &[]).unwrap_err();
         let Error::MissingFeature { feature, needed_by } = error else { panic!("{error}") };
         assert_eq!((feature, needed_by), ("maxPerStageDescriptorStorageImages", "visibility"));

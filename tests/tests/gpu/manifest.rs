@@ -3,6 +3,8 @@
 
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
+use arealight::plan::{RadianceImages, ShadeOptions, shade_specialization, shade_tiles_specialization};
+use arealight::{Effects, LightSummary, TileClass};
 use arealight_tests::kernel::BLOCKERS;
 use arealight_tool_kernels as tool;
 use rspirv::dr::{Instruction, Module, Operand};
@@ -11,8 +13,12 @@ use std::collections::BTreeMap;
 use std::mem::offset_of;
 
 fn module(kernel: &Kernel) -> Module {
+    parsed(&kernel.words())
+}
+
+fn parsed(words: &[u32]) -> Module {
     let mut loader = rspirv::dr::Loader::new();
-    rspirv::binary::parse_words(kernel.words(), &mut loader).expect("the embedded module parses");
+    rspirv::binary::parse_words(words, &mut loader).expect("the module parses");
     loader.module()
 }
 
@@ -232,6 +238,28 @@ fn the_comparison_can_fail() {
     assert!(compare(&constants, &module(&tool::kernels::EVAL)).unwrap_err().contains("constants"));
 }
 
+#[test]
+fn a_pruned_module_binds_what_its_frames_use() {
+    let options = ShadeOptions {
+        surfaces: Effects::all(),
+        images: RadianceImages::Separate,
+        shadow_rays: 1,
+        ..ShadeOptions::default()
+    };
+    let lights = LightSummary { quad_count: 1, effects: Effects::all(), ..LightSummary::default() };
+    let bound = |specialization: Vec<(u32, u32)>| {
+        let pruned = arealight_vk::prune(&kernels::SHADE.words(), &specialization);
+        bound_variables(&parsed(&pruned)).into_keys().collect::<Vec<u32>>()
+    };
+    let of_frames: Vec<u32> = (0..kernels::FRAME_BINDINGS as u32).collect();
+    assert_eq!(bound(shade_specialization(options, lights)), of_frames);
+    // Tiles have their lists, too; a frame of quads without shadows has no more than quads need
+    let of_tiles = bound(shade_tiles_specialization(options, lights, TileClass::Any));
+    assert_eq!(of_tiles, [of_frames.as_slice(), &[13]].concat());
+    let quads = LightSummary { effects: Effects::empty(), ..lights };
+    assert_eq!(bound(shade_specialization(ShadeOptions::default(), quads)), [0, 1, 2, 3, 4, 5, 7]);
+}
+
 fn copy(kernel: &Kernel) -> Kernel {
     Kernel {
         name: kernel.name,
@@ -241,6 +269,22 @@ fn copy(kernel: &Kernel) -> Kernel {
         bindings: kernel.bindings,
         constants: kernel.constants,
     }
+}
+
+fn shade_constants() -> Vec<(String, u32)> {
+    layout!(
+        gpu::ShadeConstants,
+        position_from_clip,
+        camera,
+        light_count,
+        shape_count,
+        quad_count,
+        seed,
+        capacity,
+        size,
+        horizon_cells,
+        cull_threshold
+    )
 }
 
 fn light_layout() -> Vec<(String, u32)> {
@@ -268,19 +312,7 @@ fn every_structure_has_the_same_offsets() {
     for (kernel, structure, expected) in [
         (&shade, "ArealightGpuLight", light.clone()),
         (&eval, "ArealightGpuLight", light),
-        (
-            &shade,
-            "ShadeConstants",
-            layout!(
-                gpu::ShadeConstants,
-                position_from_clip,
-                camera,
-                light_count,
-                shape_count,
-                quad_count,
-                seed
-            ),
-        ),
+        (&shade, "ShadeConstants", shade_constants()),
         (&eval, "EvalConstants", layout!(tool::gpu::EvalConstants, case_count)),
         (
             &eval,
@@ -369,20 +401,6 @@ fn every_structure_has_the_same_offsets() {
 #[test]
 fn the_structures_of_tiles_have_the_same_offsets() {
     let classify = module(&kernels::CLASSIFY);
-    let shade = module(&kernels::SHADE_TILES);
-    let constants = layout!(
-        gpu::TileConstants,
-        position_from_clip,
-        camera,
-        light_count,
-        size,
-        capacity,
-        horizon_cells,
-        shape_count,
-        quad_count,
-        cull_threshold,
-        seed
-    );
     let shadow = layout!(gpu::ShadowConstants, position_from_clip, camera, seed, size);
     assert_eq!(offsets(&module(&kernels::SHADOW_RAYS), "ShadowConstants"), Some(shadow));
     let horizon = layout!(
@@ -395,8 +413,7 @@ fn the_structures_of_tiles_have_the_same_offsets() {
         reserved as "reserved0"
     );
     for (kernel, structure, expected) in [
-        (&classify, "TileConstants", &constants),
-        (&shade, "TileConstants", &constants),
+        (&classify, "ShadeConstants", &shade_constants()),
         (&classify, "ArealightGpuLobeHorizon", &horizon),
         (&classify, "ArealightGpuLight", &light_layout()),
     ] {

@@ -107,7 +107,10 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
         all.push(shade(Effects::all(), quality));
     }
     for class in TileClass::ALL {
-        all.push([shade(lobes, plain), vec![(constant::CLASS, class as u32)]].concat());
+        let mut values = shade(lobes, plain);
+        values.retain(|(id, _)| *id != constant::CLASS);
+        values.push((constant::CLASS, class as u32));
+        all.push(values);
     }
     let has = |(id, _): &(u32, u32)| kernel.constants.contains(id);
     let mut kept: Vec<Vec<_>> =

@@ -1,6 +1,6 @@
 //! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
 
-use arealight::kernels::{self, SHADE, constant};
+use arealight::kernels::{self, FRAME_BINDINGS, constant};
 use arealight::plan::{PositionSource, ShadeOptions};
 use arealight::{Effects, LightSummary};
 use arealight_tests::TestEngine;
@@ -128,7 +128,7 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
     let Some(engine) = TestEngine::new() else { return };
     recording(&engine, ShadeOptions::default(), |pass, _, _| {
         let accesses = pass.accesses();
-        assert_eq!(accesses.len(), SHADE.bindings.len());
+        assert_eq!(accesses.len(), FRAME_BINDINGS);
         for access in &accesses {
             assert_eq!(access.stage, vk::PipelineStageFlags::COMPUTE_SHADER);
             let written = access.access.contains(vk::AccessFlags::SHADER_WRITE);
@@ -137,7 +137,7 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
             assert_eq!(access.layout == vk::ImageLayout::GENERAL, is_stored);
         }
         let descriptors: u32 = pass.pool_sizes(3).iter().map(|size| size.descriptor_count).sum();
-        assert_eq!(descriptors as usize, 3 * SHADE.bindings.len());
+        assert_eq!(descriptors as usize, 3 * FRAME_BINDINGS);
     });
 }
 

@@ -173,6 +173,9 @@ impl<'a> SceneRenderer<'a> {
             Resource::buffer(self.shape_buffer.handle()),
             Resource::StorageImage { view: self.g_buffer.radiance.view() },
             coat,
+            // Shadow rays and tiles, which no frame of these has
+            Resource::buffer(self.light_buffer.handle()),
+            Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(self.light_buffer.handle()),
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;
@@ -333,7 +336,8 @@ impl<'a> SceneRenderer<'a> {
             light_count: self.lights.light_count,
             shape_count: self.lights.shape_count,
             quad_count: self.lights.quad_count,
-            seed: 0,
+            size: self.size,
+            ..ShadeConstants::default()
         }
     }
 

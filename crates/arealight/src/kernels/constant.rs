@@ -24,7 +24,7 @@ pub const CALLED_FOR: u32 = 9;
 pub const SHAPE: u32 = 10;
 /// 0 where no polygon light of a frame is a convex quad without an image, else 1.
 pub const HAS_QUADS: u32 = 11;
-/// [`crate::TileClass`].
+/// [`crate::TileClass`], or [`crate::tiles::NO_CLASS`] for whole frames.
 pub const CLASS: u32 = 12;
 /// [`crate::plan::GBufferLayout`].
 pub const LAYOUT: u32 = 13;
