@@ -9,7 +9,6 @@ pub(crate) use rows::path_cost;
 
 pub use check::{Check, Finding, OtherDriver, THROUGHPUT_TOLERANCE};
 pub use rows::{DEFERRED_YARDSTICK, Row, YARDSTICK, rows};
-pub use text::{Markers, replace_section};
 
 use arealight_engine::host::HostError;
 use arealight_engine::host::null_hardware::{Compiler, Statistics};

@@ -19,6 +19,8 @@
 //! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`shadows`] | how far a picture with shadows is from the reference |
+//! | [`shadow_levels`] | the error and the time of every level of shadows, beside area sampling |
+//! | [`sections`] | the sections of documents that commands write |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
 //! | [`svg`] | drawing charts |
@@ -38,6 +40,8 @@ pub mod pictures;
 pub mod published;
 pub mod report;
 pub mod school;
+pub mod sections;
+pub mod shadow_levels;
 pub mod shadows;
 pub mod shape_cost;
 pub mod shape_stability;

@@ -36,6 +36,12 @@ pub fn part_that_arrives(shadowed: DVec3, unshadowed: DVec3) -> Option<f64> {
     (unshadowed > 0.0 && part.is_finite()).then(|| part.clamp(0.0, 1.0))
 }
 
+/// The part of the light that a method says arrives: any number, as methods with noise have, and 1 where it knows of no light.
+pub fn part_found(shadowed: DVec3, unshadowed: DVec3) -> f64 {
+    let unshadowed = unshadowed.dot(LUMINANCE);
+    if unshadowed == 0.0 { 1.0 } else { shadowed.dot(LUMINANCE) / unshadowed }
+}
+
 /// What is right of a picture with shadows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShadowTruth {
@@ -112,6 +118,19 @@ pub struct ShadowErrors {
 }
 
 impl ShadowErrors {
+    /// The errors without what of them is independent noise, such as the truth's: its squares are taken out of the means of squares. Other
+    /// numbers stay.
+    #[must_use]
+    pub fn without(self, noise: &Self) -> Self {
+        let rest = |error: f64, noise: f64| (error * error - noise * noise).max(0.0).sqrt();
+        Self {
+            rmse: rest(self.rmse, noise.rmse),
+            penumbra_rmse: rest(self.penumbra_rmse, noise.penumbra_rmse),
+            radiance: Errors { rmse: rest(self.radiance.rmse, noise.radiance.rmse), ..self.radiance },
+            ..self
+        }
+    }
+
     /// A row of a Markdown table, by [`ShadowErrors::HEAD`]: shadows' errors times 100, and the radiance's in per cent of its mean.
     pub fn row(&self, name: &str) -> String {
         let [rmse, penumbra, bias, radiance] =
@@ -215,6 +234,25 @@ mod tests {
         // Twice that in radiance, over a mean of 3.5 / 4
         assert!(close(wrong.radiance.rmse, 2.0 * wrong.rmse / 0.875), "{}", wrong.radiance.rmse);
         assert_eq!(wrong.row("x"), "| x | 50.25 | 7.07 | -22.50 | 114.9 |");
+    }
+
+    #[test]
+    fn independent_noise_is_taken_out_of_the_squares() {
+        let all = errors([0.7, 0.0, 0.30, 0.5, 0.95]);
+        let noise = errors([0.7, 0.0, 0.28, 0.5, 1.0]);
+        let rest = all.without(&noise);
+        assert!((rest.rmse.powi(2) + noise.rmse.powi(2) - all.rmse.powi(2)).abs() < 1e-15);
+        assert!((rest.penumbra_rmse - (0.0016_f64 / 2.0).sqrt()).abs() < 1e-12);
+        assert!(rest.radiance.rmse < all.radiance.rmse && rest.bias == all.bias);
+        // More noise than there is error leaves none
+        assert_eq!(noise.without(&all).rmse, 0.0);
+    }
+
+    #[test]
+    fn what_a_method_finds_may_be_any_number() {
+        assert_eq!(part_found(DVec3::splat(3.0), DVec3::splat(2.0)), 1.5);
+        assert_eq!(part_found(DVec3::ZERO, DVec3::ZERO), 1.0);
+        assert!(part_found(DVec3::NAN, DVec3::ONE).is_nan());
     }
 
     #[test]

@@ -32,6 +32,7 @@ mod recorder;
 mod resize;
 mod shading;
 mod shadow_history;
+mod shadow_levels;
 mod shadow_rays;
 mod shadowed_reference;
 mod shadows;

@@ -4,11 +4,13 @@ mod compare;
 mod compiled;
 mod ladder;
 mod page;
+mod shadows;
 mod stability;
 mod textures;
 
 use crate::failure::Failure;
 use crate::output::print;
+use arealight_benches::sections::{Markers, replace_section};
 use arealight_engine::{Host, HostOptions};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -32,6 +34,7 @@ pub struct Arguments {
 enum Bench {
     Compare(compare::Arguments),
     Compiled(compiled::Arguments),
+    Shadows(shadows::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
 }
@@ -41,6 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => ladder::run(&arguments.ladder),
         Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
+        Some(Bench::Shadows(arguments)) => shadows::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),
     }
@@ -84,4 +88,13 @@ impl Ends {
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     std::fs::write(path, text).map_err(|error| Failure::output(path, error))
+}
+
+/// The document with a section: in its place where it has one, else alone.
+fn document(path: &Path, markers: Markers, section: &str) -> String {
+    let there = std::fs::read_to_string(path).unwrap_or_default();
+    replace_section(&there, markers, section).unwrap_or_else(|| {
+        let Markers { begin, end } = markers;
+        format!("{begin}\n\n{}\n\n{end}\n", section.trim())
+    })
 }

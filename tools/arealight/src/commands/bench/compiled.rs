@@ -3,10 +3,11 @@
 mod driver;
 mod model;
 
-use super::write;
+use super::{document, write};
 use crate::failure::Failure;
 use crate::output::print;
-use arealight_benches::compiled::{Check, Compiled, Markers, matching, replace_section, rows};
+use arealight_benches::compiled::{Check, Compiled, matching, rows};
+use arealight_benches::sections::Markers;
 use arealight_engine::host::null_hardware::driver_file;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -106,7 +107,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Write and print
     if let Some(path) = &arguments.markdown {
         let tables = format!("Made by `{UPDATE}`.\n\n{}", found.to_markdown());
-        write(path, &document(path, Markers::TABLES, &tables))?;
+        write(path, &document(path, Markers::COMPILED, &tables))?;
     }
     // Strings and numbers, with strings for keys, always serialise
     let json = serde_json::to_string_pretty(&found).unwrap_or_default() + "\n";
@@ -135,13 +136,4 @@ fn read(path: &Path) -> Result<Compiled, Failure> {
         return Ok(Compiled::default());
     }
     serde_json::from_str(&text).map_err(|error| Failure::input(path, error))
-}
-
-/// The document with a section: in its place where it has one, else alone.
-fn document(path: &Path, markers: Markers, section: &str) -> String {
-    let there = std::fs::read_to_string(path).unwrap_or_default();
-    replace_section(&there, markers, section).unwrap_or_else(|| {
-        let Markers { begin, end } = markers;
-        format!("{begin}\n\n{}\n\n{end}\n", section.trim())
-    })
 }
