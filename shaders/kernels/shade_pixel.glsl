@@ -16,8 +16,27 @@ const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
 const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
 
+// 1: the host's own shader says what part of each light arrives: from shadow maps, or from anything that it knows.
+#ifndef AREALIGHT_HOST_VISIBILITY
+#define AREALIGHT_HOST_VISIBILITY 0
+#endif
+
+#if AREALIGHT_HOST_VISIBILITY
+// Of the host: what part of a light arrives at a pixel's position (relative to what positions are relative to), per channel, from 0 to 1. `light` is
+// the index of its record, of the polygons and meshes or, with `is_shape`, of the disks, spheres and tubes: PackedLights::order and shape_order
+// have its place in the host's list. It lies in an include folder of the host's compiler; what it reads is in descriptor set 1.
+vec3 arealight_bridge_visibility(ivec2 pixel, vec3 position, uint light, bool is_shape);
+#include "host_visibility.glsl"
+
+ivec2 visibility_pixel;
+vec3 visibility_position;
+#endif
+
 // Adds what is reflected of the light of this radiance at an index, of PICK_SHAPE or 0.
 void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightReflected reflected) {
+#if AREALIGHT_HOST_VISIBILITY
+    radiance *= arealight_bridge_visibility(visibility_pixel, visibility_position, index & PICK_INDEX, (index & PICK_SHAPE) != 0u);
+#endif
     add_light(sum, radiance, reflected);
     if (HAS_SHADOWS) {
         pick_light(index, radiance * reflected.diffuse, radiance * reflected.specular);
@@ -46,6 +65,10 @@ void shade_shape(inout PixelRadiance sum, ArealightPoint point, uint index) {
 }
 
 PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
+#if AREALIGHT_HOST_VISIBILITY
+    visibility_pixel = pixel;
+    visibility_position = position;
+#endif
     ArealightPoint point = arealight_point(load_surface(pixel, position, constants.camera));
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_QUADS) {

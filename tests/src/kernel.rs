@@ -175,6 +175,14 @@ pub fn shade_with_bridge() -> Vec<u32> {
     with_bridge("shade", "AREALIGHT_HOST_G_BUFFER")
 }
 
+/// The shade kernel with the example's shadows, likewise.
+///
+/// # Panics
+/// As [`shade_with_bridge`].
+pub fn shade_with_visibility() -> Vec<u32> {
+    with_bridge("shade", "AREALIGHT_HOST_VISIBILITY")
+}
+
 /// The kernel of shadow rays with the example's blocker, likewise.
 ///
 /// # Panics

@@ -52,8 +52,10 @@ pub struct PatchPasses<'a> {
     shade: ShadePass,
     shadow: ShadowPass,
     options: ShadeOptions,
-    /// Set 1 of a module of the host's.
-    pub host_set: Option<vk::DescriptorSet>,
+    /// Set 1 of a module of the host's that says what blocks.
+    pub blocker_set: Option<vk::DescriptorSet>,
+    /// Set 1 of one that says what part of a light arrives.
+    pub visibility_set: Option<vk::DescriptorSet>,
 }
 
 impl<'a> PatchPasses<'a> {
@@ -67,7 +69,7 @@ impl<'a> PatchPasses<'a> {
         unsafe {
             let shade = ShadePass::new(engine.context(), options).unwrap();
             let shadow = ShadowPass::new(engine.context(), options, shadows).unwrap();
-            Self { engine, shade, shadow, options, host_set: None }
+            Self { engine, shade, shadow, options, blocker_set: None, visibility_set: None }
         }
     }
 
@@ -75,7 +77,7 @@ impl<'a> PatchPasses<'a> {
     ///
     /// # Panics
     /// Where the device fails.
-    pub fn with_module(
+    pub fn with_blocker(
         engine: &'a TestEngine,
         options: ShadeOptions,
         module: Vec<u32>,
@@ -86,8 +88,26 @@ impl<'a> PatchPasses<'a> {
         unsafe {
             let shade = ShadePass::new(engine.context(), options).unwrap();
             let shadow = ShadowPass::with_module(engine.context(), options, shadows, module, layout).unwrap();
-            Self { engine, shade, shadow, options, host_set: None }
+            Self { engine, shade, shadow, options, blocker_set: None, visibility_set: None }
         }
+    }
+}
+
+impl<'a> PatchPasses<'a> {
+    /// As [`PatchPasses::new`], where a module of the host's says what part of each light arrives, which reads set 1 of this layout.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn with_visibility(
+        engine: &'a TestEngine,
+        options: ShadeOptions,
+        module: Vec<u32>,
+        layout: vk::DescriptorSetLayout,
+    ) -> Self {
+        let passes = Self::new(engine, options, ShadowFilter::Off);
+        // SAFETY: As above.
+        let shade = unsafe { ShadePass::with_module_and_set(engine.context(), options, module, layout) };
+        Self { shade: shade.unwrap(), ..passes }
     }
 }
 
@@ -97,7 +117,7 @@ impl ShadowPatch {
     /// # Panics
     /// Where the device fails.
     pub fn run(&self, passes: &PatchPasses<'_>) -> PatchShadows {
-        let PatchPasses { engine, shade, shadow: shadows, options, host_set } = passes;
+        let PatchPasses { engine, shade, shadow: shadows, options, blocker_set, visibility_set } = passes;
         let host = engine.host();
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
         let blockers = Blockers::new(&self.blockers).unwrap();
@@ -152,7 +172,7 @@ impl ShadowPatch {
                 radiance: Some(of(&shadowed)),
                 history: None,
                 motion: None,
-                blockers: host_set
+                blockers: blocker_set
                     .is_none()
                     .then(|| BlockerResources { nodes: buffer(&nodes), triangles: buffer(&triangles) }),
             };
@@ -165,8 +185,12 @@ impl ShadowPatch {
                 tile_lists: None,
                 seed: 0,
             };
-            host.submit(|commands| shade.record(commands, sets[0], &frame).unwrap()).unwrap();
-            let frame = ShadowFrame { shade: &frame, host_set: *host_set, origin_shift: Vec3::ZERO };
+            host.submit(|commands| match visibility_set {
+                Some(own) => shade.record_with_set(commands, sets[0], *own, &frame).unwrap(),
+                None => shade.record(commands, sets[0], &frame).unwrap(),
+            })
+            .unwrap();
+            let frame = ShadowFrame { shade: &frame, host_set: *blocker_set, origin_shift: Vec3::ZERO };
             host.submit(|commands| shadows.record(commands, sets[1], &of_shadows, &frame).unwrap()).unwrap();
         }
         let pixels = |image: &Image| {

@@ -143,6 +143,16 @@ impl Layouts {
         self.host_set.is_some()
     }
 
+    /// Whether a pass is recorded with a set of the host's where it was made with one.
+    pub(crate) fn check_host_set(&self, host_set: Option<vk::DescriptorSet>) -> Result<(), Error> {
+        let message = match (host_set.is_some(), self.has_host_set()) {
+            (true, false) => "is given, but the pass was made without a module of the host's",
+            (false, true) => "is missing, but the pass was made with a module of the host's",
+            _ => return Ok(()),
+        };
+        Err(Error::InvalidArgument { field: "host_set", message: message.into() })
+    }
+
     pub(crate) fn set_layout(&self) -> vk::DescriptorSetLayout {
         self.set_layout
     }

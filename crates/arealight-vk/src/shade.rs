@@ -178,6 +178,30 @@ impl ShadePass {
         Ok(Self { pipelines, tiles: None, options })
     }
 
+    /// As [`ShadePass::with_module`], of a module that asks the host what part of each light arrives (docs/shadows.md): what it reads is in
+    /// descriptor set 1, of this layout, which [`ShadePass::record_with_set`] binds.
+    ///
+    /// # Safety
+    /// As [`ShadePass::with_module`]; `host_set` is a layout of the device, valid as long as the pass.
+    ///
+    /// # Errors
+    /// As [`ShadePass::with_module`].
+    pub unsafe fn with_module_and_set(
+        context: &Context,
+        options: ShadeOptions,
+        mut module: Vec<u32>,
+        host_set: vk::DescriptorSetLayout,
+    ) -> Result<Self, Error> {
+        check_module(&module)?;
+        check_shadows(options)?;
+        store_to(options.format, &mut module);
+        // SAFETY: the same contract.
+        unsafe {
+            let layouts = Layouts::with_host_set(context, &SHADE, Some(host_set))?;
+            Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, module), tiles: None, options })
+        }
+    }
+
     /// What the pass was specialised for.
     pub fn options(&self) -> ShadeOptions {
         self.options
@@ -329,6 +353,38 @@ impl ShadePass {
         set: vk::DescriptorSet,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
+        // SAFETY: the same contract.
+        unsafe { self.record_sets(command_buffer, set, None, frame) }
+    }
+
+    /// As [`ShadePass::record`], of a pass made by [`ShadePass::with_module_and_set`]: `host_set` is bound as set 1.
+    ///
+    /// # Safety
+    /// As [`ShadePass::record`]; `host_set` was allocated with the layout that the pass was made with, and written.
+    ///
+    /// # Errors
+    /// As [`ShadePass::record`].
+    pub unsafe fn record_with_set(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        host_set: vk::DescriptorSet,
+        frame: &ShadeFrame,
+    ) -> Result<(), Error> {
+        // SAFETY: the same contract.
+        unsafe { self.record_sets(command_buffer, set, Some(host_set), frame) }
+    }
+
+    /// # Safety
+    /// As [`ShadePass::record_with_set`].
+    unsafe fn record_sets(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        set: vk::DescriptorSet,
+        host_set: Option<vk::DescriptorSet>,
+        frame: &ShadeFrame,
+    ) -> Result<(), Error> {
+        self.pipelines.layouts().check_host_set(host_set)?;
         let constants = self.constants(frame)?;
         self.pipelines.layouts().check_present(set, &needed(frame.lights))?;
         let names = &self.pipelines.layouts().context().names;
@@ -345,7 +401,8 @@ impl ShadePass {
             // SAFETY: the same contract.
             unsafe {
                 let _label = names.label(command_buffer, c"arealight shade");
-                pass.record_checked(command_buffer, &[set], bytemuck::bytes_of(&constants), groups);
+                let sets: Vec<_> = std::iter::once(set).chain(host_set).collect();
+                pass.record_checked(command_buffer, &sets, bytemuck::bytes_of(&constants), groups);
             }
         })
     }

@@ -327,7 +327,7 @@ impl ShadowPass {
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
         // Check everything, and make what is missing, before anything is recorded
-        self.check_host_set(frame.host_set)?;
+        self.rays.layouts().check_host_set(frame.host_set)?;
         let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
         let head = self.history_head(resources, frame)?;
         let ShadeFrame { seed, size, .. } = *frame.shade;
@@ -357,15 +357,6 @@ impl ShadowPass {
                 pass.record_checked(command_buffer, &sets, bytes, groups);
             })
         }
-    }
-
-    fn check_host_set(&self, host_set: Option<vk::DescriptorSet>) -> Result<(), Error> {
-        let message = match (host_set.is_some(), self.rays.layouts().has_host_set()) {
-            (true, false) => "is given, but the pass was made without a module of the host's",
-            (false, true) => "is missing, but the pass was made with a module of the host's",
-            _ => return Ok(()),
-        };
-        Err(Error::InvalidArgument { field: "host_set", message: message.into() })
     }
 
     /// What a pass with a history writes into its head.

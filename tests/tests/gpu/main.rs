@@ -17,6 +17,7 @@ mod frame;
 mod g_buffer;
 mod guard;
 mod host_mistakes;
+mod host_shadows;
 mod light_textures;
 mod manifest;
 mod meshes;

@@ -5,14 +5,12 @@ use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Material, Quality,
 use arealight_oracle::shading::{RelativeLight, ltc_on};
 use arealight_oracle::visibility::visible_parts;
 use arealight_tests::TestEngine;
-use arealight_tests::kernel::shadow_rays_with_bridge;
 use arealight_tests::shadow_patch::{PatchPasses, PatchShadows, ShadowPatch};
-use ash::vk;
 use glam::{DVec2, DVec3, Vec3};
 
 const RAYS: u32 = 4;
 
-fn options() -> ShadeOptions {
+pub(crate) fn options() -> ShadeOptions {
     ShadeOptions { shadow_rays: RAYS, ..ShadeOptions::default() }
 }
 
@@ -21,7 +19,7 @@ fn light(shape: LightShape) -> Light {
 }
 
 /// A flat light at a height, which shines down; its outline in (x, y), clockwise from above.
-fn flat(height: f64, outline: &[[f64; 2]]) -> Light {
+pub(crate) fn flat(height: f64, outline: &[[f64; 2]]) -> Light {
     let vertices = outline.iter().map(|&xy| DVec2::from_array(xy).extend(height)).collect();
     light(LightShape::Polygon(vertices))
 }
@@ -39,7 +37,7 @@ fn plate_over_half(height: f32) -> Vec<[Vec3; 3]> {
 }
 
 /// Surfaces of every lobe, with a view in the plane y = 0.
-fn surfaces() -> Vec<(&'static str, Material, Vec3)> {
+pub(crate) fn surfaces() -> Vec<(&'static str, Material, Vec3)> {
     let metal = Material { metalness: 1.0, ..Material::default() };
     let view = Vec3::new(-1.0, 0.0, 1.2);
     vec![
@@ -51,7 +49,7 @@ fn surfaces() -> Vec<(&'static str, Material, Vec3)> {
 }
 
 /// Lights that are their own mirror image in the plane y = 0.
-fn symmetric_lights() -> Vec<(&'static str, Light)> {
+pub(crate) fn symmetric_lights() -> Vec<(&'static str, Light)> {
     let (u, v) = (DVec3::X * 0.8, DVec3::Y * 0.5);
     let center = DVec3::new(0.9, 0.0, 1.5);
     let box_corner = |i: usize| {
@@ -277,48 +275,4 @@ fn coats_and_both_horizons_draw_from_their_own_lobes() {
         let found = patch.run(&PatchPasses::new(&engine, options, ShadowFilter::Off)).mean();
         assert!((found - 0.5).abs() < 4e-3, "{options:?}: {found}");
     }
-}
-
-#[test]
-fn a_host_says_itself_what_blocks() {
-    let Some(engine) = TestEngine::new() else { return };
-    let host = engine.host();
-    // A set of the host's own, with what its module reads
-    let binding = [vk::DescriptorSetLayoutBinding::default()
-        .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-        .descriptor_count(1)
-        .stage_flags(vk::ShaderStageFlags::COMPUTE)];
-    let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
-    // SAFETY: Handles are the device's; what is made is destroyed below, after the last submission was waited for.
-    let layout = unsafe { host.device().create_descriptor_set_layout(&info, None) }.unwrap();
-    let size = vk::DescriptorPoolSize { ty: vk::DescriptorType::STORAGE_BUFFER, descriptor_count: 1 };
-    let pool = host.descriptor_pool(1, &[size]).unwrap();
-    let half = [[-100.0_f32, 0.0, 0.01, 0.0], [100.0, 100.0, 0.0, 0.0]];
-    let rectangle = host.storage_buffer("rectangle", &half).unwrap();
-    // SAFETY: As above.
-    let set = unsafe {
-        let set = pool.allocate(layout).unwrap();
-        let buffer = [vk::DescriptorBufferInfo::default().buffer(rectangle.handle()).range(vk::WHOLE_SIZE)];
-        let write = vk::WriteDescriptorSet::default()
-            .dst_set(set)
-            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
-            .buffer_info(&buffer);
-        host.device().update_descriptor_sets(&[write], &[]);
-        set
-    };
-    {
-        let module = shadow_rays_with_bridge();
-        let mut passes = PatchPasses::with_module(&engine, options(), module, layout);
-        passes.host_set = Some(set);
-        let (_, material, view) = surfaces().remove(0);
-        let (_, light) = symmetric_lights().remove(0);
-        let patch = ShadowPatch { material, view, lights: vec![light], blockers: Vec::new() };
-        let found = patch.run(&passes).mean();
-        assert!((found - 0.5).abs() < 4e-3, "{found}");
-        // The twin: its rectangle elsewhere
-        rectangle.upload(&[[0.0_f32, 0.0, -1.0, 0.0], [0.0; 4]]).unwrap();
-        assert!((patch.run(&passes).mean() - 1.0).abs() < 1e-6);
-    }
-    // SAFETY: As above.
-    unsafe { host.device().destroy_descriptor_set_layout(layout, None) };
 }

@@ -59,7 +59,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
     let mut cases = hosts(&root.join(HOST), &library);
     cases.extend(examples(&root.join(EXAMPLES))?);
     cases.extend(host_g_buffer(&folder));
-    cases.extend(host_blockers(&folder));
+    cases.extend(host_bridges(&folder));
     let found = in_parallel(&cases, |index, case| {
         if arguments.verbose {
             println!("{}", case.title());
@@ -190,17 +190,18 @@ fn host_g_buffer(folder: &Path) -> Vec<Case> {
     [Tool::Glslang, Tool::Glslc].map(case).to_vec()
 }
 
-/// The exported kernel of shadow rays with the example's blocker, and with an acceleration structure.
-fn host_blockers(folder: &Path) -> Vec<Case> {
+/// The exported kernels with the examples' shadows and blocker, and with an acceleration structure.
+fn host_bridges(folder: &Path) -> Vec<Case> {
     let hosts = [
-        ("AREALIGHT_HOST_BLOCKER", "a blocker of the host"),
-        ("AREALIGHT_RAY_QUERY", "an acceleration structure"),
+        ("shade", "AREALIGHT_HOST_VISIBILITY", "shadows of the host"),
+        ("shadow_rays", "AREALIGHT_HOST_BLOCKER", "a blocker of the host"),
+        ("shadow_rays", "AREALIGHT_RAY_QUERY", "an acceleration structure"),
     ];
-    let cases = hosts.into_iter().flat_map(|(option, name)| {
+    let cases = hosts.into_iter().flat_map(|(kernel, option, name)| {
         [Tool::Glslang, Tool::Glslc].map(|tool| Case {
             tool,
             compute: true,
-            shader: folder.join("kernels/shadow_rays.comp"),
+            shader: folder.join(format!("kernels/{kernel}.comp")),
             name: name.into(),
             macros: vec![(option.into(), "1".into())],
             lacks: None,
