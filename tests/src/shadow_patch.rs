@@ -1,12 +1,12 @@
 //! The shade pass and the shadow pass over an image whose pixels all see one shading point, each by rays of its own.
 
 use crate::TestEngine;
-use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight::plan::{ShadeOptions, ShadowFilter, TileOptions};
 use arealight::{Blockers, Light, Material, PackedLights};
-use arealight_engine::host::{Buffer, Image, ImageDescription, Usage};
+use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
-    ShadowPass, ShadowResources,
+    ShadowPass, ShadowResources, TileResources,
 };
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -71,6 +71,18 @@ impl<'a> PatchPasses<'a> {
             let shadow = ShadowPass::new(engine.context(), options, shadows).unwrap();
             Self { engine, shade, shadow, options, blocker_set: None, visibility_set: None }
         }
+    }
+
+    /// As [`PatchPasses::new`], with the lights of tiles.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn with_tiles(engine: &'a TestEngine, options: ShadeOptions) -> Self {
+        let passes = Self::new(engine, options, ShadowFilter::Off);
+        let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
+        // SAFETY: As above.
+        let shade = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) };
+        Self { shade: shade.unwrap(), ..passes }
     }
 
     /// As [`PatchPasses::new`], where a module of the host's says what blocks, which reads set 1 of this layout.
@@ -144,6 +156,14 @@ impl ShadowPatch {
         let triangles = host.storage_buffer("triangles", &blockers.triangles).unwrap();
         let picks = vec![0_u32; (SIDE * SIDE * options.shadow_rays) as usize];
         let picks = host.storage_buffer("picks", &picks).unwrap();
+        let tiles = shade.tile_memory([SIDE; 2]).map(|memory| {
+            let lists = host.buffer("tile lists", memory.size, memory.usage, Location::Device).unwrap();
+            (lists, host.storage_buffer("lobe horizons", engine.lobe_horizons()).unwrap())
+        });
+        let tiles = tiles.as_ref().map(|(lists, horizons)| TileResources {
+            tile_lists: buffer(lists),
+            lobe_horizons: buffer(horizons),
+        });
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
             let sizes = [shade.pool_sizes(1), shadows.pool_sizes(1)].concat();
@@ -164,7 +184,7 @@ impl ShadowPatch {
                 radiance: of(&radiance),
                 glossy: None,
                 picks: Some(buffer(&picks)),
-                tiles: None,
+                tiles,
             };
             shade.write_set(sets[0], &resources).unwrap();
             let of_shadows = ShadowResources {
@@ -182,7 +202,7 @@ impl ShadowPatch {
                 camera: self.view,
                 position_from_clip: None,
                 lights: packed.summary(),
-                tile_lists: None,
+                tile_lists: tiles.map(|tiles| tiles.tile_lists),
                 seed: 0,
             };
             host.submit(|commands| match visibility_set {

@@ -276,3 +276,19 @@ fn coats_and_both_horizons_draw_from_their_own_lobes() {
         assert!((found - 0.5).abs() < 4e-3, "{options:?}: {found}");
     }
 }
+
+#[test]
+fn tiles_pick_the_lights_that_frames_pick() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (_, material, view) = surfaces().remove(3);
+    let lights: Vec<Light> = symmetric_lights().into_iter().map(|(_, light)| light).collect();
+    let patch = ShadowPatch { material, view, lights, blockers: plate_over_half(0.3) };
+    let [frame, tiles] = [
+        PatchPasses::new(&engine, options(), ShadowFilter::Off),
+        PatchPasses::with_tiles(&engine, options()),
+    ]
+    .map(|passes| patch.run(&passes));
+    assert!((0.1..0.9).contains(&frame.mean()), "{}", frame.mean());
+    assert_eq!(tiles.unshadowed, frame.unshadowed);
+    assert_eq!(tiles.shadows, frame.shadows);
+}
