@@ -34,6 +34,7 @@ mod resize;
 mod shading;
 mod shadow_history;
 mod shadow_levels;
+mod shadow_mistakes;
 mod shadow_rays;
 mod shadowed_reference;
 mod shadows;

@@ -9,7 +9,7 @@ use arealight_vk::{ComputePass, Error, Resource, ShadeFrame, ShadePass, TableFor
 use ash::vk;
 use glam::{Mat4, Vec3};
 
-fn field(error: &Error) -> &'static str {
+pub(crate) fn field(error: &Error) -> &'static str {
     match error {
         Error::InvalidArgument { field, .. } => field,
         other => panic!("{other} names no field"),

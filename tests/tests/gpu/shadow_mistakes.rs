@@ -1,0 +1,85 @@
+//! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
+
+use crate::recorder::field;
+use arealight::plan::{Output, RadianceImages, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight_tests::TestEngine;
+use arealight_tests::frame::{scene, with_renderer};
+use arealight_vk::{
+    BlockerResources, Error, Resource, ShadePass, ShadeResources, ShadowOptions, ShadowPass, ShadowResources,
+};
+use ash::vk;
+
+fn with_rays(shadow_rays: u32) -> ShadeOptions {
+    ShadeOptions { shadow_rays, ..ShadeOptions::default() }
+}
+
+#[test]
+fn options_that_no_shadow_can_be_made_with_are_refused() {
+    let Some(engine) = TestEngine::new() else { return };
+    let refused = |options| {
+        // SAFETY: A pass that is made is dropped unused.
+        let made = unsafe { ShadePass::new(engine.context(), options) };
+        made.err().map(|error| field(&error).to_owned())
+    };
+    assert_eq!(refused(with_rays(5)).as_deref(), Some("shadow_rays"));
+    let adds = ShadeOptions { output: Output::Add, ..with_rays(1) };
+    assert_eq!(refused(adds).as_deref(), Some("output"));
+    let separate = ShadeOptions { images: RadianceImages::Separate, ..with_rays(1) };
+    assert_eq!(refused(separate).as_deref(), Some("images"));
+    // The twins
+    assert_eq!(refused(with_rays(4)), None);
+    assert_eq!(refused(ShadeOptions { shadow_rays: 0, ..adds }), None);
+    assert_eq!(refused(ShadeOptions { shadow_rays: 0, ..separate }), None);
+
+    for (rays, is_refused) in [(0, true), (5, true), (1, false)] {
+        // SAFETY: As above.
+        let made = unsafe { ShadowPass::new(engine.context(), with_rays(rays), ShadowOptions::default()) };
+        assert_eq!(
+            made.err().map(|error| field(&error).to_owned()),
+            is_refused.then(|| "shadow_rays".into())
+        );
+    }
+}
+
+#[test]
+fn what_a_shadow_pass_reads_is_asked_for() {
+    let Some(engine) = TestEngine::new() else { return };
+    let options = with_rays(1);
+    let history = ShadowOptions {
+        filter: ShadowFilter::Gather,
+        history: ShadowHistory::MotionVectors,
+        output: Output::Overwrite,
+    };
+    // SAFETY: The passes are dropped unused; sets are null where an error comes first.
+    unsafe {
+        let shade = ShadePass::new(engine.context(), options).unwrap();
+        let shadow = ShadowPass::new(engine.context(), options, ShadowOptions::default()).unwrap();
+        let over_frames = ShadowPass::new(engine.context(), options, history).unwrap();
+        let scene = scene("sweep.glb");
+        with_renderer(&engine, &scene, &scene.lights, [8, 8], |renderer| {
+            let view = renderer.tiled(ShadeOptions::default(), TileOptions::default()).unwrap();
+            let (resources, _) = renderer.tiled_run(&view);
+            let none = vk::DescriptorSet::null();
+            let is = |error: Result<(), Error>, name: &str| assert_eq!(field(&error.unwrap_err()), name);
+            is(shade.write_set(none, &resources), "picks");
+            let buffer = resources.lights;
+            let mut of_shadows = ShadowResources {
+                shadow: resources.radiance,
+                radiance: None,
+                history: None,
+                motion: None,
+                blockers: None,
+            };
+            is(shadow.write_set(none, &resources, &of_shadows), "picks");
+            let resources = ShadeResources { picks: Some(buffer), ..resources };
+            is(shadow.write_set(none, &resources, &of_shadows), "blockers");
+            is(over_frames.write_set(none, &resources, &of_shadows), "history");
+            of_shadows.history = Some(buffer);
+            is(over_frames.write_set(none, &resources, &of_shadows), "motion");
+            of_shadows.shadow = Resource::buffer(vk::Buffer::null());
+            of_shadows.motion = Some(resources.position);
+            of_shadows.blockers = Some(BlockerResources { nodes: buffer, triangles: buffer });
+            is(over_frames.write_set(none, &resources, &of_shadows), "shadow_image");
+        });
+    }
+}
