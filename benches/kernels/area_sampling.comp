@@ -58,10 +58,10 @@ float importance(ArealightGpuLight light, vec3 position) {
     return arealight_luminance(light.radiance) * area / max(dot(offset, offset), AREALIGHT_TINY);
 }
 
-void choose_lights(vec3 position, uint indices[MOST_RAYS], out Choice choices[MOST_RAYS]) {
+void choose_lights(ivec2 pixel, vec3 position, out Choice choices[MOST_RAYS]) {
     float random[MOST_RAYS];
     for (int ray = 0; ray < RAYS; ray++) {
-        random[ray] = arealight_sequence(indices[ray]);
+        random[ray] = arealight_sequence(uvec2(pixel), constants.seed * uint(RAYS) + uint(ray));
         choices[ray] = Choice(NO_LIGHT, 0.0);
     }
     float sum = 0.0;
@@ -138,15 +138,12 @@ void main() {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec3 side = dot(frame.normal, surface.view) < 0.0 ? -frame.normal : frame.normal;
     vec3 origin = arealight_ray_origin(surface.position, side, 0.0);
-    uint indices[MOST_RAYS];
-    for (int ray = 0; ray < RAYS; ray++) {
-        indices[ray] = arealight_sequence_index(uvec2(pixel), constants.seed * uint(RAYS) + uint(ray));
-    }
     Choice choices[MOST_RAYS];
-    choose_lights(surface.position, indices, choices);
+    choose_lights(pixel, surface.position, choices);
     vec3 sum = vec3(0.0);
     for (int ray = 0; ray < RAYS; ray++) {
-        sum += estimate(surface, frame, origin, choices[ray], arealight_sequence_2d(indices[ray]));
+        vec2 random = arealight_sequence_2d(uvec2(pixel), constants.seed * uint(RAYS) + uint(ray));
+        sum += estimate(surface, frame, origin, choices[ray], random);
     }
     vec4 before = imageLoad(radiance_image, pixel);
     imageStore(radiance_image, pixel, vec4(before.rgb + sum / float(RAYS), before.a));

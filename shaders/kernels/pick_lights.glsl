@@ -18,7 +18,7 @@ void begin_picks(ivec2 pixel) {
     pick_sum = 0.0;
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
         picked[ray] = NO_PICK;
-        pick_random[ray] = arealight_sequence(arealight_sequence_index(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray)));
+        pick_random[ray] = arealight_sequence(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
     }
 }
 

@@ -102,9 +102,8 @@ float penumbra_width(PickedLight light, float part, float distance, float alpha)
 }
 
 // What a ray finds: in x 1 if it arrives, else 0, and the width of the penumbra in y.
-vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, uint index) {
+vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 random) {
     PickedLight light = picked_light(pick, point.position);
-    vec2 random = arealight_sequence_2d(index);
     bool is_specular = (pick & PICK_SPECULAR) != 0u;
     int lobe = is_specular ? chosen_lobe(point, light, random.x) : AREALIGHT_LOBE_DIFFUSE;
     mat3 space = point.lobes[lobe].space;
@@ -137,8 +136,8 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
     float alpha = surface.roughness * surface.roughness;
     vec2 sum = vec2(0.0);
     for (int ray = 0; ray < SHADOW_RAYS; ray++) {
-        uint index = arealight_sequence_index(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
-        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, index);
+        vec2 random = arealight_sequence_2d(uvec2(pixel), constants.seed * uint(SHADOW_RAYS) + uint(ray));
+        sum += traced(shadow_picks[first + uint(ray)], point, alpha, origin, random);
     }
     return vec4(sum / float(SHADOW_RAYS), 1.0, float(SHADOW_RAYS));
 }
