@@ -55,6 +55,9 @@ impl Options {
     }
 }
 
+/// How many frames a history is of: as many as it keeps.
+pub const FRAMES: u32 = 16;
+
 /// A way to shadows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Level {
@@ -64,13 +67,15 @@ pub enum Level {
     Rays(u32),
     /// So many rays a pixel, filtered.
     Filtered(u32),
+    /// So many rays a pixel, filtered over the frames before too: [`FRAMES`] at rest.
+    History(u32),
     /// So many rays a pixel, by [`AREA_SAMPLING`]. For lights that are convex quads without a texture.
     AreaSampling(u32),
 }
 
 impl Level {
     /// Every level, in the order of the tables.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Off,
         Self::Rays(1),
         Self::Rays(2),
@@ -78,6 +83,8 @@ impl Level {
         Self::Filtered(1),
         Self::Filtered(2),
         Self::Filtered(4),
+        Self::History(1),
+        Self::History(2),
         Self::AreaSampling(1),
         Self::AreaSampling(2),
         Self::AreaSampling(4),
@@ -88,7 +95,7 @@ impl Level {
     pub fn rays(self) -> u32 {
         match self {
             Self::Off => 0,
-            Self::Rays(rays) | Self::Filtered(rays) | Self::AreaSampling(rays) => rays,
+            Self::Rays(rays) | Self::Filtered(rays) | Self::History(rays) | Self::AreaSampling(rays) => rays,
         }
     }
 
@@ -98,6 +105,7 @@ impl Level {
             Self::Off => "off".into(),
             Self::Rays(rays) => format!("rays:{rays}"),
             Self::Filtered(rays) => format!("filtered:{rays}"),
+            Self::History(rays) => format!("filtered:{rays}, history"),
             Self::AreaSampling(rays) => format!("area sampling, {rays}"),
         }
     }
@@ -110,14 +118,16 @@ pub struct PassTimes {
     pub shade: Option<Spread>,
     /// Drawing rays and tracing them.
     pub rays: Option<Spread>,
-    /// Filtering them, and multiplying the radiance.
+    /// Updating the history.
+    pub history: Option<Spread>,
+    /// Filtering rays, and multiplying the radiance.
     pub filter: Option<Spread>,
 }
 
 impl PassTimes {
     /// The medians' sum.
     pub fn sum(&self) -> f64 {
-        [self.shade, self.rays, self.filter].iter().flatten().map(|time| time.median).sum()
+        [self.shade, self.rays, self.history, self.filter].iter().flatten().map(|time| time.median).sum()
     }
 }
 
@@ -300,7 +310,7 @@ struct View<'a> {
 }
 
 /// Seconds of each pass that a frame has: of [`PassTimes`].
-type Seconds = [Option<f64>; 3];
+type Seconds = [Option<f64>; 4];
 
 impl View<'_> {
     fn options(&self, shadow_rays: u32, output: Output) -> ShadeOptions {
@@ -312,9 +322,9 @@ impl View<'_> {
         let passes = self.passes(level)?;
         let radiance = self.picture(level, passes.as_ref())?;
         let unshadowed = match (&passes, level) {
-            (Some(passes), Level::Rays(_) | Level::Filtered(_)) => pictures::unshadowed(passes)?,
             // It knows none
             (_, Level::AreaSampling(_)) => truth.unshadowed.clone(),
+            (Some(passes), _) => pictures::unshadowed(passes)?,
             _ => radiance.clone(),
         };
         let pixels = radiance.iter().zip(&unshadowed);
@@ -322,15 +332,15 @@ impl View<'_> {
 
         // Its time
         let mut seconds = vec![];
-        for round in 1..=rounds {
-            seconds.push(self.shade(level, passes.as_ref(), round)?);
+        for round in 0..rounds {
+            seconds.push(self.shade(level, passes.as_ref(), FRAMES + round)?);
         }
         let processors = if is_software(self.host) { processors() } else { 1.0 };
         let time = |pass: usize| {
             let all: Option<Vec<f64>> = seconds.iter().map(|times| times[pass]).collect();
             all.filter(|all| !all.is_empty()).map(|all| Spread::of(&all).times(1e3 / processors))
         };
-        let milliseconds = PassTimes { shade: time(0), rays: time(1), filter: time(2) };
+        let milliseconds = PassTimes { shade: time(0), rays: time(1), history: time(2), filter: time(3) };
         let rays = truth.mean.parts.iter().flatten().count() as f64 * f64::from(level.rays());
         Ok(LevelResult {
             level,
@@ -342,21 +352,26 @@ impl View<'_> {
 
     /// What a level with rays needs on the device.
     fn passes(&self, level: Level) -> Result<Option<ShadowedView>, EngineError> {
+        let (none, gather) = (ShadowHistory::Off, ShadowFilter::Gather);
         let (rays, filter) = match level {
             Level::Off => return Ok(None),
-            Level::Rays(rays) => (rays, ShadowFilter::Off),
-            Level::Filtered(rays) => (rays, ShadowFilter::Gather),
+            Level::Rays(rays) => (rays, (ShadowFilter::Off, none)),
+            Level::Filtered(rays) => (rays, (gather, none)),
+            Level::History(rays) => (rays, (gather, ShadowHistory::Camera)),
             // Of the blockers alone
-            Level::AreaSampling(_) => (1, ShadowFilter::Off),
+            Level::AreaSampling(_) => (1, (ShadowFilter::Off, none)),
         };
         let options = self.options(rays, Output::default());
-        self.pictures.renderer.shadowed(self.scene, options, (filter, ShadowHistory::Off)).map(Some)
+        self.pictures.renderer.shadowed(self.scene, options, filter).map(Some)
     }
 
     /// The radiance by a level.
     fn picture(&mut self, level: Level, passes: Option<&ShadowedView>) -> Result<Vec<DVec3>, EngineError> {
-        self.pictures.begin()?;
-        self.shade(level, passes, 0)?;
+        let frames = if matches!(level, Level::History(_)) { FRAMES } else { 1 };
+        for frame in 0..frames {
+            self.pictures.begin()?;
+            self.shade(level, passes, frame)?;
+        }
         self.pictures.radiance()
     }
 
@@ -369,18 +384,23 @@ impl View<'_> {
         let plain = self.options(0, Output::Add);
         let (host, renderer) = (self.host, &mut self.pictures.renderer);
         let Some(passes) = passes else {
-            return Ok([Some(clocked(host, || renderer.shade_as(plain))?), None, None]);
+            return Ok([Some(clocked(host, || renderer.shade_as(plain))?), None, None, None]);
         };
         if let Level::AreaSampling(rays) = level {
             let constants = [(area_sampling::RAYS, rays)];
             let took =
                 clocked(host, || renderer.shade_shadowed_by(passes, (&AREA_SAMPLING, &constants), seed))?;
-            return Ok([None, Some(took), None]);
+            return Ok([None, Some(took), None, None]);
         }
-        Ok([
-            Some(clocked(host, || renderer.shade_picking(passes, seed))?),
-            Some(clocked(host, || renderer.shadow_stage(passes, ShadowStage::Rays, seed))?),
-            Some(clocked(host, || renderer.shadow_stage(passes, ShadowStage::Filter, seed))?),
-        ])
+        let mut seconds = [Some(clocked(host, || renderer.shade_picking(passes, seed))?), None, None, None];
+        for stage in passes.stages() {
+            let place = match stage {
+                ShadowStage::Rays => 1,
+                ShadowStage::History => 2,
+                ShadowStage::Filter => 3,
+            };
+            seconds[place] = Some(clocked(host, || renderer.shadow_stage(passes, *stage, seed))?);
+        }
+        Ok(seconds)
     }
 }

@@ -1,6 +1,6 @@
 //! What a run found, as text and as Markdown.
 
-use super::{Level, LevelResult, SceneResult, ShadowLevels};
+use super::{LevelResult, SceneResult, ShadowLevels};
 use crate::ladder::Spread;
 use crate::table::Table;
 use std::fmt::Write as _;
@@ -10,11 +10,11 @@ const MEASURES: &str = "\
 *S* is the part of a pixel's unshadowed light that arrives, in luminance; its errors are those of lit pixels times 100, the root of their mean \
 square over all of them and over those in a penumbra, and their mean (above 0 too much arrives). The error of the radiance is the root of its \
 mean square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with and without shadows by the same \
-samples; their noise, measured by their difference, is taken out of the squares. \
+samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames at rest. \
 `area sampling` chooses for each ray a light by its power over its distance squared, and a point of it by area: the same \
 rays through the same blockers, without what is known of the unshadowed radiance.";
 
-const HEADS: [&str; 10] = [
+const HEADS: [&str; 11] = [
     "level",
     "S, RMSE x 100",
     "in penumbra",
@@ -22,6 +22,7 @@ const HEADS: [&str; 10] = [
     "radiance, RMSE / mean %",
     "shade, ms",
     "rays, ms",
+    "history, ms",
     "filter, ms",
     "sum, ms",
     "million rays/s",
@@ -29,16 +30,16 @@ const HEADS: [&str; 10] = [
 
 fn cells(result: &LevelResult) -> Vec<String> {
     let LevelResult { level, errors, milliseconds, rays_per_second } = result;
-    let name = level.name();
     let time = |time: Option<Spread>| time.map_or_else(String::new, |time| format!("{:.1}", time.median));
     vec![
-        if matches!(level, Level::AreaSampling(_)) { name } else { format!("`{name}`") },
+        level.name(),
         format!("{:.2}", 100.0 * errors.rmse),
         format!("{:.2}", 100.0 * errors.penumbra_rmse),
         format!("{:+.2}", 100.0 * errors.bias),
         format!("{:.1}", 100.0 * errors.radiance.rmse),
         time(milliseconds.shade),
         time(milliseconds.rays),
+        time(milliseconds.history),
         time(milliseconds.filter),
         format!("{:.1}", milliseconds.sum()),
         rays_per_second.map_or_else(String::new, |rays| format!("{:.2}", 1e-6 * rays)),
