@@ -32,14 +32,7 @@ layout(set = 0, binding = 1, std430) readonly buffer LightVertices {
 };
 layout(set = 0, binding = 6, rgba32f) uniform image2D radiance_image;
 
-layout(push_constant, std430) uniform ShadeConstants {
-    mat4 position_from_clip;
-    vec3 camera;
-    uint light_count;
-    uint shape_count;
-    uint quad_count;
-    uint seed;
-} constants;
+#include "shade_constants.glsl"
 
 // Rays end this part of their length before the light, as the product's do.
 const float RAY_PART = 0.999755859375;

@@ -5,7 +5,7 @@
 use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
-use arealight::plan::{self, ShadeOptions, TileOptions};
+use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, LightSummary, Lobes, Quality, TileClass};
 use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
@@ -156,6 +156,18 @@ pub fn rows() -> Vec<Row> {
         classify("every kind", "culling", every_kind, 0.01),
         tiles("tiles of quads", "exact", TileClass::Quads, none),
         tiles("tiles of every kind", "exact", TileClass::Any, every_kind),
+        // Shadows
+        picks("quads", "exact, picks of 1 ray", none, 1),
+        picks("quads", "exact, picks of 4 rays", none, 4),
+        picks("every kind", "exact, picks of 1 ray", every_kind, 1),
+        shadow_rays("every kind", "1 ray", LOBES, 1),
+        shadow_rays("every kind", "4 rays", LOBES, 4),
+        shadow_rays("every kind", "1 ray, coat with its own normal", LOBES | COATS, 1),
+        shadow_history("by the camera", ShadowHistory::Camera),
+        shadow_history("by motion vectors", ShadowHistory::MotionVectors),
+        shadow_filter("off", ShadowFilter::Off, ShadowHistory::Off),
+        shadow_filter("gather", ShadowFilter::Gather, ShadowHistory::Off),
+        shadow_filter("gather, with a history", ShadowFilter::Gather, ShadowHistory::Camera),
         // Images of lights
         load("copied", 0),
         load("resampled, sRGB", 3),
@@ -202,6 +214,34 @@ fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: boo
     let frame = LightSummary { quad_count: u32::from(quads), effects, ..LightSummary::default() };
     let specialization = plan::shade_specialization(options, frame);
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+}
+
+/// The shade pass that picks lights and lobes for shadow rays; `kinds` of lights beside quads.
+fn picks(lights: &'static str, level: &'static str, kinds: Effects, rays: u32) -> Row {
+    let frame = LightSummary { quad_count: 1, effects: LOBES | kinds, ..LightSummary::default() };
+    let specialization = plan::shade_specialization(shadowed(LOBES, rays), frame);
+    row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+}
+
+/// Rays through [`arealight::Blockers`].
+fn shadow_rays(lights: &'static str, level: &'static str, surfaces: Effects, rays: u32) -> Row {
+    let specialization = plan::shadow_rays_specialization(shadowed(surfaces, rays));
+    row(&kernels::SHADOW_RAYS, lights, level, None, specialization)
+}
+
+fn shadow_history(level: &'static str, history: ShadowHistory) -> Row {
+    let specialization = plan::shadow_history_specialization(shadowed(LOBES, 1), history);
+    row(&kernels::SHADOW_HISTORY, "1 ray", level, None, specialization)
+}
+
+fn shadow_filter(level: &'static str, filter: ShadowFilter, history: ShadowHistory) -> Row {
+    let options = shadowed(LOBES, 1);
+    let specialization = plan::shadow_filter_specialization(options, filter, history, Output::default());
+    row(&kernels::SHADOW_FILTER, "1 ray", level, None, specialization)
+}
+
+fn shadowed(surfaces: Effects, shadow_rays: u32) -> ShadeOptions {
+    ShadeOptions { surfaces, shadow_rays, ..ShadeOptions::default() }
 }
 
 /// `kinds`: of lights, and what coats need.
