@@ -101,6 +101,7 @@ step "format" cargo fmt --all --check
 step "links of documents" check_links
 step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
 step "the product depends on no laboratory" cargo run --locked --quiet -p xtask -- dependencies
+step "the product has few public types" cargo run --locked --quiet -p xtask -- types
 # With the window of an example, which nothing below builds: tools/test-window.sh runs it
 step "lints" cargo clippy --workspace --features arealight-examples/window --all-targets --locked --quiet -- -D warnings
 step "tests" run_tests

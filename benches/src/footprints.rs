@@ -6,9 +6,10 @@ mod report;
 
 use crate::textures::{self, TextureCost};
 use arealight::kernels::Kernel;
-use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality, Surface};
+use arealight::{Effects, Footprint, FormFactor, Light, LightTable, Quality};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, EvalPoint};
+use arealight_oracle::material::Surface;
 use arealight_oracle::shading::footprint::Filter;
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Pose, Summary, poses};
 use arealight_oracle::shading::{RelativeLight, ltc_on};

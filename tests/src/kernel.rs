@@ -83,7 +83,7 @@ pub static BLOCKERS: Kernel = Kernel {
     push_constant_size: 4,
     bindings: &[
         Binding::storage_buffer("nodes", Access::Read, "GpuBvhNode[]"),
-        Binding::storage_buffer("blocker_triangles", Access::Read, "GpuBlockerTriangle[]"),
+        Binding::storage_buffer("blocker_triangles", Access::Read, "Blockers::triangles"),
         Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
         Binding::storage_buffer("distances", Access::Write, "float a ray"),
     ],

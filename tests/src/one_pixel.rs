@@ -1,7 +1,7 @@
 //! The shade pass over a G-buffer of one pixel.
 
 use crate::TestEngine;
-use arealight::plan::{PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{RadianceFormat, ShadeOptions};
 use arealight::{Light, LightShape, PackedLights};
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -55,7 +55,7 @@ impl<'a> OnePixel<'a> {
     /// # Panics
     /// Where the options say that there are two, or the device fails.
     pub fn shade(&self, options: ShadeOptions, lights: &[Light], camera: Vec3, matrix: Option<Mat4>) -> Vec4 {
-        assert_eq!(options.images, RadianceImages::Combined);
+        assert!(!options.separate_lobes);
         self.shade_images(options, lights, camera, matrix)[0]
     }
 
@@ -92,7 +92,7 @@ impl<'a> OnePixel<'a> {
                 view: image.view(),
                 layout: Usage::COMPUTE_READ.layout,
             };
-            let from_depth = options.position == PositionSource::Depth;
+            let from_depth = options.from_depth;
             let resources = ShadeResources {
                 table: self.engine.table(),
                 lights: Resource::buffer(light_buffer.handle()),

@@ -1,7 +1,8 @@
 //! Random shading points, the same in every run.
 
-use arealight::{Light, LightShape, Surface};
+use arealight::{Light, LightShape};
 use arealight_engine::EvalPoint;
+use arealight_oracle::material::Surface;
 use arealight_oracle::stream::Stream;
 use glam::{DVec3, Vec3};
 

@@ -1,6 +1,6 @@
 //! Scenes made of a few triangles.
 
-use arealight::Material;
+use arealight_oracle::material::Material;
 use arealight_scene::{Scene, SceneMaterial, Triangle};
 use glam::{DVec3, Vec2, Vec3};
 

@@ -2,8 +2,9 @@
 
 use crate::TestEngine;
 use arealight::plan::{ShadeOptions, ShadowFilter, TileOptions};
-use arealight::{Blockers, Light, Material, PackedLights};
+use arealight::{Blockers, Light, PackedLights};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
+use arealight_oracle::material::Material;
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
     ShadowPass, ShadowResources, TileResources,

@@ -3,7 +3,8 @@
 //! Points lie before the lights, at .5 to 8 times their size; half of them look at a light's mirror image, the others
 //! anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
 
-use arealight::{Light, LightShape, LightTexture, Material, Surface};
+use arealight::{Light, LightShape, LightTexture};
+use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::stream::Stream;
 use glam::{DVec2, DVec3, Vec3};
 use half::f16;

@@ -8,9 +8,7 @@ use crate::types::{
     ArealightSetLayout, ArealightTileMemory,
 };
 use crate::{arguments, handles};
-use arealight::plan::{
-    GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions, TileOptions,
-};
+use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileResources};
@@ -127,7 +125,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
     Ok(ShadeOptions {
         surfaces,
         quality,
-        position: level(options.position, &[PositionSource::Position, PositionSource::Depth], "position")?,
+        from_depth: level(options.position, &[false, true], "position")?,
         g_buffer: level(
             options.g_buffer,
             &[
@@ -139,11 +137,7 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             "g_buffer",
         )?,
         output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
-        images: level(
-            options.radiance_images,
-            &[RadianceImages::Combined, RadianceImages::Separate],
-            "radiance_images",
-        )?,
+        separate_lobes: level(options.radiance_images, &[false, true], "radiance_images")?,
         format: level(
             options.radiance_format,
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],

@@ -1,6 +1,5 @@
 //! What can be fitted: a BRDF as the fitter sees it, and GGX.
 
-use arealight::GrazingDip;
 use arealight_oracle::ggx::Ggx;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -35,9 +34,9 @@ pub trait Brdf: Sync {
     /// The two albedos of an alpha and a view, which may lie in the surface, to about 1e-7.
     fn magnitude(&self, alpha: f64, cos_view: f64) -> Magnitude;
 
-    /// What makes its albedos smooth enough for a table towards the horizon, if that is known.
-    fn grazing_dip(&self) -> GrazingDip {
-        GrazingDip::None
+    /// Whether its albedos are smooth enough for a table towards the horizon with [`arealight::table::ggx_grazing_dip`] added.
+    fn has_ggx_dip(&self) -> bool {
+        false
     }
 }
 
@@ -84,8 +83,8 @@ impl Brdf for GgxBrdf {
         Ggx { alpha }.density(view, light)
     }
 
-    fn grazing_dip(&self) -> GrazingDip {
-        GrazingDip::Ggx
+    fn has_ggx_dip(&self) -> bool {
+        true
     }
 
     /// Integrates over half vectors in polar coordinates, because there the horizon of the light is a boundary

@@ -1,7 +1,8 @@
 //! The fit of a whole table.
 
-use arealight::table::{MIN_COS_VIEW, mirror_frame};
+use arealight::table::mirror_frame;
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
+use arealight_oracle::formula::MIN_COS_VIEW;
 use glam::DMat3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -187,13 +188,13 @@ fn into_table(
     let description = TableDescription {
         brdf: brdf.name().to_owned(),
         made_by: format!("arealight-fit {}, {aim}", env!("CARGO_PKG_VERSION")),
-        grazing_dip: brdf.grazing_dip(),
+        ggx_dip: brdf.has_ggx_dip(),
     };
     // Fill the dip at grazing views, that the albedos can be interpolated
     let stored = |(i, m): (usize, &Magnitude)| {
         let (roughness, cos_view) =
             LightTable::node(settings.size, i as u32 % settings.size, i as u32 / settings.size);
-        let dip = brdf.grazing_dip().at(roughness, cos_view);
+        let dip = description.dip(roughness, cos_view);
         [(m.albedo + dip[0]) as f32, (m.schlick + dip[1]) as f32]
     };
     let magnitude = magnitude.iter().enumerate().map(stored).collect();

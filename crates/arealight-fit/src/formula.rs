@@ -5,8 +5,8 @@
 //! entries' errors in a metric of their own, the curvature, which changes by orders of magnitude over the table and in
 //! which some sums of entries count for nothing.
 
-use arealight::table::Formula;
 use arealight::{LightTable, MIN_ALPHA};
+use arealight_oracle::formula::Formula;
 use rayon::prelude::*;
 
 use crate::brdf::{Brdf, Magnitude};

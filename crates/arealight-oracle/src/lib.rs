@@ -7,6 +7,8 @@
 //! | module | holds |
 //! |---|---|
 //! | [`frame`] | the surface frame of a normal and a view |
+//! | [`formula`] | the lobes by formulas, in the place of the table |
+//! | [`material`] | metallic-roughness materials, and the surface that they make |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
@@ -21,9 +23,11 @@
 
 pub mod cubature;
 pub mod ellipse;
+pub mod formula;
 pub mod frame;
 pub mod ggx;
 pub mod ltsd;
+pub mod material;
 pub mod polygon;
 pub mod shading;
 pub mod sphere;

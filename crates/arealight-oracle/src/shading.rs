@@ -13,12 +13,14 @@ pub use shown::ShownImage;
 pub use textured::transformed_image_integral;
 
 use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
+use crate::formula::ggx_formula;
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
+use crate::material::Surface;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
-use arealight::table::{ggx_formula, share_above_surface};
-use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality, Surface, TableSample, TextureError};
+use arealight::table::share_above_surface;
+use arealight::{Fresnel, Horizon, Light, LightFault, LightTable, Lobes, Quality, TableSample};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
 use std::convert::Infallible;
@@ -52,8 +54,8 @@ impl RelativeLight {
     /// The light as seen from `position`, showing `texture` where the light has a texture of its own.
     ///
     /// # Errors
-    /// [`TextureError`] where its texture coordinates do not map onto it.
-    pub fn textured(light: &Light, position: DVec3, texture: Arc<Texture>) -> Result<Self, TextureError> {
+    /// [`LightFault`] where its texture coordinates do not map onto it.
+    pub fn textured(light: &Light, position: DVec3, texture: Arc<Texture>) -> Result<Self, LightFault> {
         let mut relative = Self::new(light, position);
         if let Some(mapped) = &light.texture {
             let mut map = mapped.map(&light.shape)?;

@@ -1,6 +1,6 @@
 //! What a file says of its texels: the same names and values in every format.
 
-use arealight::{GrazingDip, LightTable, TableDescription};
+use arealight::{LightTable, TableDescription};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
 
@@ -93,18 +93,14 @@ impl Attributes {
         expect(name::FRAME, FRAME)?;
         expect(name::NORMALISATION, NORMALISATION)?;
         let dip = if version < 3 { Value::Text(NO_DIP.to_owned()) } else { find(name::GRAZING_DIP)? };
-        let grazing_dip = match dip {
-            Value::Text(text) if text == NO_DIP => GrazingDip::None,
-            Value::Text(text) if text == GGX_DIP => GrazingDip::Ggx,
+        let ggx_dip = match dip {
+            Value::Text(text) if text == NO_DIP => false,
+            Value::Text(text) if text == GGX_DIP => true,
             other => return Err(other.unexpected(name::GRAZING_DIP, "none or ggx")),
         };
         Ok(Self {
             version,
-            description: TableDescription {
-                brdf: text(name::BRDF)?,
-                made_by: text(name::MADE_BY)?,
-                grazing_dip,
-            },
+            description: TableDescription { brdf: text(name::BRDF)?, made_by: text(name::MADE_BY)?, ggx_dip },
             fit_error: get(name::FIT_ERROR).map(|_| text(name::FIT_ERROR)).transpose()?,
             hash: if version == 1 { None } else { Some(text(name::HASH)?) },
         })
@@ -137,10 +133,7 @@ impl Attributes {
 
 /// The attribute `arealight.grazing_dip` of a table.
 fn dip_name(table: &LightTable) -> &'static str {
-    match table.description().grazing_dip {
-        GrazingDip::None => NO_DIP,
-        GrazingDip::Ggx => GGX_DIP,
-    }
+    if table.description().ggx_dip { GGX_DIP } else { NO_DIP }
 }
 
 /// The attributes of a table, but for the version.
@@ -180,7 +173,7 @@ pub fn hash(table: &LightTable) -> String {
     update(table.matrix().as_flattened());
     update(table.magnitude().as_flattened());
     update(schlick_matrix.unwrap_or_default().as_flattened());
-    if table.description().grazing_dip != GrazingDip::None {
+    if table.description().ggx_dip {
         hasher.update(dip_name(table));
     }
     let mut text = String::from("sha256:");

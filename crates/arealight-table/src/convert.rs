@@ -23,7 +23,7 @@ pub fn resampled(table: &LightTable, size: u32) -> Result<LightTable, TableError
     let description = TableDescription {
         brdf: table.description().brdf.clone(),
         made_by: format!("{}, resampled from {} nodes", table.description().made_by, table.size()),
-        grazing_dip: table.description().grazing_dip,
+        ggx_dip: table.description().ggx_dip,
     };
     let matrix = resampled_layer(table.matrix(), table.size(), size);
     let magnitude = resampled_layer(table.magnitude(), table.size(), size);

@@ -11,7 +11,7 @@
 //! cannot be told from these.
 
 use arealight::table::mirror_frame;
-use arealight::{GrazingDip, LightTable, TableDescription, TableError};
+use arealight::{LightTable, TableDescription, TableError};
 use std::path::Path;
 
 use crate::{FileError, Format, ReadError, bytes_of, dds, ktx, open_exr};
@@ -154,7 +154,7 @@ fn convert(
     let description = TableDescription {
         brdf: brdf.to_owned(),
         made_by: "converted from two images in the convention of Heitz et al. 2016".to_owned(),
-        grazing_dip: GrazingDip::None,
+        ggx_dip: false,
     };
     Ok(Published { table: LightTable::new(description, size, matrix, magnitude)?, adjusted })
 }

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use crate::texture::LAYERS;
 use crate::{Precision, TableFile, hash};
-use arealight::GrazingDip;
 use half::f16;
 
 /// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts; drivers
@@ -59,10 +58,7 @@ pub fn glsl(file: &TableFile) -> String {
     words.extend(table.magnitude().iter().map(|texel| pair(texel[0], texel[1])));
 
     let count = words.len();
-    let dip = match table.description().grazing_dip {
-        GrazingDip::None => "0.0",
-        GrazingDip::Ggx => "1.0",
-    };
+    let dip = if table.description().ggx_dip { "1.0" } else { "0.0" };
     let mut text = format!(
         "#ifndef AREALIGHT_TABLE_CONSTANT_GLSL\n#define AREALIGHT_TABLE_CONSTANT_GLSL\n\n\
          // The bridge to the table, for a shader without a table texture: include this after\n\
@@ -110,13 +106,12 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         "    |         0  1          0 | * |     0  1      0 |      for a view (sin t, 0, cos t)".to_owned(),
         "    | alpha q20  0  alpha q22 |   | -sin t 0  cos t |      in the surface frame".to_owned(),
         "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, dip, 0).".to_owned(),
-        match table.description().grazing_dip {
-            GrazingDip::None => "    The dip is 0.".to_owned(),
-            GrazingDip::Ggx => {
-                "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what was \
-                interpolated."
-                    .to_owned()
-            }
+        if table.description().ggx_dip {
+            "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what was \
+             interpolated."
+                .to_owned()
+        } else {
+            "    The dip is 0.".to_owned()
         },
         if table.schlick_matrix().is_some() {
             "Layer 2: the matrix for the lobe of Schlick's weight, as layer 0.".to_owned()

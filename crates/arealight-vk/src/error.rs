@@ -55,7 +55,7 @@ pub enum Error {
         /// The layer that it was meant for.
         layer: u32,
         /// What is wrong with it.
-        error: arealight::TexturePartError,
+        error: arealight::TextureError,
     },
 }
 

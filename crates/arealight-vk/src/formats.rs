@@ -2,14 +2,14 @@
 
 use crate::error::Error;
 use arealight::Effects;
-use arealight::plan::{GBufferLayout, PositionSource, RadianceFormat, ShadeOptions};
+use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
 use ash::vk::Format;
 
 /// The formats of the images that a host binds to the shade pass, which their views do not tell: check them once, where
 /// the images are made.
 ///
 /// ```
-/// use arealight::plan::{PositionSource, ShadeOptions};
+/// use arealight::plan::ShadeOptions;
 /// use arealight_vk::{ShadeFormats, ash::vk::Format};
 ///
 /// let formats = ShadeFormats {
@@ -20,7 +20,7 @@ use ash::vk::Format;
 ///     coat: Format::UNDEFINED, // not read without Effects::COAT
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
-/// let options = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
+/// let options = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
 /// formats.check(options)?;
 /// # Ok::<(), arealight_vk::Error>(())
 /// ```
@@ -113,10 +113,7 @@ impl ShadeFormats {
     /// # Errors
     /// [`Error::WrongFormat`] names the first image of another format, and the formats that will do.
     pub fn check(&self, options: ShadeOptions) -> Result<(), Error> {
-        let position = match options.position {
-            PositionSource::Position => POSITION,
-            PositionSource::Depth => DEPTH,
-        };
+        let position = if options.from_depth { DEPTH } else { POSITION };
         let radiance = match options.format {
             RadianceFormat::Rgba32Float => RADIANCE,
             RadianceFormat::Rgba16Float => RADIANCE_HALF,
@@ -169,7 +166,7 @@ mod tests {
     fn formats_that_will_do_pass() {
         let all = ShadeOptions { surfaces: Effects::SURFACES, ..ShadeOptions::default() };
         RIGHT.check(all).unwrap();
-        let depth = ShadeOptions { position: PositionSource::Depth, ..all };
+        let depth = ShadeOptions { from_depth: true, ..all };
         ShadeFormats { position: Format::D24_UNORM_S8_UINT, ..RIGHT }.check(depth).unwrap();
         let unread = ShadeFormats { specular: Format::UNDEFINED, coat: Format::UNDEFINED, ..RIGHT };
         unread.check(ShadeOptions::default()).unwrap();
@@ -194,7 +191,7 @@ mod tests {
         ] {
             assert_eq!(field(formats, options), expected);
         }
-        let depth = ShadeOptions { position: PositionSource::Depth, ..options };
+        let depth = ShadeOptions { from_depth: true, ..options };
         assert_eq!(field(RIGHT, depth), "position");
         // A layout's normals, and its third image, which is read whatever surfaces need
         let unreal = ShadeOptions { g_buffer: GBufferLayout::Unreal, ..ShadeOptions::default() };

@@ -5,8 +5,10 @@ use crate::error::{Error, VulkanCall};
 use crate::pass::{ComputePass, Resource};
 use arealight::gpu::TextureLoadConstants;
 use arealight::kernels::{TEXTURE_BLUR, TEXTURE_LOAD, constant};
+use arealight::pyramid::MOST_TAPS;
 use arealight::{PyramidSize, TexturePart, plan};
 use ash::vk;
+use bytemuck::{Pod, Zeroable};
 use std::ops::Range;
 
 /// The format of the light textures, which every Vulkan device filters and stores to.
@@ -39,6 +41,16 @@ pub struct TextureUpdate {
     pub part: TexturePart,
     /// The image holds sRGB in a format that does not decode by itself, `R8G8B8A8_UNORM` for instance.
     pub decode_srgb: bool,
+}
+
+/// Push constants of the kernel that makes a level from the one before.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+struct BlurConstants {
+    /// [`PyramidSize::weights`] of the level.
+    weights: [f32; MOST_TAPS],
+    /// The layer of the first group in z.
+    first_layer: u32,
 }
 
 /// The array image of the lights' textures with its pyramid, and the passes that fill it. The host gives it memory and
@@ -355,7 +367,8 @@ impl LightTextures {
         // Load level 0, after whatever used the layers before
         barrier((everything, WRITE), (compute, READ | WRITE));
         for (update, constants) in updates.iter().zip(&constants) {
-            let groups = plan::texture_load(self.size, constants).groups;
+            let [width, height] = self.size.extent(0);
+            let groups = TEXTURE_LOAD.groups_for([width, height, 1]);
             let pass = &self.load[constants.called_for() as usize];
             let bytes = bytemuck::bytes_of(constants);
             // SAFETY: as above.
@@ -365,11 +378,12 @@ impl LightTextures {
         for (level, &set) in (1..).zip(level_sets) {
             barrier((compute, WRITE), (compute, READ));
             for run in &layers {
-                let (dispatch, constants) = plan::texture_blur(self.size, level, run.clone());
+                let constants = BlurConstants { weights: self.size.weights(level), first_layer: run.start };
+                let groups = plan::blur_groups(self.size, level, run.end - run.start);
                 let pass = &self.blur[plan::blur_variant(self.size, level)];
                 let bytes = bytemuck::bytes_of(&constants);
                 // SAFETY: as above.
-                unsafe { pass.record(command_buffer, set, bytes, dispatch.groups) }?;
+                unsafe { pass.record(command_buffer, set, bytes, groups) }?;
             }
         }
         barrier((compute, WRITE), (everything, READ));

@@ -8,7 +8,7 @@ use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Access, BindingKind, CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, store_to};
-use arealight::plan::{self, Output, PositionSource, RadianceImages, ShadeOptions, TileOptions};
+use arealight::plan::{self, Output, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
@@ -31,7 +31,7 @@ pub struct ShadeResources {
     /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's layer is there. None where no
     /// frame has textured lights.
     pub light_textures: Option<Resource>,
-    /// Positions or depth, by [`ShadeOptions::position`].
+    /// Positions or depth, by [`ShadeOptions::from_depth`].
     pub position: Resource,
     /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
     pub normal: Resource,
@@ -41,9 +41,9 @@ pub struct ShadeResources {
     pub specular: Option<Resource>,
     /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
     pub coat: Option<Resource>,
-    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`RadianceImages::Separate`] that of the diffuse lobe.
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
     pub radiance: Resource,
-    /// Where the glossy lobe's goes with [`RadianceImages::Separate`]: another image of that format. Else none.
+    /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
     pub glossy: Option<Resource>,
     /// With [`ShadeOptions::shadow_rays`], a buffer of [`ShadePass::picks_size`] bytes, which the pass writes and a
     /// [`crate::ShadowPass`] reads. Else none.
@@ -60,7 +60,7 @@ pub struct ShadeFrame {
     /// The camera's position relative to the origin that lights and positions are packed with.
     pub camera: Vec3,
     /// The inverse of (projection × view), from clip space to positions relative to the origin. Needed with
-    /// [`PositionSource::Depth`], else ignored.
+    /// [`ShadeOptions::from_depth`], else ignored.
     pub position_from_clip: Option<Mat4>,
     /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers.
     pub lights: LightSummary,
@@ -147,8 +147,8 @@ impl ShadePass {
         tiles: TileOptions,
         table_size: u32,
     ) -> Result<Self, Error> {
-        // SAFETY: the same contract; the modules are the kernels'.
         check_shadows(options)?;
+        // SAFETY: the same contract; the modules are the kernels'.
         unsafe {
             let layouts = Layouts::new(context, &SHADE)?;
             let tiles = Tiles::new(&layouts, tiles, table_size)?;
@@ -324,15 +324,15 @@ impl ShadePass {
     /// What is bound for the glossy lobe's radiance: where there is one image, that again.
     fn glossy_image(&self, resources: &ShadeResources) -> Result<Resource, Error> {
         let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
-        match (self.options.images, resources.glossy) {
-            (RadianceImages::Combined, _) => Ok(resources.radiance),
-            (RadianceImages::Separate, None) => {
+        match (self.options.separate_lobes, resources.glossy) {
+            (false, _) => Ok(resources.radiance),
+            (true, None) => {
                 Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
             }
-            (RadianceImages::Separate, Some(glossy)) if glossy.view() == resources.radiance.view() => {
+            (true, Some(glossy)) if glossy.view() == resources.radiance.view() => {
                 Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
             }
-            (RadianceImages::Separate, Some(glossy)) => Ok(glossy),
+            (true, Some(glossy)) => Ok(glossy),
         }
     }
 
@@ -450,8 +450,8 @@ pub(crate) fn push_constants_of_view(
     options: ShadeOptions,
     frame: &ShadeFrame,
 ) -> Result<([[f32; 4]; 4], [f32; 3]), Error> {
-    let position_from_clip = match (options.position, frame.position_from_clip) {
-        (PositionSource::Depth, None) => {
+    let position_from_clip = match (options.from_depth, frame.position_from_clip) {
+        (true, None) => {
             return Err(Error::InvalidArgument {
                 field: "position_from_clip",
                 message: "is missing, but the pass takes positions from depth".into(),
@@ -481,8 +481,8 @@ fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
             "adds, but with shadow rays the unshadowed radiance has an image of its own: ShadowOptions::output adds",
         );
     }
-    if options.shadow_rays > 0 && options.images != RadianceImages::Combined {
-        return wrong("images", "are separate, but with shadow rays the lobes' radiance is one sum");
+    if options.shadow_rays > 0 && options.separate_lobes {
+        return wrong("separate_lobes", "is set, but with shadow rays the lobes' radiance is one sum");
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::pass::Resource;
 use crate::pipelines::Pipelines;
 use crate::shade::ShadeFrame;
 use arealight::LightSummary;
-use arealight::gpu::{GpuTileClass, ShadeConstants};
+use arealight::gpu::ShadeConstants;
 use arealight::kernels::CLASSIFY;
 use arealight::plan::{self, ShadeOptions, TileOptions};
 use arealight::tiles::{self, TileClass, tile_counts};
@@ -169,7 +169,7 @@ impl Tiles {
                 ),
             );
             for class in dispatched(options, frame) {
-                let place = offset + class as u64 * size_of::<GpuTileClass>() as u64;
+                let place = offset + class as u64 * 4 * tiles::CLASS_WORDS as u64;
                 let specialization = plan::shade_tiles_specialization(options, frame.lights, class);
                 shade.with(specialization, |pass| {
                     pass.record_indirect(command_buffer, set, bytes, (buffer, place));
@@ -184,7 +184,7 @@ impl Tiles {
     /// # Safety
     /// As [`Tiles::record`]: the buffer holds as much, and nothing else uses it now.
     unsafe fn record_no_tiles(&self, command_buffer: vk::CommandBuffer, frame: &TiledFrame) {
-        let none = [GpuTileClass { z: 1, ..GpuTileClass::default() }; TileClass::ALL.len()];
+        let none = [tiles::NO_TILES; TileClass::ALL.len()];
         let (buffer, offset) = frame.lists;
         let device = self.classify.layouts().context().device();
         // SAFETY: the same contract.

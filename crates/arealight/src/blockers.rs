@@ -2,7 +2,7 @@
 //!
 //! For hosts that have no acceleration structure of their own to answer a shadow ray with. The kernels' `blockers.glsl` walks it.
 
-use crate::gpu::{GpuBlockerTriangle, GpuBvhNode};
+use crate::gpu::GpuBvhNode;
 use glam::Vec3;
 use std::ops::Range;
 
@@ -12,9 +12,9 @@ use std::ops::Range;
 pub struct Blockers {
     /// Never empty: without triangles it is one node of zeros, which a walk passes by.
     pub nodes: Vec<GpuBvhNode>,
-    /// In the order of the leaves, relative to the origin that the vertices were given in. Empty without triangles; a descriptor wants a
+    /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero. Empty without triangles; a descriptor wants a
     /// buffer all the same, of any content.
-    pub triangles: Vec<GpuBlockerTriangle>,
+    pub triangles: Vec<[[f32; 4]; 3]>,
     /// For each of them its index in the list that was given.
     pub order: Vec<u32>,
     /// Nodes from the root to the deepest leaf; at most [`MAX_DEPTH`].
@@ -25,7 +25,7 @@ pub struct Blockers {
 /// `shaders/kernels/bvh.glsl`.
 pub const MAX_DEPTH: u32 = 32;
 
-/// The most triangles: 3 GiB of [`GpuBlockerTriangle`], near what devices bind.
+/// The most triangles: 3 GiB of records, near what devices bind.
 pub const MAX_BLOCKERS: usize = 1 << 26;
 
 /// The largest coordinate of a vertex: squared sizes of boxes stay far from infinity.
@@ -72,9 +72,7 @@ impl Blockers {
         let boxes: Vec<Box3> =
             triangles.iter().map(|[a, b, c]| [a.min(*b).min(*c), a.max(*b).max(*c)]).collect();
         let (nodes, order) = Builder::new(limit, &boxes).build();
-        let record = |place: &u32| GpuBlockerTriangle {
-            vertices: triangles[*place as usize].map(|vertex| vertex.extend(0.0).to_array()),
-        };
+        let record = |place: &u32| triangles[*place as usize].map(|vertex| vertex.extend(0.0).to_array());
         let max_depth = depth(&nodes);
         Self { triangles: order.iter().map(record).collect(), nodes, order, max_depth }
     }
@@ -312,7 +310,7 @@ mod tests {
                 found[held] += 1;
                 let [min, max] = boxes[held];
                 assert!(min.cmpge(own[0]).all() && max.cmple(own[1]).all(), "box {held} leaves its leaf");
-                let record = blockers.triangles[place as usize].vertices;
+                let record = blockers.triangles[place as usize];
                 assert_eq!(record, triangle([min, max]).map(|vertex| vertex.extend(0.0).to_array()));
             }
         }

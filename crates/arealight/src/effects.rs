@@ -34,19 +34,11 @@ bitflags::bitflags! {
         /// Some disk or ellipse is textured ([`Light::texture`](crate::Light::texture)). Such a light needs
         /// [`Effects::ELLIPSE`], too.
         const TEXTURED_ELLIPSE = 1 << 12;
-        /// Some surface has a clear coat ([`Material::coat`](crate::Material::coat)), so the G-buffer's image of coats is read.
+        /// Some surface has a clear coat, so the G-buffer's image of coats is read.
         const COAT = 1 << 13;
         /// Some coat has a normal of its own, other than its surface's. Such a surface needs [`Effects::COAT`], too.
         const COAT_NORMAL = 1 << 14;
     }
-}
-
-/// A word that names no effect.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{name}' is no effect; there are {}", Effects::all())]
-pub struct UnknownEffect {
-    /// The word.
-    pub name: String,
 }
 
 impl Effects {
@@ -92,23 +84,6 @@ impl std::fmt::Display for Effects {
     }
 }
 
-impl std::str::FromStr for Effects {
-    type Err = UnknownEffect;
-
-    /// The set of names with commas between them, as [`Display`](std::fmt::Display) writes it; `none` is the empty one.
-    fn from_str(text: &str) -> Result<Self, UnknownEffect> {
-        let text = text.trim();
-        if text == "none" {
-            return Ok(Self::empty());
-        }
-        let effect = |name: &str| {
-            let found = Self::all().iter().find(|effect| effect.names() == [name]);
-            found.ok_or_else(|| UnknownEffect { name: name.to_owned() })
-        };
-        text.split(',').map(|name| effect(name.trim())).collect()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,16 +93,5 @@ mod tests {
         assert_eq!(Effects::all().names().len(), Effects::all().iter().count());
         assert_eq!(Effects::empty().to_string(), "none");
         assert_eq!((Effects::DIFFUSE | Effects::TWO_SIDED).to_string(), "diffuse, two_sided");
-    }
-
-    #[test]
-    fn a_set_is_read_as_it_is_written() {
-        for set in [Effects::all(), Effects::empty(), Effects::DIFFUSE | Effects::TEXTURED] {
-            assert_eq!(set.to_string().parse(), Ok(set));
-        }
-        for bad in ["", "diffuse,", "Diffuse", "diffuse glossy", "none, diffuse"] {
-            let error = bad.parse::<Effects>().unwrap_err();
-            assert!(error.to_string().contains("diffuse, glossy"), "{bad}: {error}");
-        }
     }
 }

@@ -1,6 +1,5 @@
 //! Data laid out as the GPU reads it (std430). A test compares every offset with the SPIR-V.
 
-use crate::pyramid::LevelKernel;
 use bytemuck::{Pod, Zeroable};
 
 /// A polygon or mesh light: `ArealightGpuLight` in `shaders/kernels/light_records.glsl`.
@@ -119,20 +118,6 @@ pub struct ShadowConstants {
     pub size: [u32; 2],
 }
 
-/// How a class of tiles is dispatched.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
-pub struct GpuTileClass {
-    /// Workgroups in x: `VkDispatchIndirectCommand` begins here.
-    pub x: u32,
-    /// Workgroups in y.
-    pub y: u32,
-    /// Workgroups in z: 1.
-    pub z: u32,
-    /// How many tiles there are in the class.
-    pub tile_count: u32,
-}
-
 /// A node of a binary hierarchy of boxes, [`crate::Blockers::nodes`]: `ArealightGpuBvhNode` in `shaders/kernels/bvh.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -153,14 +138,6 @@ impl GpuBvhNode {
     pub fn is_inner(&self) -> bool {
         self.count == 0 && self.first > 0
     }
-}
-
-/// A triangle that blocks light: three rows of `vec4`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Default, Pod, Zeroable)]
-pub struct GpuBlockerTriangle {
-    /// Positions relative to the origin in x, y, z; w is zero.
-    pub vertices: [[f32; 4]; 3],
 }
 
 /// Push constants of the kernel that loads an image into a layer of the light textures, made by
@@ -204,14 +181,4 @@ impl TextureLoadConstants {
     pub const RESAMPLING: u32 = 1;
     /// Called for: sRGB is decoded.
     pub const DECODING: u32 = 2;
-}
-
-/// Push constants of the kernel that makes a level of the light textures from the one before.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-pub struct TextureBlurConstants {
-    /// [`crate::pyramid::LevelKernel::weights`].
-    pub weights: [f32; LevelKernel::MAX_RADIUS as usize],
-    /// The layer of the first group in z.
-    pub first_layer: u32,
 }

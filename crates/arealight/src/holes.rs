@@ -9,52 +9,6 @@ use crate::light_shape::FLAT;
 use crate::{Light, LightShape};
 use glam::{DVec2, DVec3};
 
-/// Why a hole cannot be cut.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum HoleError {
-    /// A hole has three vertices or more.
-    #[error("{count} vertices given, a hole has at least 3")]
-    TooFewVertices {
-        /// How many it has.
-        count: usize,
-    },
-    /// A vertex is NaN, infinite, or farther from the origin than float32 reaches.
-    #[error("vertices[{index}]: {value} is not a finite float32 position")]
-    VertexNotFinite {
-        /// The vertex.
-        index: usize,
-        /// Its position.
-        value: DVec3,
-    },
-    /// A vertex is not in the polygon's plane.
-    #[error("vertices[{index}]: {distance} off the polygon's plane: a hole lies in it")]
-    OffPlane {
-        /// The vertex.
-        index: usize,
-        /// How far it is off.
-        distance: f64,
-    },
-    /// A vertex is outside the polygon, or in another hole.
-    #[error("vertices[{index}]: outside the polygon, or in another hole: merge holes that overlap")]
-    Outside {
-        /// The vertex.
-        index: usize,
-    },
-    /// It touches or crosses the outline, another hole or itself.
-    #[error("touches or crosses the outline, another hole or itself")]
-    Crosses,
-    /// It has no area, or the polygon has none.
-    #[error("no area: of the hole, or of the polygon it is in")]
-    NoArea,
-    /// The light is a mesh, disk, sphere or tube.
-    #[error("only polygons have holes: cut them into a face before it is added")]
-    NoPolygon,
-    /// There is no way to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
-    #[error("no straight way to the outline: vertices lie too near to each other")]
-    NoBridge,
-}
-
 impl Light {
     /// Cuts holes into a polygon, each an outline of its own, in either direction. The light's vertices become one outline
     /// that goes around all of them; its area and center are those of what is left, and its image stays where it is. A light has as many vertices more as the holes
@@ -72,18 +26,17 @@ impl Light {
     /// ```
     ///
     /// # Errors
-    /// What [`Light::validate`] refuses, and [`LightFault::BadHole`], which names the hole; then the light is as it was.
+    /// What [`Light::validate`] refuses, and what is wrong with a hole, which is named; then the light is as it was.
     pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightFault> {
         self.validate()?;
         if holes.is_empty() {
             return Ok(());
         }
-        let bad = |(hole, reason)| LightFault::BadHole { hole, reason };
         if !self.shape.is_polygonal() || self.shape.is_mesh() {
-            return Err(bad((0, HoleError::NoPolygon)));
+            return Err(LightFault::HolesNoPolygon);
         }
         let map = self.texture.as_ref().and_then(|texture| texture.map(&self.shape).ok());
-        let outline = with_holes(&self.shape, holes).map_err(bad)?;
+        let outline = with_holes(&self.shape, holes)?;
         // The holes' vertices are where the image is
         if let (Some(texture), Some(map)) = (&mut self.texture, map) {
             texture.uvs = outline.iter().map(|vertex| map.coordinate(*vertex)).collect();
@@ -101,9 +54,9 @@ struct Vertex {
 }
 
 /// The vertices of one outline around a polygon and its holes; else the hole that cannot be cut.
-fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, (usize, HoleError)> {
+fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, LightFault> {
     // Project onto the plane, so that the front is counter-clockwise
-    let normal = polygon.area_vector().try_normalize().ok_or((0, HoleError::NoArea))?;
+    let normal = polygon.area_vector().try_normalize().ok_or(LightFault::HoleNoArea { hole: 0 })?;
     let vertices = polygon.vertices();
     let (tangent, bitangent) = normal.any_orthonormal_pair();
     let anchor = vertices[0];
@@ -115,13 +68,12 @@ fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, 
     let size = vertices.iter().map(|vertex| vertex.distance(anchor)).fold(0.0, f64::max);
     let mut loops = Vec::new();
     for (number, hole) in holes.iter().enumerate() {
-        check_vertices(hole, |vertex| (vertex - anchor).dot(normal), size)
-            .map_err(|reason| (number, reason))?;
+        check_vertices((number, hole), |vertex| (vertex - anchor).dot(normal), size)?;
         // Holes go around clockwise
         let mut hole: Vec<Vertex> = hole.iter().map(flatten).collect();
         let area = doubled_area(&hole);
         if area == 0.0 {
-            return Err((number, HoleError::NoArea));
+            return Err(LightFault::HoleNoArea { hole: number });
         }
         if area > 0.0 {
             hole.reverse();
@@ -139,7 +91,7 @@ fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, 
         let start = rightmost(hole);
         let obstacles = loops[index..].iter().flat_map(|(_, hole)| edges(hole));
         let bridge = bridge(&outline, hole[start], &obstacles.collect::<Vec<_>>());
-        let at = bridge.ok_or((*number, HoleError::NoBridge))?;
+        let at = bridge.ok_or(LightFault::HoleNoBridge { hole: *number })?;
         // There, around, and back
         let around = (0..=hole.len()).map(|i| hole[(start + i) % hole.len()]);
         let rest = outline.split_off(at + 1);
@@ -150,31 +102,35 @@ fn with_holes(polygon: &LightShape, holes: &[Vec<DVec3>]) -> Result<Vec<DVec3>, 
 }
 
 /// Checks what can be told of a hole by itself.
-fn check_vertices(hole: &[DVec3], height: impl Fn(DVec3) -> f64, size: f64) -> Result<(), HoleError> {
-    if hole.len() < 3 {
-        return Err(HoleError::TooFewVertices { count: hole.len() });
+fn check_vertices(
+    (hole, vertices): (usize, &[DVec3]),
+    height: impl Fn(DVec3) -> f64,
+    size: f64,
+) -> Result<(), LightFault> {
+    if vertices.len() < 3 {
+        return Err(LightFault::HoleTooFewVertices { hole, count: vertices.len() });
     }
-    for (index, &value) in hole.iter().enumerate() {
+    for (index, &value) in vertices.iter().enumerate() {
         if !value.as_vec3().is_finite() {
-            return Err(HoleError::VertexNotFinite { index, value });
+            return Err(LightFault::HoleVertexNotFinite { hole, index, value });
         }
         let distance = height(value).abs();
         if distance > FLAT * size {
-            return Err(HoleError::OffPlane { index, distance });
+            return Err(LightFault::HoleOffPlane { hole, index, distance });
         }
     }
     Ok(())
 }
 
 /// Checks that holes are in the outline, none in another, and that nothing touches.
-fn check_places(outline: &[Vertex], holes: &[(usize, Vec<Vertex>)]) -> Result<(), (usize, HoleError)> {
+fn check_places(outline: &[Vertex], holes: &[(usize, Vec<Vertex>)]) -> Result<(), LightFault> {
     for (number, hole) in holes {
         let others = || holes.iter().filter(|(other, _)| other != number).map(|(_, other)| &other[..]);
         let misplaced = hole.iter().position(|vertex| {
             !is_inside(vertex.flat, outline) || others().any(|other| is_inside(vertex.flat, other))
         });
         if let Some(index) = misplaced {
-            return Err((*number, HoleError::Outside { index }));
+            return Err(LightFault::HoleOutside { hole: *number, index });
         }
         let around = || edges(outline).chain(others().flat_map(edges));
         let meets_others = edges(hole).any(|edge| around().any(|other| meet(edge, other)));
@@ -185,7 +141,7 @@ fn check_places(outline: &[Vertex], holes: &[(usize, Vec<Vertex>)]) -> Result<()
             (i + 2..count).any(|j| (j + 1) % count != i && meet(own[i], own[j])) || own[i][0] == own[i][1]
         });
         if meets_others || meets_itself {
-            return Err((*number, HoleError::Crosses));
+            return Err(LightFault::HoleCrosses { hole: *number });
         }
     }
     Ok(())
@@ -366,33 +322,33 @@ mod tests {
             let mut light = disk();
             let error = light.cut_holes(holes).unwrap_err();
             assert_eq!(light, disk(), "as it was");
-            match error {
-                LightFault::BadHole { hole, reason } => (hole, reason),
-                other => panic!("{other}"),
-            }
+            error
         };
         let good = regular([0.0; 2], 1.0, 5);
         let two = good[..2].to_vec();
-        assert_eq!(refused(&[good.clone(), two]), (1, HoleError::TooFewVertices { count: 2 }));
+        assert_eq!(refused(&[good.clone(), two]), LightFault::HoleTooFewVertices { hole: 1, count: 2 });
         let mut lifted = good.clone();
         lifted[3].z += 0.1;
-        assert!(matches!(refused(&[lifted]), (0, HoleError::OffPlane { index: 3, .. })));
+        assert!(matches!(refused(&[lifted]), LightFault::HoleOffPlane { hole: 0, index: 3, .. }));
         let mut not_finite = good.clone();
         not_finite[4].x = f64::NAN;
-        assert!(matches!(refused(&[not_finite]), (0, HoleError::VertexNotFinite { index: 4, .. })));
-        assert_eq!(refused(&[regular([7.0, 0.0], 1.0, 5)]), (0, HoleError::Outside { index: 0 }));
-        assert_eq!(refused(&[good.clone(), good.clone()]).0, 0);
+        assert!(matches!(refused(&[not_finite]), LightFault::HoleVertexNotFinite { hole: 0, index: 4, .. }));
+        assert_eq!(refused(&[regular([7.0, 0.0], 1.0, 5)]), LightFault::HoleOutside { hole: 0, index: 0 });
+        assert!(refused(&[good.clone(), good.clone()]).to_string().starts_with("holes[0]: "));
         let inner = regular([0.0; 2], 0.5, 5);
-        assert_eq!(refused(&[good.clone(), inner]), (1, HoleError::Outside { index: 0 }));
+        assert_eq!(refused(&[good.clone(), inner]), LightFault::HoleOutside { hole: 1, index: 0 });
         // Around all of another, across another, across itself, along a line
-        assert_eq!(refused(&[good.clone(), regular([0.0; 2], 2.0, 5)]), (0, HoleError::Outside { index: 0 }));
+        assert_eq!(
+            refused(&[good.clone(), regular([0.0; 2], 2.0, 5)]),
+            LightFault::HoleOutside { hole: 0, index: 0 }
+        );
         let needle = [[-3.0, 0.35], [3.0, 0.3], [3.0, 0.4]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec();
-        assert_eq!(refused(&[good.clone(), needle]), (0, HoleError::Crosses));
+        assert_eq!(refused(&[good.clone(), needle]), LightFault::HoleCrosses { hole: 0 });
         let bow_tie =
             [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.5]].map(|[x, y]| DVec3::new(x, y, 2.0)).to_vec();
-        assert_eq!(refused(&[bow_tie]), (0, HoleError::Crosses));
+        assert_eq!(refused(&[bow_tie]), LightFault::HoleCrosses { hole: 0 });
         let line = [0.0, 1.0, 0.5].map(|x| DVec3::new(x, 0.0, 2.0)).to_vec();
-        assert_eq!(refused(&[line]), (0, HoleError::NoArea));
+        assert_eq!(refused(&[line]), LightFault::HoleNoArea { hole: 0 });
         let message = disk().cut_holes(&[good[..2].to_vec()]).unwrap_err().to_string();
         assert_eq!(message, "holes[0]: 2 vertices given, a hole has at least 3");
     }

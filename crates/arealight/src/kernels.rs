@@ -157,14 +157,14 @@ const RADIANCE: Binding = write(
     "radiance_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "outgoing radiance in rgb, of the diffuse lobe alone with RadianceImages::Separate; 1 in a where there is a \
+    "outgoing radiance in rgb, of the diffuse lobe alone with ShadeOptions::separate_lobes; 1 in a where there is a \
      surface (rgba32f, or by RadianceFormat)",
 );
 const GLOSSY: Binding = write(
     "glossy_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "the glossy lobe's, likewise; used only with RadianceImages::Separate, else bind radiance_image's again",
+    "the glossy lobe's, likewise; used only with ShadeOptions::separate_lobes, else bind radiance_image's again",
 );
 
 const PICKS: Binding = write(
@@ -176,12 +176,12 @@ const PICKS: Binding = write(
 );
 
 const LOBE_HORIZONS: Binding =
-    read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: LobeHorizon[]");
+    read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: twelve floats per cell");
 const TILE_LISTS: Binding = write(
     "tile_lists",
     BindingKind::StorageBuffer,
     Access::ReadWrite,
-    "tiles::memory bytes; begins with a GpuTileClass per class, {0, 0, 1, 0}",
+    "tiles::memory bytes; begins with tiles::NO_TILES per class",
 );
 
 /// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by [`constant::CLASS`]. Push constants:
@@ -284,7 +284,7 @@ const SHADOWED: Binding = write(
 );
 const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
 const BLOCKER_TRIANGLES: Binding =
-    read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: GpuBlockerTriangle[]");
+    read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: vec4[3][]");
 
 const SHADOW_KEPT: Binding = write(
     "shadow_history",
@@ -431,12 +431,13 @@ pub static TEXTURE_LOAD: Kernel = Kernel {
 
 /// Makes a level of the light textures from the one before; an item a block of
 /// [`crate::plan::BLUR_BLOCK`] texels of the level and layer. Push constants:
-/// [`crate::gpu::TextureBlurConstants`].
+/// [`crate::pyramid::PyramidSize::weights`] of the level, six
+/// floats, and the first layer.
 pub static TEXTURE_BLUR: Kernel = Kernel {
     name: "texture_blur",
     spirv: include_bytes!("../spirv/texture_blur.spv"),
     local_size: [32, 2, 1],
-    push_constant_size: size_of::<crate::gpu::TextureBlurConstants>() as u32,
+    push_constant_size: 4 * (crate::pyramid::MOST_TAPS as u32 + 1),
     bindings: &[
         read("finer_level", BindingKind::SampledImage, "the level before, every layer (rgba16f)"),
         write("out_level", BindingKind::StorageImage, Access::Write, "the level, every layer (rgba16f)"),

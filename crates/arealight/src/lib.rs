@@ -1,7 +1,7 @@
 //! The vocabulary of Arealight: analytic area lights by linearly transformed cosines (LTC).
 //!
 //! A polygon, a material and a view go in; radiance comes out, with a known error, a known cost, and no
-//! noise. This crate says what a light, a material, a table and a kernel *are*; it knows nothing of Vulkan
+//! noise. This crate says what a light, a table and a kernel *are*; it knows nothing of Vulkan
 //! and of files. Every other crate speaks it.
 //!
 //! # Conventions
@@ -25,7 +25,6 @@
 //! | [`light_texture`] | textured lights |
 //! | [`texture_part`] | which part of an image becomes one |
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
-//! | [`material`] | metallic-roughness materials and the surface they make |
 //! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
 //! | [`blockers`] | what blocks light, for shadow rays: triangles in a hierarchy |
@@ -43,7 +42,6 @@ pub mod kernels;
 pub mod light;
 pub mod light_shape;
 pub mod light_texture;
-pub mod material;
 pub mod mesh;
 pub mod packed_lights;
 pub mod plan;
@@ -54,20 +52,17 @@ pub mod texture_part;
 pub mod tiles;
 
 pub use blockers::{BlockerError, Blockers};
-pub use effects::{Effects, UnknownEffect};
+pub use effects::Effects;
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;
-pub use holes::HoleError;
 pub use light::{Light, LightError, LightFault};
 pub use light_shape::{LightShape, TubeEnds};
-pub use light_texture::{LightTexture, TextureError, TextureMap};
-pub use material::{Coat, Material, Surface};
-pub use mesh::FaceError;
+pub use light_texture::{LightTexture, TextureMap};
 pub use packed_lights::{LightSummary, PackedLights};
 pub use pyramid::PyramidSize;
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
-pub use table::{GrazingDip, LightTable, TableDescription, TableError, TableSample};
-pub use texture_part::{TexturePart, TexturePartError, Wrap};
+pub use table::{LightTable, TableDescription, TableError, TableSample};
+pub use texture_part::{TextureError, TexturePart, Wrap};
 pub use tiles::TileClass;
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.

@@ -1,10 +1,8 @@
 //! Lights of every shape: what a host has one list of.
 
-use crate::holes::HoleError;
-use crate::light_texture::{LightTexture, TextureError, TextureMap};
-use crate::mesh::FaceError;
+use crate::light_texture::{LightTexture, TextureMap};
 use crate::{Effects, LightShape};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 /// A light of constant radiance, or a textured one.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -89,20 +87,142 @@ pub enum LightFault {
         /// The radiance given.
         value: Vec3,
     },
-    /// A hole cannot be cut into it.
-    #[error("holes[{hole}]: {reason}")]
-    BadHole {
+    /// A hole has three vertices or more.
+    #[error("holes[{hole}]: {count} vertices given, a hole has at least 3")]
+    HoleTooFewVertices {
         /// The hole.
         hole: usize,
-        /// What is wrong.
-        reason: HoleError,
+        /// How many it has.
+        count: usize,
     },
-    /// Its vertices are not shared out among its faces.
-    #[error("{0}")]
-    BadFaces(FaceError),
-    /// Its texture cannot be mapped onto it.
-    #[error("texture: {0}")]
-    BadTexture(TextureError),
+    /// A hole's vertex is NaN, infinite, or farther from the origin than float32 reaches.
+    #[error("holes[{hole}]: vertices[{index}]: {value} is not a finite float32 position")]
+    HoleVertexNotFinite {
+        /// The hole.
+        hole: usize,
+        /// The vertex.
+        index: usize,
+        /// Its position.
+        value: DVec3,
+    },
+    /// A hole's vertex is not in the polygon's plane.
+    #[error("holes[{hole}]: vertices[{index}]: {distance} off the polygon's plane: a hole lies in it")]
+    HoleOffPlane {
+        /// The hole.
+        hole: usize,
+        /// The vertex.
+        index: usize,
+        /// How far it is off.
+        distance: f64,
+    },
+    /// A hole's vertex is outside the polygon, or in another hole.
+    #[error(
+        "holes[{hole}]: vertices[{index}]: outside the polygon, or in another hole: merge holes that overlap"
+    )]
+    HoleOutside {
+        /// The hole.
+        hole: usize,
+        /// The vertex.
+        index: usize,
+    },
+    /// A hole touches or crosses the outline, another hole or itself.
+    #[error("holes[{hole}]: touches or crosses the outline, another hole or itself")]
+    HoleCrosses {
+        /// The hole.
+        hole: usize,
+    },
+    /// A hole has no area, or the polygon has none.
+    #[error("holes[{hole}]: no area: of the hole, or of the polygon it is in")]
+    HoleNoArea {
+        /// The hole.
+        hole: usize,
+    },
+    /// There is no way from a hole to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
+    #[error("holes[{hole}]: no straight way to the outline: vertices lie too near to each other")]
+    HoleNoBridge {
+        /// The hole.
+        hole: usize,
+    },
+    /// The light is a mesh, disk, sphere or tube, which has no holes.
+    #[error("holes: only polygons have holes: cut them into a face before it is added")]
+    HolesNoPolygon,
+    /// A face has three vertices or more.
+    #[error("faces[{face}]: {count} vertices, a face has at least 3")]
+    FaceTooFewVertices {
+        /// The face.
+        face: usize,
+        /// How many it has.
+        count: u32,
+    },
+    /// A face has more vertices than the GPU's count of them reaches.
+    #[error("faces[{face}]: {count} vertices, a face has at most {}", LightShape::MAX_FACE)]
+    FaceTooManyVertices {
+        /// The face.
+        face: usize,
+        /// How many it has.
+        count: u32,
+    },
+    /// The faces have not as many vertices as the light.
+    #[error(
+        "faces: {faces} vertices in all, but the light has {vertices}: each face has vertices of its own"
+    )]
+    FaceCount {
+        /// Vertices of all faces.
+        faces: u64,
+        /// Vertices of the light.
+        vertices: usize,
+    },
+    /// A triangle refers to a vertex that is not there.
+    #[error("triangles[{triangle}]: vertex {index}, but there are {count}")]
+    TriangleOutOfRange {
+        /// The triangle.
+        triangle: usize,
+        /// The index that it has.
+        index: u32,
+        /// How many vertices there are.
+        count: usize,
+    },
+    /// No triangle has an area.
+    #[error("triangles: none has an area")]
+    TrianglesNoArea,
+    /// The light has several faces, which one image does not fit.
+    #[error("texture: a mesh is not textured; give the faces that are lights of their own")]
+    TextureOfMesh,
+    /// The light is a sphere or tube, which are not textured.
+    #[error("texture: only polygons and disks are textured; a sphere or tube has one colour")]
+    TextureOfSolid,
+    /// There must be one texture coordinate per vertex.
+    #[error("texture: uvs: {uvs} given for {vertices} vertices; give one each")]
+    TextureCount {
+        /// Coordinates.
+        uvs: usize,
+        /// Vertices.
+        vertices: usize,
+    },
+    /// A texture coordinate is NaN or outside of the image.
+    #[error(
+        "texture: uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the light shows \
+         into a layer of its own"
+    )]
+    TextureOutside {
+        /// The vertex.
+        index: usize,
+        /// Its coordinate.
+        value: DVec2,
+    },
+    /// The texture coordinates bend: they are no affine function of the positions.
+    #[error(
+        "texture: uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its mapping bends"
+    )]
+    TextureBent {
+        /// The vertex that is farthest off.
+        index: usize,
+        /// How far, in texture coordinates.
+        off: f64,
+    },
+    /// The texture coordinates lie on a line, or the polygon's vertices do.
+    #[error("texture: uvs: they span no area; a light of one colour needs no texture")]
+    TextureFlat,
     /// Its texture is a layer that the light textures do not have.
     #[error("texture: layer {layer} is not there: there are {layers}")]
     NoTextureLayer {
@@ -150,10 +270,9 @@ impl Light {
                 return Err(LightFault::VertexNotFinite { index, value });
             }
         }
-        self.shape.check_faces().map_err(LightFault::BadFaces)?;
+        self.shape.check_faces()?;
         self.check_radiance()?;
-        let map = self.texture.as_ref().map(|texture| texture.map(&self.shape)).transpose();
-        map.map_err(LightFault::BadTexture)
+        self.texture.as_ref().map(|texture| texture.map(&self.shape)).transpose()
     }
 
     pub(crate) fn check_radiance(&self) -> Result<(), LightFault> {

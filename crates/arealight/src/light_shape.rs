@@ -3,7 +3,6 @@
 use crate::Light;
 use crate::gpu::{GpuLight, GpuShape};
 use crate::light::LightFault;
-use crate::light_texture::TextureError;
 use crate::mesh::area_of;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
@@ -250,10 +249,10 @@ impl Light {
         let Some(texture) = &self.texture else { return Ok(None) };
         let fault = match self.shape {
             LightShape::Disk { .. } if texture.uvs.is_empty() => return Ok(Some(texture.layer)),
-            LightShape::Disk { .. } => TextureError::Count { uvs: texture.uvs.len(), vertices: 0 },
-            _ => TextureError::Solid,
+            LightShape::Disk { .. } => LightFault::TextureCount { uvs: texture.uvs.len(), vertices: 0 },
+            _ => LightFault::TextureOfSolid,
         };
-        Err(LightFault::BadTexture(fault))
+        Err(fault)
     }
 }
 

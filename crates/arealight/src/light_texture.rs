@@ -1,6 +1,7 @@
 //! Textured lights: a layer of the light textures, mapped onto a polygon or disk.
 
 use crate::LightShape;
+use crate::light::LightFault;
 use glam::{DMat2, DVec2, DVec3};
 
 /// An image that multiplies a light's radiance.
@@ -16,50 +17,6 @@ pub struct LightTexture {
     ///
     /// What lies outside of an image, when it is repeated, is loaded into a layer of its own.
     pub uvs: Vec<DVec2>,
-}
-
-/// Why a texture cannot be mapped onto a light.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum TextureError {
-    /// The light has several faces, which one image does not fit.
-    #[error("a mesh is not textured; give the faces that are lights of their own")]
-    Mesh,
-    /// The light is a sphere or tube.
-    #[error("only polygons and disks are textured; a sphere or tube has one colour")]
-    Solid,
-    /// There must be one coordinate a vertex.
-    #[error("uvs: {uvs} given for {vertices} vertices; give one each")]
-    Count {
-        /// Coordinates.
-        uvs: usize,
-        /// Vertices.
-        vertices: usize,
-    },
-    /// A coordinate is NaN or outside of the image.
-    #[error(
-        "uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the light shows \
-         into a layer of its own"
-    )]
-    Outside {
-        /// The vertex.
-        index: usize,
-        /// Its coordinate.
-        value: DVec2,
-    },
-    /// The coordinates bend: they are no affine function of the positions.
-    #[error(
-        "uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its mapping bends"
-    )]
-    Bent {
-        /// The vertex that is farthest off.
-        index: usize,
-        /// How far, in texture coordinates.
-        off: f64,
-    },
-    /// The coordinates lie on a line, or the polygon's vertices do.
-    #[error("uvs: they span no area; a light of one colour needs no texture")]
-    Flat,
 }
 
 /// A texture's place in the world: `corner + axis_u s + axis_v t` shows the texture coordinate `low + size (s, t)`.
@@ -100,10 +57,10 @@ impl LightTexture {
     /// Checks the coordinates, and maps them onto `shape`, whose vertices are valid.
     ///
     /// # Errors
-    /// [`TextureError`] says what is wrong with them.
-    pub fn map(&self, shape: &LightShape) -> Result<TextureMap, TextureError> {
+    /// [`LightFault`] says what is wrong with them.
+    pub fn map(&self, shape: &LightShape) -> Result<TextureMap, LightFault> {
         match *shape {
-            LightShape::Mesh { .. } if shape.is_mesh() => return Err(TextureError::Mesh),
+            LightShape::Mesh { .. } if shape.is_mesh() => return Err(LightFault::TextureOfMesh),
             LightShape::Polygon(_) | LightShape::Mesh { .. } => {}
             LightShape::Disk { center, axis_u, axis_v } => {
                 return Ok(TextureMap {
@@ -114,21 +71,21 @@ impl LightTexture {
                     size: DVec2::ONE,
                 });
             }
-            LightShape::Sphere { .. } | LightShape::Tube { .. } => return Err(TextureError::Solid),
+            LightShape::Sphere { .. } | LightShape::Tube { .. } => return Err(LightFault::TextureOfSolid),
         }
         let (uvs, vertices) = (&self.uvs, shape.vertices());
         if uvs.len() != vertices.len() {
-            return Err(TextureError::Count { uvs: uvs.len(), vertices: vertices.len() });
+            return Err(LightFault::TextureCount { uvs: uvs.len(), vertices: vertices.len() });
         }
         let inside = |uv: &DVec2| uv.min_element() >= -OUTSIDE && uv.max_element() <= 1.0 + OUTSIDE;
         if let Some(index) = uvs.iter().position(|uv| !inside(uv)) {
-            return Err(TextureError::Outside { index, value: uvs[index] });
+            return Err(LightFault::TextureOutside { index, value: uvs[index] });
         }
 
         // Work in the polygon's plane, in units of its size
         let center = shape.center();
         let scale = vertices.iter().map(|vertex| vertex.distance(center)).fold(0.0, f64::max);
-        let normal = shape.area_vector().try_normalize().ok_or(TextureError::Flat)?;
+        let normal = shape.area_vector().try_normalize().ok_or(LightFault::TextureFlat)?;
         let (tangent, bitangent) = normal.any_orthonormal_pair();
         let flat = |vertex: &DVec3| {
             let offset = (*vertex - center) / scale;
@@ -148,12 +105,12 @@ impl LightTexture {
         let to_uv = cross * spread.inverse();
         let from_uv = to_uv.inverse();
         if !to_uv.is_finite() || !from_uv.is_finite() || to_uv.determinant().abs() < 1e-12 {
-            return Err(TextureError::Flat);
+            return Err(LightFault::TextureFlat);
         }
         let off = |index: usize| (mean_uv + to_uv * (flat(&vertices[index]) - mean_p)).distance(uvs[index]);
         let worst = (0..uvs.len()).max_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(0);
         if off(worst) > STRAIGHT {
-            return Err(TextureError::Bent { index: worst, off: off(worst) });
+            return Err(LightFault::TextureBent { index: worst, off: off(worst) });
         }
 
         // The box around the coordinates, back in the world
@@ -196,7 +153,7 @@ mod tests {
         }
     }
 
-    fn map(light: &Light) -> Result<TextureMap, TextureError> {
+    fn map(light: &Light) -> Result<TextureMap, LightFault> {
         light.texture.as_ref().unwrap().map(&light.shape)
     }
 
@@ -228,18 +185,18 @@ mod tests {
             light
         };
         let light = with(&[[0.0, 0.0]]);
-        assert_eq!(map(&light), Err(TextureError::Count { uvs: 1, vertices: 4 }));
+        assert_eq!(map(&light), Err(LightFault::TextureCount { uvs: 1, vertices: 4 }));
         assert_eq!(
             light.validate().unwrap_err().to_string(),
             "texture: uvs: 1 given for 4 vertices; give one each"
         );
         let outside = with(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]);
-        assert!(matches!(map(&outside), Err(TextureError::Outside { index: 1, .. })));
+        assert!(matches!(map(&outside), Err(LightFault::TextureOutside { index: 1, .. })));
         let not_a_number = with(&[[0.0, 0.0], [1.0, 0.0], [1.0, f64::NAN], [0.0, 1.0]]);
-        assert!(matches!(map(&not_a_number), Err(TextureError::Outside { index: 2, .. })));
+        assert!(matches!(map(&not_a_number), Err(LightFault::TextureOutside { index: 2, .. })));
         let bent = with(&[[0.0, 0.0], [1.0, 0.0], [0.7, 0.7], [0.0, 1.0]]);
-        assert!(matches!(map(&bent), Err(TextureError::Bent { .. })));
+        assert!(matches!(map(&bent), Err(LightFault::TextureBent { .. })));
         let line = with(&[[0.0, 0.0], [1.0, 1.0], [1.0, 1.0], [0.0, 0.0]]);
-        assert_eq!(map(&line), Err(TextureError::Flat));
+        assert_eq!(map(&line), Err(LightFault::TextureFlat));
     }
 }

@@ -10,51 +10,6 @@ use crate::light::LightFault;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// Why the faces of a light cannot be used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FaceError {
-    /// A face has three vertices or more.
-    #[error("faces[{face}]: {count} vertices, a face has at least 3")]
-    TooFewVertices {
-        /// The face.
-        face: usize,
-        /// How many it has.
-        count: u32,
-    },
-    /// The faces have not as many vertices as the light.
-    #[error(
-        "faces: {faces} vertices in all, but the light has {vertices}: each face has vertices of its own"
-    )]
-    Count {
-        /// Vertices of all faces.
-        faces: u64,
-        /// Vertices of the light.
-        vertices: usize,
-    },
-    /// A face has more vertices than the GPU's count of them reaches.
-    #[error("faces[{face}]: {count} vertices, a face has at most {}", LightShape::MAX_FACE)]
-    TooManyVertices {
-        /// The face.
-        face: usize,
-        /// How many it has.
-        count: u32,
-    },
-    /// A triangle refers to a vertex that is not there.
-    #[error("triangles[{triangle}]: vertex {index}, but there are {count}")]
-    IndexOutOfRange {
-        /// The triangle.
-        triangle: usize,
-        /// The index that it has.
-        index: u32,
-        /// How many vertices there are.
-        count: usize,
-    },
-    /// No triangle has an area.
-    #[error("triangles: none has an area")]
-    NoArea,
-}
-
 impl LightShape {
     /// The most vertices of a face: what float32 counts.
     pub const MAX_FACE: u32 = 1 << 24;
@@ -73,13 +28,13 @@ impl LightShape {
     /// ```
     ///
     /// # Errors
-    /// [`LightFault::BadFaces`] where an index is out of range or no triangle has an area.
+    /// [`LightFault`] where an index is out of range or no triangle has an area.
     pub fn from_triangles(positions: &[DVec3], triangles: &[[u32; 3]]) -> Result<Self, LightFault> {
         let mut shape = Self::default();
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&index| index as usize >= positions.len()) {
                 let count = positions.len();
-                return Err(LightFault::BadFaces(FaceError::IndexOutOfRange { triangle, index, count }));
+                return Err(LightFault::TriangleOutOfRange { triangle, index, count });
             }
             let corners = corners.map(|index| positions[index as usize]);
             // What is not finite stays, so that it is named
@@ -87,7 +42,7 @@ impl LightShape {
                 shape.add_face(&corners);
             }
         }
-        if shape.vertices().is_empty() { Err(LightFault::BadFaces(FaceError::NoArea)) } else { Ok(shape) }
+        if shape.vertices().is_empty() { Err(LightFault::TrianglesNoArea) } else { Ok(shape) }
     }
 
     /// Adds a flat face, an outline as that of a polygon: a polygon becomes a mesh of two faces, one without vertices the
@@ -135,19 +90,19 @@ impl LightShape {
     }
 
     /// Checks that the faces share out the vertices.
-    pub(crate) fn check_faces(&self) -> Result<(), FaceError> {
+    pub(crate) fn check_faces(&self) -> Result<(), LightFault> {
         let Self::Mesh { vertices, faces } = self else { return Ok(()) };
         for (face, &count) in faces.iter().enumerate() {
             if count < 3 {
-                return Err(FaceError::TooFewVertices { face, count });
+                return Err(LightFault::FaceTooFewVertices { face, count });
             }
             if count > Self::MAX_FACE {
-                return Err(FaceError::TooManyVertices { face, count });
+                return Err(LightFault::FaceTooManyVertices { face, count });
             }
         }
         let faces: u64 = faces.iter().map(|&count| u64::from(count)).sum();
         let vertices = vertices.len();
-        if faces == vertices as u64 { Ok(()) } else { Err(FaceError::Count { faces, vertices }) }
+        if faces == vertices as u64 { Ok(()) } else { Err(LightFault::FaceCount { faces, vertices }) }
     }
 
     /// The radius of a disk that from any distance covers as much as the faces add up to, or more: what bounds that know a light by the
@@ -319,7 +274,7 @@ mod tests {
         );
         let mut cut = squares();
         let error = cut.cut_holes(&[squares().shape.vertices()[..3].to_vec()]).unwrap_err().to_string();
-        assert_eq!(error, "holes[0]: only polygons have holes: cut them into a face before it is added");
+        assert_eq!(error, "holes: only polygons have holes: cut them into a face before it is added");
         let from = |triangles: &[[u32; 3]]| {
             LightShape::from_triangles(squares().shape.vertices(), triangles).unwrap_err().to_string()
         };

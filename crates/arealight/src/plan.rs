@@ -1,23 +1,10 @@
-//! Which kernel runs, specialised how, over how many groups: a pass described without Vulkan, for the
+//! Which kernel runs, specialised how: a pass described without Vulkan, for the
 //! recorder of this project or for one of your own.
 
-use crate::gpu::{TextureBlurConstants, TextureLoadConstants};
-use crate::kernels::{self, Kernel};
-use crate::pyramid::{LevelKernel, PyramidSize};
+use crate::kernels;
+use crate::pyramid::{MOST_TAPS, PyramidSize};
 use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
-
-/// Where the shade kernel takes positions from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum PositionSource {
-    /// Binding `position` holds positions relative to the origin; w = 0 marks a pixel without a surface.
-    #[default]
-    Position = 0,
-    /// Binding `position` holds depth as stored, in either direction; exactly 0 or 1, one of which every depth
-    /// buffer is cleared to, marks a pixel without a surface.
-    Depth = 1,
-}
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
 /// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, alike in every layout. A G-buffer of any other layout is read by a
@@ -51,17 +38,6 @@ pub enum Output {
     Add = 1,
 }
 
-/// Where the shade kernel stores the radiance of a surface's two lobes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[repr(u32)]
-pub enum RadianceImages {
-    /// Their sum in one image.
-    #[default]
-    Combined = 0,
-    /// The diffuse lobe's and the glossy lobe's in an image each, for what treats them apart: denoisers, skin, fog.
-    Separate = 2,
-}
-
 /// The texel format of the images that the shade kernel stores radiance to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -81,14 +57,16 @@ pub struct ShadeOptions {
     pub surfaces: Effects,
     /// What accuracy the host pays for.
     pub quality: Quality,
-    /// Where positions come from.
-    pub position: PositionSource,
+    /// What the binding `g_position` holds. Depth as stored, in either direction, of which exactly 0 or 1, one of which every depth
+    /// buffer is cleared to, marks a pixel without a surface; or else positions relative to the origin, of which w = 0 does.
+    pub from_depth: bool,
     /// How surfaces are stored.
     pub g_buffer: GBufferLayout,
     /// Overwrite or add.
     pub output: Output,
-    /// One image, or one a lobe.
-    pub images: RadianceImages,
+    /// Whether the diffuse and the glossy lobe's radiance go to an image each, for what treats them apart (denoisers, skin, fog), or
+    /// their sum to one.
+    pub separate_lobes: bool,
     /// Their format.
     pub format: RadianceFormat,
     /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a light and a lobe for each. With 0
@@ -102,10 +80,10 @@ impl Default for ShadeOptions {
         Self {
             surfaces: Effects::DIFFUSE | Effects::GLOSSY,
             quality: Quality::default(),
-            position: PositionSource::default(),
+            from_depth: false,
             g_buffer: GBufferLayout::default(),
             output: Output::default(),
-            images: RadianceImages::default(),
+            separate_lobes: false,
             format: RadianceFormat::default(),
             shadow_rays: 0,
         }
@@ -131,30 +109,9 @@ impl ShadeOptions {
         self.surfaces.contains(Effects::COAT)
     }
 
-    /// [`ShadeOptions::output`], [`ShadeOptions::images`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
+    /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
     pub fn output_bits(self) -> u32 {
-        self.output as u32 | self.images as u32 | self.format as u32
-    }
-}
-
-/// One dispatch: a kernel, the values of its specialisation constants, and its number of groups.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Dispatch {
-    /// The kernel.
-    pub kernel: &'static Kernel,
-    /// Pairs of constant id and value.
-    pub specialization: Vec<(u32, u32)>,
-    /// Groups in x, y and z.
-    pub groups: [u32; 3],
-}
-
-/// The shade pass over a G-buffer of `width` × `height` pixels, for a frame's lights. Its module is that of
-/// [`Kernel::words_for`] with [`ShadeOptions::format`].
-pub fn shade(options: ShadeOptions, lights: LightSummary, width: u32, height: u32) -> Dispatch {
-    Dispatch {
-        kernel: &kernels::SHADE,
-        specialization: shade_specialization(options, lights),
-        groups: kernels::SHADE.groups_for([width, height, 1]),
+        self.output as u32 | u32::from(self.separate_lobes) << 1 | self.format as u32
     }
 }
 
@@ -175,7 +132,7 @@ pub fn shade_tiles_specialization(
 fn specialization_of_class(options: ShadeOptions, lights: LightSummary, class: u32) -> Vec<(u32, u32)> {
     let mut values = lobe_specialization(options.effects(lights), options.quality);
     values.extend([
-        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::OUTPUT, options.output_bits()),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::FOOTPRINT, options.quality.footprint as u32),
@@ -255,7 +212,7 @@ pub fn shadow_history_specialization(options: ShadeOptions, history: ShadowHisto
 pub fn shadow_rays_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
     vec![
         (kernels::constant::EFFECTS, (options.surfaces & Effects::SURFACES).bits()),
-        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
@@ -288,7 +245,7 @@ pub fn classify_specialization(
 ) -> Vec<(u32, u32)> {
     vec![
         (kernels::constant::EFFECTS, options.effects(lights).bits()),
-        (kernels::constant::POSITION_SOURCE, options.position as u32),
+        (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
@@ -308,51 +265,29 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     ]
 }
 
-/// The pass that loads an image into a layer of light textures of `size`, with constants that are made by
-/// [`crate::TexturePart::load_constants`].
-pub fn texture_load(size: PyramidSize, constants: &TextureLoadConstants) -> Dispatch {
-    let [width, height] = size.extent(0);
-    Dispatch {
-        kernel: &kernels::TEXTURE_LOAD,
-        specialization: vec![(kernels::constant::CALLED_FOR, constants.called_for())],
-        groups: kernels::TEXTURE_LOAD.groups_for([width, height, 1]),
-    }
-}
-
 /// Width and height in texels of what an item of the blur kernel makes.
 pub const BLUR_BLOCK: [u32; 2] = [4, 4];
 
 /// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the largest, and
 /// of all.
-pub const BLUR_RADII: [u32; 3] = [3, 4, LevelKernel::MAX_RADIUS];
+pub const BLUR_RADII: [u32; 3] = [3, 4, MOST_TAPS as u32];
+
+/// The groups that make `level` of so many layers.
+pub fn blur_groups(size: PyramidSize, level: u32, layers: u32) -> [u32; 3] {
+    let extent = size.extent(level);
+    let [columns, rows] = [0, 1].map(|axis| extent[axis].div_ceil(BLUR_BLOCK[axis]));
+    kernels::TEXTURE_BLUR.groups_for([columns, rows, layers])
+}
 
 /// The place in [`BLUR_RADII`] of the fewest taps that are enough for a level.
 pub fn blur_variant(size: PyramidSize, level: u32) -> usize {
-    let radius = size.kernel(level).radius;
-    BLUR_RADII.iter().position(|enough| *enough >= radius).unwrap_or(BLUR_RADII.len() - 1)
-}
-
-/// The pass that makes `level`, from 1 on, of `layers` of light textures of `size`, and its constants.
-pub fn texture_blur(
-    size: PyramidSize,
-    level: u32,
-    layers: std::ops::Range<u32>,
-) -> (Dispatch, TextureBlurConstants) {
-    let (extent, kernel) = (size.extent(level), size.kernel(level));
-    let [columns, rows] = [0, 1].map(|axis| extent[axis].div_ceil(BLUR_BLOCK[axis]));
-    let radius = BLUR_RADII[blur_variant(size, level)];
-    let dispatch = Dispatch {
-        kernel: &kernels::TEXTURE_BLUR,
-        specialization: vec![(kernels::constant::RADIUS, radius)],
-        groups: kernels::TEXTURE_BLUR.groups_for([columns, rows, layers.end - layers.start]),
-    };
-    (dispatch, TextureBlurConstants { weights: kernel.weights, first_layer: layers.start })
+    let taps = size.taps(level);
+    BLUR_RADII.iter().position(|enough| *enough >= taps).unwrap_or(BLUR_RADII.len() - 1)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::TexturePart;
 
     fn counts(light_count: u32, quad_count: u32, shape_count: u32) -> LightSummary {
         LightSummary { light_count, quad_count, shape_count, ..LightSummary::default() }
@@ -378,13 +313,8 @@ mod tests {
 
     #[test]
     fn groups_cover_every_pixel() {
-        let dispatch = shade(ShadeOptions::default(), LightSummary::default(), 17, 8);
-        assert_eq!(dispatch.groups, [3, 1, 1]);
-        let size = PyramidSize::new(128, 64).unwrap();
-        let constants = TexturePart::default().load_constants([128, 64], size, 0, false).unwrap();
-        assert_eq!(texture_load(size, &constants).groups, [4, 32, 1]);
-        let (second, constants) = texture_blur(size, 1, 2..5);
-        assert_eq!((second.groups, constants.first_layer), ([1, 4, 3], 2));
+        assert_eq!(kernels::SHADE.groups_for([17, 8, 1]), [3, 1, 1]);
+        assert_eq!(blur_groups(PyramidSize::new(128, 64).unwrap(), 1, 3), [1, 4, 3]);
     }
 
     #[test]

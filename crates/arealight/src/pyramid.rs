@@ -21,6 +21,8 @@
 //!
 //! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/gpu/pyramid.rs`).
 
+use crate::texture_part::TextureError;
+
 /// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask for more get
 /// this.
 pub const WIDEST_BLUR: f64 = 0.353_553_390_593_273_8;
@@ -52,35 +54,8 @@ pub struct PyramidSize {
     height: u32,
 }
 
-/// A size that no pyramid has.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "light texture size {width} x {height}: each must be a power of two from {} to {}",
-    PyramidSize::SMALLEST,
-    PyramidSize::LARGEST
-)]
-pub struct BadPyramidSize {
-    /// The width given.
-    pub width: u32,
-    /// The height given.
-    pub height: u32,
-}
-
-/// How a level is made from the one before it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LevelKernel {
-    /// Half of a symmetric kernel, the innermost tap first: a texel is the sum of `weights[i]` times the texels at
-    /// `i + 1/2` texels of the finer level to both sides of its centre. The whole kernel sums to one. Zero beyond
-    /// `radius`.
-    pub weights: [f32; LevelKernel::MAX_RADIUS as usize],
-    /// Taps to a side.
-    pub radius: u32,
-}
-
-impl LevelKernel {
-    /// The most taps to a side.
-    pub const MAX_RADIUS: u32 = 6;
-}
+/// The most taps to a side that make a level from the one before it: [`PyramidSize::weights`].
+pub const MOST_TAPS: usize = 6;
 
 impl PyramidSize {
     /// The smallest width and height.
@@ -91,13 +66,13 @@ impl PyramidSize {
     /// A size, checked.
     ///
     /// # Errors
-    /// [`BadPyramidSize`] where a side is not a power of two within the limits.
-    pub fn new(width: u32, height: u32) -> Result<Self, BadPyramidSize> {
+    /// [`TextureError::LayerSize`] where a side is not a power of two within the limits.
+    pub fn new(width: u32, height: u32) -> Result<Self, TextureError> {
         let fits = |side: u32| side.is_power_of_two() && (Self::SMALLEST..=Self::LARGEST).contains(&side);
         if fits(width) && fits(height) {
             Ok(Self { width, height })
         } else {
-            Err(BadPyramidSize { width, height })
+            Err(TextureError::LayerSize { width, height })
         }
     }
 
@@ -140,29 +115,39 @@ impl PyramidSize {
         .sqrt()
     }
 
-    /// How `level`, from 1 on, is made from the level before.
-    pub fn kernel(self, level: u32) -> LevelKernel {
-        // The variance to add, in squares of the finer level's texels
-        let added = 4.0 * self.variance(level) - self.variance(level.saturating_sub(1));
-        // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape. Level 1, which adds
-        // 2.89, would be all but a box of six: a checker's error there is 3.6 % with six taps, 1.2 % with eight
-        let radius = match added {
-            ..=2.4 => 3,
-            ..=3.6 => 4,
-            ..=4.6 => 5,
-            _ => 6,
-        };
-        // The Gaussian whose samples have that variance
+    /// How `level`, from 1 on, is made from the level before. Half of a symmetric kernel, the innermost tap first: a texel is the sum of
+    /// `weights[i]` times the texels at `i + 1/2` texels of the finer level to both sides of its centre. The whole kernel sums to one.
+    /// Zero from [`PyramidSize::taps`] on.
+    pub fn weights(self, level: u32) -> [f32; MOST_TAPS] {
+        // The Gaussian whose samples have the variance to add
+        let (added, taps) = (self.added_variance(level), self.taps(level));
         let (mut low, mut high) = (0.1, 1e4);
         for _ in 0..100 {
             let middle = 0.5 * (low + high);
-            if discrete_variance(&gaussian(middle, radius)) < added {
+            if discrete_variance(&gaussian(middle, taps)) < added {
                 low = middle;
             } else {
                 high = middle;
             }
         }
-        LevelKernel { weights: gaussian(low, radius).map(|weight| weight as f32), radius }
+        gaussian(low, taps).map(|weight| weight as f32)
+    }
+
+    /// How many taps to a side `level`, from 1 on, is made with.
+    pub fn taps(self, level: u32) -> u32 {
+        // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape. Level 1, which adds
+        // 2.89, would be all but a box of six: a checker's error there is 3.6 % with six taps, 1.2 % with eight
+        match self.added_variance(level) {
+            ..=2.4 => 3,
+            ..=3.6 => 4,
+            ..=4.6 => 5,
+            _ => MOST_TAPS as u32,
+        }
+    }
+
+    /// What a level's variance is more than that of the level before, in squares of the finer level's texels.
+    fn added_variance(self, level: u32) -> f64 {
+        4.0 * self.variance(level) - self.variance(level.saturating_sub(1))
     }
 
     /// The level, between two, at which a trilinear lookup is blurred with a standard deviation of `blur` texels of
@@ -186,12 +171,12 @@ impl PyramidSize {
 }
 
 /// Half of a normalised kernel of samples of a Gaussian of the variance `variance` at half texels.
-fn gaussian(variance: f64, radius: u32) -> [f64; LevelKernel::MAX_RADIUS as usize] {
+fn gaussian(variance: f64, taps: u32) -> [f64; MOST_TAPS] {
     let sample = |i: usize| {
         let x = i as f64 + 0.5;
-        if i < radius as usize { (-x * x / (2.0 * variance)).exp() } else { 0.0 }
+        if i < taps as usize { (-x * x / (2.0 * variance)).exp() } else { 0.0 }
     };
-    let samples: [f64; LevelKernel::MAX_RADIUS as usize] = std::array::from_fn(sample);
+    let samples: [f64; MOST_TAPS] = std::array::from_fn(sample);
     let sum = 2.0 * samples.iter().sum::<f64>();
     samples.map(|sample| sample / sum)
 }
@@ -244,11 +229,10 @@ mod tests {
         let size = PyramidSize::new(256, 256).unwrap();
         let mut variance = 0.0;
         for level in 1..size.levels() {
-            let kernel = size.kernel(level);
-            let half = kernel.weights.map(f64::from);
+            let half = size.weights(level).map(f64::from);
             assert!((2.0 * half.iter().sum::<f64>() - 1.0).abs() < 1e-6, "level {level} keeps the mean");
             assert!(half.windows(2).all(|pair| pair[1] <= pair[0]), "level {level} falls to the sides");
-            assert!(half[kernel.radius as usize..].iter().all(|weight| *weight == 0.0));
+            assert!(half[size.taps(level) as usize..].iter().all(|weight| *weight == 0.0));
             variance = (variance + discrete_variance(&half)) / 4.0;
             assert!((variance - size.variance(level)).abs() < 1e-6, "level {level}: {variance}");
         }

@@ -49,7 +49,7 @@ pub enum Lobes {
     /// The fitted table: twelve texel reads a pixel.
     #[default]
     Table = 0,
-    /// Formulas fitted to it ([`crate::table::ggx_formula`]): about a hundred multiply-adds a pixel and no texture, at 1.2
+    /// Formulas fitted to it (`arealight_formula_sample`): about a hundred multiply-adds a pixel and no texture, at 1.2
     /// to 1.35 times the table's error. For roughness above .15; nearer to a mirror the table is far better.
     Formula = 1,
 }

@@ -21,7 +21,7 @@
 //! The magnitude texel is `(albedo, schlick)`: the integrals over the hemisphere of `f cos` and of
 //! `f cos (1 - cos theta_vh)^5`, for a BRDF `f` without Fresnel term, so that the specular albedo is
 //! `f0 * albedo + (f90 - f0) * schlick`. Near the horizon these change within a width of alpha, which no grid resolves. So
-//! they may be stored with that part added in closed form, a [`GrazingDip`], which a lookup takes away again: what is
+//! they may be stored with that part added in closed form, [`ggx_grazing_dip`], which a lookup takes away again: what is
 //! interpolated is smooth, and the albedos are within 2e-3 at every view. The description says if it was added, and
 //! so does the third channel of the GPU's magnitude texel.
 //!
@@ -33,14 +33,12 @@
 
 use glam::{DMat3, DVec3};
 
-mod formula;
 mod grazing;
 mod horizons;
 
 pub use horizons::LobeHorizon;
 
-pub use formula::{Formula, MIN_COS_VIEW, ggx_formula};
-pub use grazing::{GrazingDip, ggx_grazing_dip};
+pub use grazing::ggx_grazing_dip;
 
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;
@@ -52,8 +50,27 @@ pub struct TableDescription {
     pub brdf: String,
     /// What made it, for people: program, version, settings.
     pub made_by: String,
-    /// What the magnitude texels hold beside the albedos.
-    pub grazing_dip: GrazingDip,
+    /// Whether [`ggx_grazing_dip`] is added to the albedos in the magnitude texels, and taken away again by a lookup. Without, for a BRDF of
+    /// which nothing is known, they are the albedos.
+    pub ggx_dip: bool,
+}
+
+impl TableDescription {
+    /// What is added to `(albedo, schlick)` at a roughness and the cosine of a view. Roughness and cosine are clamped as
+    /// [`LightTable::lookup`] does.
+    pub fn dip(&self, roughness: f64, cos_view: f64) -> [f64; 2] {
+        if self.ggx_dip {
+            ggx_grazing_dip(clamped_roughness(roughness), clamped_cosine(cos_view))
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// How far an albedo at a node may lie outside of its range: not at all, or by twice what rounding to float16 moves
+    /// a number above 1.
+    fn tolerance(&self) -> f32 {
+        if self.ggx_dip { 1e-3 } else { 0.0 }
+    }
 }
 
 /// A fitted table, valid by construction: sizes agree, and every number is finite.
@@ -163,7 +180,7 @@ impl TableSample {
 
 impl LightTable {
     /// Makes a table of one matrix from its texels. The magnitudes hold what the description says: see
-    /// [`TableDescription::grazing_dip`].
+    /// [`TableDescription::ggx_dip`].
     ///
     /// # Errors
     /// [`TableError`] says which layer, texel and channel is wrong.
@@ -188,9 +205,8 @@ impl LightTable {
             finite("magnitude", x, y, a)?;
             invertible("matrix", x, y, m)?;
             // The Schlick part is a part: with more, a surface without F90 would reflect less than nothing
-            let dip = description.grazing_dip;
-            let [albedo, schlick] = without_dip(dip, size, x, y, *a);
-            let tolerance = dip.tolerance();
+            let [albedo, schlick] = without_dip(&description, size, x, y, *a);
+            let tolerance = description.tolerance();
             if albedo > 1.0 + tolerance || schlick < -tolerance || schlick > albedo + tolerance {
                 return Err(TableError::Magnitude { x, y, albedo, schlick });
             }
@@ -246,7 +262,7 @@ impl LightTable {
         let texels = self.magnitude.iter().enumerate();
         let albedos = |(i, &texel)| {
             let (x, y) = (i as u32 % self.size, i as u32 / self.size);
-            without_dip(self.description.grazing_dip, self.size, x, y, texel)
+            without_dip(&self.description, self.size, x, y, texel)
         };
         texels.map(albedos).collect()
     }
@@ -263,10 +279,7 @@ impl LightTable {
     /// channels and in the third how much of GGX's dip was added to it, 1 or 0, layer 2 the matrix of Schlick's weight,
     /// in a table of one matrix that again; four `f32` a texel.
     pub fn texels(&self) -> Vec<[f32; 4]> {
-        let dip = match self.description.grazing_dip {
-            GrazingDip::None => 0.0,
-            GrazingDip::Ggx => 1.0,
-        };
+        let dip = f32::from(u8::from(self.description.ggx_dip));
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], dip, 0.0]);
         let schlick = self.schlick_matrix.as_ref().unwrap_or(&self.matrix);
         self.matrix.iter().copied().chain(magnitude).chain(schlick.iter().copied()).collect()
@@ -295,7 +308,7 @@ impl LightTable {
         let inverse =
             |texels: &[[f32; 4]]| inverse_from_texel(interpolated(texels, &weights), alpha, cos_view);
         let [albedo, schlick] = interpolated(&self.magnitude, &weights);
-        let dip = self.description.grazing_dip.at(roughness, cos_view);
+        let dip = self.description.dip(roughness, cos_view);
         let albedo = (albedo - dip[0]).clamp(0.0, 1.0);
         let schlick = (schlick - dip[1]).clamp(0.0, albedo);
         let lobe = inverse(&self.matrix);
@@ -304,23 +317,23 @@ impl LightTable {
     }
 }
 
-/// A perceptual roughness as it is looked up.
-fn clamped_roughness(roughness: f64) -> f64 {
+/// A perceptual roughness as it is looked up: within [0, 1], its alpha not below [`crate::MIN_ALPHA`]. NaN counts as 0.
+pub fn clamped_roughness(roughness: f64) -> f64 {
     roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt())
 }
 
-/// The cosine of a view as it is looked up.
-fn clamped_cosine(cos_view: f64) -> f64 {
+/// The cosine of a view as it is looked up: within [0, 1]. NaN counts as 0.
+pub fn clamped_cosine(cos_view: f64) -> f64 {
     cos_view.clamp(0.0, 1.0).max(0.0)
 }
 
 /// The albedos that a magnitude texel holds.
-fn without_dip(dip: GrazingDip, size: u32, x: u32, y: u32, texel: [f32; 2]) -> [f32; 2] {
-    if dip == GrazingDip::None {
+fn without_dip(description: &TableDescription, size: u32, x: u32, y: u32, texel: [f32; 2]) -> [f32; 2] {
+    if !description.ggx_dip {
         return texel;
     }
     let (roughness, cos_view) = LightTable::node(size, x, y);
-    let dip = dip.at(roughness, cos_view);
+    let dip = description.dip(roughness, cos_view);
     std::array::from_fn(|i| (f64::from(texel[i]) - dip[i]) as f32)
 }
 

@@ -37,10 +37,22 @@ impl Default for TexturePart {
     }
 }
 
-/// Why a part of an image cannot be loaded.
+/// Why light textures cannot be made, or a part of an image not be loaded into one.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum TexturePartError {
+pub enum TextureError {
+    /// A size that no light texture has.
+    #[error(
+        "light texture size {width} x {height}: each must be a power of two from {} to {}",
+        PyramidSize::SMALLEST,
+        PyramidSize::LARGEST
+    )]
+    LayerSize {
+        /// The width given.
+        width: u32,
+        /// The height given.
+        height: u32,
+    },
     /// The image has no texels, or too many.
     #[error(
         "source of {width} x {height} texels: each must be from 1 to {}; scale it down",
@@ -89,26 +101,26 @@ impl TexturePart {
     /// `decode` tells that the image holds sRGB in a format that does not decode by itself.
     ///
     /// # Errors
-    /// [`TexturePartError`] where the image or the part is empty, too large, or not a number.
+    /// [`TextureError`] where the image or the part is empty, too large, or not a number.
     pub fn load_constants(
         &self,
         source: [u32; 2],
         size: PyramidSize,
         layer: u32,
         decode: bool,
-    ) -> Result<TextureLoadConstants, TexturePartError> {
+    ) -> Result<TextureLoadConstants, TextureError> {
         let [width, height] = source;
         if !source.iter().all(|side| (1..=Self::LARGEST_SOURCE).contains(side)) {
-            return Err(TexturePartError::Source { width, height });
+            return Err(TextureError::Source { width, height });
         }
         if !(self.low.is_finite() && self.low.abs().max_element() <= Self::FARTHEST) {
-            return Err(TexturePartError::Low { low: self.low });
+            return Err(TextureError::Low { low: self.low });
         }
         let texels = DVec2::new(width.into(), height.into());
         let covered = self.size * texels;
         if !(covered.is_finite() && covered.min_element() > 0.0 && covered.max_element() <= Self::MOST_TEXELS)
         {
-            return Err(TexturePartError::Size { size: self.size, width, height });
+            return Err(TextureError::Size { size: self.size, width, height });
         }
 
         // From one texel of the layer to the next, and the first, from the middle of texel 0
@@ -149,7 +161,7 @@ impl TexturePart {
 mod tests {
     use super::*;
 
-    fn constants(part: TexturePart, source: [u32; 2]) -> Result<TextureLoadConstants, TexturePartError> {
+    fn constants(part: TexturePart, source: [u32; 2]) -> Result<TextureLoadConstants, TextureError> {
         part.load_constants(source, PyramidSize::new(128, 64).unwrap(), 3, false)
     }
 
@@ -188,11 +200,11 @@ mod tests {
     #[test]
     fn what_cannot_be_loaded_is_named() {
         let part = TexturePart::default();
-        assert_eq!(constants(part, [0, 4]), Err(TexturePartError::Source { width: 0, height: 4 }));
-        assert_eq!(constants(part, [4, 4097]), Err(TexturePartError::Source { width: 4, height: 4097 }));
+        assert_eq!(constants(part, [0, 4]), Err(TextureError::Source { width: 0, height: 4 }));
+        assert_eq!(constants(part, [4, 4097]), Err(TextureError::Source { width: 4, height: 4097 }));
         for low in [DVec2::new(0.0, f64::NAN), DVec2::new(1e9, 0.0), DVec2::splat(f64::INFINITY)] {
             let error = constants(TexturePart { low, ..part }, [4, 4]);
-            assert!(matches!(error, Err(TexturePartError::Low { .. })), "{error:?}");
+            assert!(matches!(error, Err(TextureError::Low { .. })), "{error:?}");
         }
         for size in [DVec2::ZERO, DVec2::new(1.0, -1.0), DVec2::new(f64::NAN, 1.0), DVec2::splat(5000.0)] {
             let error = constants(TexturePart { size, ..part }, [4, 4]).unwrap_err();

@@ -5,7 +5,6 @@
 //! has measurements.
 
 use crate::LightSummary;
-use crate::gpu::GpuTileClass;
 use crate::plan::Output;
 
 /// Width and height of a tile in pixels.
@@ -84,11 +83,17 @@ pub fn unpack(tile: u32) -> [u32; 2] {
     [tile & 0xffff, tile >> 16]
 }
 
+/// Words of a class at the buffer's begin: `VkDispatchIndirectCommand`, and how many tiles there are in the class.
+pub const CLASS_WORDS: usize = 4;
+
+/// The words of a class without a tile.
+pub const NO_TILES: [u32; CLASS_WORDS] = [0, 0, 1, 0];
+
 /// Words before the classes' lists of tiles.
-pub const FIRST_LIST: u32 = (TileClass::ALL.len() * size_of::<GpuTileClass>() / 4) as u32;
+pub const FIRST_LIST: u32 = (TileClass::ALL.len() * CLASS_WORDS) as u32;
 
 /// Bytes of the buffer of tile lists, for an image of `size` pixels and lists of `capacity` lights: the classes' dispatches
-/// ([`GpuTileClass`]), their lists of tiles, and a record a tile.
+/// ([`CLASS_WORDS`]), their lists of tiles, and a record a tile.
 pub fn memory(size: [u32; 2], capacity: u32) -> u64 {
     let [columns, rows] = tile_counts(size).map(u64::from);
     let record = u64::from(RECORD_HEADER) + u64::from(capacity);

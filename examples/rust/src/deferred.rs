@@ -8,7 +8,7 @@ use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::PackedLights;
 use arealight::gpu::GpuLight;
-use arealight::plan::{Output, PositionSource, ShadeOptions, TileOptions};
+use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight_vk::{
     Context, HostDevice, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage,
     TileResources,
@@ -70,7 +70,7 @@ impl<'a> Deferred<'a> {
         // doc: pass
         // Make the pass for the way in which your surfaces are stored; it takes every kind of light
         let options = ShadeOptions {
-            position: PositionSource::Depth,
+            from_depth: true,
             output: Output::Add, // to the emission that was drawn
             ..ShadeOptions::default()
         };
@@ -170,7 +170,7 @@ impl<'a> Deferred<'a> {
                 specular: None, // without Effects::SPECULAR_INPUT
                 coat: None,     // without Effects::COAT
                 radiance: Resource::StorageImage { view: g_buffer.radiance.view },
-                glossy: None, // its radiance is in that image too, without RadianceImages::Separate
+                glossy: None, // its radiance is in that image too, without ShadeOptions::separate_lobes
                 picks: None,  // without shadow rays
                 tiles: Some(TileResources {
                     lobe_horizons: Resource::buffer(lobe_horizons.raw),

@@ -1,7 +1,6 @@
 //! Blockers along rays, found in a hierarchy on the GPU, against every triangle in turn in float64; and what blocks in a scene.
 
 use arealight::Blockers;
-use arealight::gpu::GpuBlockerTriangle;
 use arealight_engine::host::Buffer;
 use arealight_oracle::visibility::is_hidden;
 use arealight_scene::{Image, Scene, SceneBuffers, Texture, Wrap};
@@ -55,7 +54,7 @@ fn upload(engine: &TestEngine, rays: &[Ray]) -> Buffer {
 fn walked(engine: &TestEngine, blockers: &Blockers, rays: &[Ray]) -> Vec<f64> {
     let host = engine.host();
     let nodes = host.storage_buffer("nodes", &blockers.nodes).unwrap();
-    let nothing = GpuBlockerTriangle::default();
+    let nothing = [[0.0_f32; 4]; 3];
     let triangles = if blockers.triangles.is_empty() { &[nothing][..] } else { &blockers.triangles };
     let triangles = host.storage_buffer("triangles", triangles).unwrap();
     let given = upload(engine, rays);

@@ -2,11 +2,11 @@
 
 use arealight::plan::{GBufferLayout, ShadeOptions};
 use arealight::{
-    Coat, Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, MIN_ALPHA, Quality, Surface,
-    TubeEnds,
+    Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, MIN_ALPHA, Quality, TubeEnds,
 };
 use arealight_engine::EvalPoint;
 use arealight_oracle::frame::SurfaceFrame;
+use arealight_oracle::material::{Coat, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
 use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
 use arealight_tests::{Comparison, Random, TestEngine, lambert_surface, point, rounding};
@@ -256,7 +256,7 @@ fn every_layout_has_its_coats_in_an_image_of_their_own() {
             assert_ne!(shade(layout, coats, texel), shade(layout, Effects::COAT, texel), "{layout:?}");
         }
         // Against a point without a G-buffer
-        let material = arealight::Material {
+        let material = arealight_oracle::material::Material {
             base_color: Vec3::new(0.8, 0.6, 0.4),
             metalness: 0.25,
             roughness: 0.5,

@@ -1,8 +1,8 @@
 //! The constants of the GLSL sources, which Rust and the shaders must number alike: effects, flags, choices.
 
 use arealight::gpu;
-use arealight::plan::{GBufferLayout, Output, PositionSource, RadianceFormat, RadianceImages, ShadeOptions};
-use arealight::pyramid::LevelKernel;
+use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions};
+use arealight::pyramid::MOST_TAPS;
 use arealight::{
     Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, blockers, tiles,
 };
@@ -142,7 +142,7 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("SPLIT", number(Footprint::Split as u32)),
     ];
     assert_constants(OPTIONS_GLSL, "AREALIGHT_FOOTPRINT_", &footprints);
-    let depth = [("DEPTH", number(PositionSource::Depth as u32))];
+    let depth = [("DEPTH", number(u32::from(true)))];
     assert_constants(POSITION_GLSL, "POSITION_FROM_", &depth);
     let classes = TileClass::ALL.map(|class| {
         let name = match class {
@@ -156,7 +156,7 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(TILES_GLSL, "CLASS_", &classes);
     let tiles = [
         ("SIDE", number(tiles::SIDE)),
-        ("CLASS_WORDS", (size_of::<gpu::GpuTileClass>() / 4) as f64),
+        ("CLASS_WORDS", tiles::CLASS_WORDS as f64),
         ("FIRST_LIST", number(tiles::FIRST_LIST)),
         ("RECORD_HEADER", number(tiles::RECORD_HEADER)),
         ("ALL_LIGHTS", f64::from(u32::MAX)),
@@ -172,13 +172,13 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(G_BUFFER_GLSL, "G_BUFFER_", &layouts);
     let output = [
         ("ADD", number(Output::Add as u32)),
-        ("APART", number(RadianceImages::Separate as u32)),
+        ("APART", number(ShadeOptions { separate_lobes: true, ..ShadeOptions::default() }.output_bits())),
         ("HALF", number(RadianceFormat::Rgba16Float as u32)),
     ];
     assert_constants(OUTPUT_TEXEL_GLSL, "OUTPUT_", &output);
     let most = number(ShadeOptions::MOST_SHADOW_RAYS);
     assert_constants(SHADOW_PICKS_GLSL, "MOST_SHADOW_RAYS", &[("", most)]);
-    assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", number(LevelKernel::MAX_RADIUS))]);
+    assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", MOST_TAPS as f64)]);
     let shapes = [
         ("DISK", number(gpu::GpuShape::DISK)),
         ("SPHERE", number(gpu::GpuShape::SPHERE)),

@@ -1,10 +1,11 @@
 //! A whole frame: visibility, shading and the reference, each against its own independent twin.
 
-use arealight::plan::{PositionSource, ShadeOptions};
-use arealight::{Coat, Effects, Light, Quality, Surface};
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, Light, Quality};
 use arealight_engine::host::{Image, Usage};
 use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
+use arealight_oracle::material::{Coat, Surface};
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::frame::scene;
@@ -60,7 +61,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let coats = texels(&g_buffer.coat);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
-        let material = arealight::Material {
+        let material = arealight_oracle::material::Material {
             base_color: colors[i].truncate(),
             metalness: colors[i].w,
             roughness: normals[i].w,
@@ -269,7 +270,7 @@ fn depth_gives_the_same_as_positions() {
         let clip = projection * view * target.extend(1.0);
         let pixel = OnePixel::new(&engine, target.extend(1.0), clip.z / clip.w);
         let by_position = pixel.shade(ShadeOptions::default(), &[lamp()], camera, None);
-        let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
+        let from_depth = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
         let matrix = (projection * view).inverse();
         let by_depth = pixel.shade(from_depth, &[lamp()], camera, Some(matrix));
         // Depth in float32, unprojected: 1e-5 of the distance

@@ -189,7 +189,7 @@ fn what_is_not_finite_gives_zero_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
     let lights = poisoned();
     let square = lights[0].map(|v| DVec3::new(v[0].into(), v[1].into(), v[2].into()));
-    let surface = arealight::Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
+    let surface = arealight_oracle::material::Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
     let mut given = Cases::new(&vec![point(surface, DVec3::Z, square.into(), true); lights.len()]);
     given.vertices = lights.iter().flatten().map(|v| [v[0], v[1], v[2] - 2.0, 0.0]).collect();
     for mut level in Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]) {

@@ -3,7 +3,8 @@
 
 use arealight::gpu;
 use arealight::kernels::{self, Access, BindingKind, Kernel};
-use arealight::plan::{RadianceImages, ShadeOptions, shade_specialization, shade_tiles_specialization};
+use arealight::plan::{ShadeOptions, shade_specialization, shade_tiles_specialization};
+use arealight::pyramid::MOST_TAPS;
 use arealight::{Effects, LightSummary, TileClass};
 use arealight_tests::kernel::BLOCKERS;
 use arealight_tool_kernels as tool;
@@ -242,7 +243,7 @@ fn the_comparison_can_fail() {
 fn a_pruned_module_binds_what_its_frames_use() {
     let options = ShadeOptions {
         surfaces: Effects::all(),
-        images: RadianceImages::Separate,
+        separate_lobes: true,
         shadow_rays: 1,
         ..ShadeOptions::default()
     };
@@ -479,7 +480,7 @@ fn the_texture_kernels_constants_have_the_same_offsets() {
         (
             &kernels::TEXTURE_BLUR,
             "TextureBlurConstants",
-            layout!(gpu::TextureBlurConstants, weights, first_layer),
+            vec![("weights".to_owned(), 0), ("first_layer".to_owned(), 4 * MOST_TAPS as u32)],
         ),
     ] {
         assert_offsets(&module(kernel), structure, &expected);
@@ -506,7 +507,7 @@ fn array_strides_are_the_sizes_in_rust() {
         (&tool::kernels::REFERENCE, "light_sampling", size_of::<tool::gpu::GpuLightSampling>()),
         (&tool::kernels::REFERENCE, "light_triangles", size_of::<tool::gpu::GpuLightTriangle>()),
         (&BLOCKERS, "nodes", size_of::<gpu::GpuBvhNode>()),
-        (&BLOCKERS, "blocker_triangles", size_of::<gpu::GpuBlockerTriangle>()),
+        (&BLOCKERS, "blocker_triangles", size_of::<[[f32; 4]; 3]>()),
         (&tool::kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
         (&tool::kernels::VISIBILITY, "triangles", size_of::<tool::gpu::GpuTriangle>()),
         (&tool::kernels::VISIBILITY, "materials", size_of::<tool::gpu::GpuMaterial>()),

@@ -1,6 +1,6 @@
 //! Where radiance goes: overwritten or added, in one image or apart, in 32 bits or 16.
 
-use arealight::plan::{Output, RadianceFormat, RadianceImages, ShadeOptions};
+use arealight::plan::{Output, RadianceFormat, ShadeOptions};
 use arealight::{Effects, Light};
 use arealight_tests::TestEngine;
 use arealight_tests::one_pixel::{BEFORE, OnePixel, lamp};
@@ -44,7 +44,7 @@ fn lobes_apart_are_those_of_one_image(engine: &TestEngine) {
     let lights = [lamp(), Light { radiance: Vec3::new(0.5, 0.25, 7.0), ..lamp() }];
     let shade = |options| surface(engine).shade_images(options, &lights, CAMERA, None);
     let only = |effects| shade(ShadeOptions { surfaces: effects, ..ShadeOptions::default() })[0];
-    let apart = ShadeOptions { images: RadianceImages::Separate, ..ShadeOptions::default() };
+    let apart = ShadeOptions { separate_lobes: true, ..ShadeOptions::default() };
 
     // Each is to the bit what a pass of that lobe alone gives
     let [diffuse, glossy] = shade(apart);
@@ -71,17 +71,15 @@ fn sixteen_bits_are_the_nearest_to_thirty_two_and_saturate(engine: &TestEngine) 
     let nearest = |value: Vec4| Vec4::from_array(value.to_array().map(|v| f16::from_f32(v).to_f32()));
     // The one is beyond the largest number of sixteen bits in two channels, and near the smallest in the third
     let bright = Light { radiance: Vec3::new(1e7, 2e38, 1e-4), ..lamp() };
-    for (output, images) in
-        [(Output::Overwrite, RadianceImages::Combined), (Output::Add, RadianceImages::Separate)]
-    {
-        let single = ShadeOptions { output, images, ..ShadeOptions::default() };
+    for (output, separate_lobes) in [(Output::Overwrite, false), (Output::Add, true)] {
+        let single = ShadeOptions { output, separate_lobes, ..ShadeOptions::default() };
         let half = ShadeOptions { format: RadianceFormat::Rgba16Float, ..single };
         let shade = |options, light: &Light| {
             surface(engine).shade_images(options, std::slice::from_ref(light), CAMERA, None)
         };
         let exact = shade(single, &lamp());
         let expected = exact.map(nearest);
-        assert_eq!(shade(half, &lamp()), expected, "{output:?} {images:?}");
+        assert_eq!(shade(half, &lamp()), expected, "{output:?} {separate_lobes}");
         assert_ne!(exact, expected, "sixteen bits do not hold what thirty-two do");
 
         for (half, single) in shade(half, &bright).into_iter().zip(shade(single, &bright)) {
@@ -118,7 +116,7 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         picks: None,
         tiles: None,
     };
-    let apart = ShadeOptions { images: RadianceImages::Separate, ..ShadeOptions::default() };
+    let apart = ShadeOptions { separate_lobes: true, ..ShadeOptions::default() };
     // SAFETY: no submission uses the pass, and nothing is written where an error is returned.
     let pass = unsafe { ShadePass::new(engine.context(), apart) }.unwrap();
     for (glossy, words) in [

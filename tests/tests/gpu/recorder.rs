@@ -1,7 +1,7 @@
 //! A host's mistakes have typed answers that name the field; and what the recorder publishes is what it does.
 
 use arealight::kernels::{self, FRAME_BINDINGS, constant};
-use arealight::plan::{PositionSource, ShadeOptions};
+use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary};
 use arealight_tests::TestEngine;
 use arealight_tool_kernels::kernels::EVAL;
@@ -71,7 +71,7 @@ fn frames_that_cannot_be_shaded_are_refused_by_field() {
         pass.prepare(&lights(3, 2, 0, Effects::POLYGON)).unwrap();
         pass.prepare(&lights(2, 2, 1, Effects::SPHERE)).unwrap();
     });
-    let from_depth = ShadeOptions { position: PositionSource::Depth, ..ShadeOptions::default() };
+    let from_depth = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
     recording(&engine, from_depth, |pass, commands, set| {
         // SAFETY: As above.
         let error = unsafe { pass.record(commands, set, &frame()) }.unwrap_err();

@@ -22,7 +22,7 @@ fn expected_with(table: &LightTable, point: &EvalPoint) -> DVec3 {
 }
 
 /// Polygons of 3 to 12 vertices, convex and concave, above, across and below the horizon.
-fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight::Surface) -> Vec<EvalPoint> {
+fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight_oracle::material::Surface) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     (0..COUNT)
         .map(|i| {
@@ -117,7 +117,7 @@ fn glossy_follows_the_table_down_to_mirrors() {
 
 #[test]
 fn fresnel_and_both_lobes_add_up() {
-    let points = lights(3, |random| arealight::Surface {
+    let points = lights(3, |random| arealight_oracle::material::Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: random.unit(),
@@ -132,7 +132,7 @@ fn fresnel_and_both_lobes_add_up() {
 #[test]
 fn every_way_to_the_glossy_lobe_follows_its_twin() {
     // Rough enough that the part of a lobe above the surface, which both horizons divide by, is not small
-    let points = lights(9, |random| arealight::Surface {
+    let points = lights(9, |random| arealight_oracle::material::Surface {
         diffuse_albedo: DVec3::ZERO,
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: 1.0,

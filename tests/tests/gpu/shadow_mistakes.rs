@@ -1,7 +1,7 @@
 //! What a host may get wrong about shadows: each is an error that names the field, and nothing is recorded.
 
 use crate::recorder::field;
-use arealight::plan::{Output, RadianceImages, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{scene, with_renderer};
 use arealight_vk::{
@@ -24,8 +24,8 @@ fn options_that_no_shadow_can_be_made_with_are_refused() {
     assert_eq!(refused(with_rays(5)).as_deref(), Some("shadow_rays"));
     let adds = ShadeOptions { output: Output::Add, ..with_rays(1) };
     assert_eq!(refused(adds).as_deref(), Some("output"));
-    let separate = ShadeOptions { images: RadianceImages::Separate, ..with_rays(1) };
-    assert_eq!(refused(separate).as_deref(), Some("images"));
+    let separate = ShadeOptions { separate_lobes: true, ..with_rays(1) };
+    assert_eq!(refused(separate).as_deref(), Some("separate_lobes"));
     // The twins
     assert_eq!(refused(with_rays(4)), None);
     assert_eq!(refused(ShadeOptions { shadow_rays: 0, ..adds }), None);

@@ -1,9 +1,10 @@
 //! The Monte Carlo reference with shadows, against the oracle's exact visibility.
 
-use arealight::{Light, LightShape, Material, TubeEnds};
+use arealight::{Light, LightShape, TubeEnds};
 use arealight_engine::host::Usage;
 use arealight_engine::{Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
+use arealight_oracle::material::Material;
 use arealight_oracle::shading::{RelativeLight, truth};
 use arealight_oracle::visibility::visible_parts;
 use arealight_scene::{Camera, Scene, SceneBuffers};

@@ -1,7 +1,8 @@
 //! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces of every kind.
 
 use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Material, Quality, TubeEnds};
+use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Quality, TubeEnds};
+use arealight_oracle::material::Material;
 use arealight_oracle::shading::{RelativeLight, ltc_on};
 use arealight_oracle::visibility::visible_parts;
 use arealight_tests::TestEngine;

@@ -2,12 +2,12 @@
 
 use arealight::plan::ShadeOptions;
 use arealight::{
-    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, Material, PackedLights, Quality,
-    TubeEnds,
+    Effects, Light, LightShape, LightSummary, LightTable, LightTexture, PackedLights, Quality, TubeEnds,
 };
 use arealight_benches::pictures;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_engine::{Engine, Reference, SceneRenderer};
+use arealight_oracle::material::Material;
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};

@@ -85,7 +85,7 @@ fn compare_with_oracle(cases: &[(ShapeCase, bool)], found: &[Vec3], quality: Qua
     for ((case, diffuse), found) in cases.iter().zip(found) {
         let ShapeCase { name, surface, normal, view, light, .. } = case;
         let by = |alpha: f64| {
-            let surface = arealight::Surface { alpha: surface.alpha * alpha, ..*surface };
+            let surface = arealight_oracle::material::Surface { alpha: surface.alpha * alpha, ..*surface };
             shape_ltc_on(quality, &table, &surface, *normal, *view, light).unwrap()
         };
         // Relative to what the light sends when it fills the sky

@@ -3,8 +3,9 @@
 
 use arealight::gpu::GpuLight;
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, Horizon, Light, LightShape, LightTable, Material, PackedLights};
+use arealight::{Effects, Horizon, Light, LightShape, LightTable, PackedLights};
 use arealight_engine::host::{Image, ImageDescription, Usage};
+use arealight_oracle::material::Material;
 use arealight_tests::lobe::{Lobe, Seen};
 use arealight_tests::{Cases, Comparison, Level, Path, TestEngine};
 use arealight_tool_kernels::gpu::GpuCase;

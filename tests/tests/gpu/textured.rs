@@ -1,9 +1,8 @@
 //! Textured lights: energy, orientation, and the cases that have no easy answer.
 
-use arealight::{
-    Footprint, FormFactor, Fresnel, Horizon, Light, LightTexture, PyramidSize, Quality, Surface,
-};
+use arealight::{Footprint, FormFactor, Fresnel, Horizon, Light, LightTexture, PyramidSize, Quality};
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
+use arealight_oracle::material::Surface;
 use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
 use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};

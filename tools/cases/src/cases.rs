@@ -7,7 +7,8 @@
 mod coat;
 mod fields;
 
-use arealight::{Light, LightShape, LightTexture, MIN_ALPHA, Surface, TextureError, TextureMap, TubeEnds};
+use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
+use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
@@ -384,7 +385,7 @@ impl Case {
             };
             match texture.map(&light.vertices) {
                 Ok(map) => light.image = Some(ShownImage { texture: image, map }),
-                Err(reason) => return unsupported(format!("light.uv: {reason}")),
+                Err(reason) => return unsupported(format!("light.{reason}")),
             }
         }
         Ok(SupportedCase {
@@ -487,7 +488,7 @@ impl Case {
 
 impl CaseTexture {
     /// Where the image is on a polygon.
-    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, TextureError> {
+    fn map(&self, vertices: &[DVec3]) -> Result<TextureMap, LightFault> {
         LightTexture { layer: 0, uvs: self.uv.clone() }.map(&LightShape::Polygon(vertices.to_vec()))
     }
 }

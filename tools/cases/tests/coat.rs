@@ -1,12 +1,13 @@
 //! Clear coats: the truth against the reference, and the fitted lobe against the truth.
 
-use arealight::{Coat, LightTable, Surface};
+use arealight::LightTable;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{Case, CaseMaterial, read_cases};
 use arealight_cases::measure::relative_error;
 use arealight_oracle::cubature::{Region, Settings, angles};
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::ggx::Ggx;
+use arealight_oracle::material::{Coat, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, truth};
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -2,7 +2,8 @@
 
 use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
-use arealight::{Coat, Effects, Light, PackedLights, Quality, Surface};
+use arealight::{Effects, Light, PackedLights, Quality};
+use arealight_oracle::material::{Coat, Surface};
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;

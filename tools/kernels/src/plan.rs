@@ -2,8 +2,19 @@
 
 use crate::kernels::{EVAL, EVAL_SHAPES};
 use arealight::kernels::{Kernel, constant};
-use arealight::plan::{Dispatch, ShadeOptions, shade_specialization};
+use arealight::plan::{ShadeOptions, shade_specialization};
 use arealight::{Effects, LightSummary, Quality};
+
+/// One dispatch: a kernel, the values of its specialisation constants, and its number of groups.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dispatch {
+    /// The kernel.
+    pub kernel: &'static Kernel,
+    /// Pairs of constant id and value.
+    pub specialization: Vec<(u32, u32)>,
+    /// Groups in x, y and z.
+    pub groups: [u32; 3],
+}
 
 /// The eval pass: the shade kernel's functions over a list of `case_count` shading points.
 pub fn eval(effects: Effects, quality: Quality, case_count: u32) -> Dispatch {

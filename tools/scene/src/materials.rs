@@ -3,7 +3,7 @@
 use crate::load::Loader;
 use crate::meshes::Primitive;
 use crate::{SceneError, SceneMaterial, images};
-use arealight::Material;
+use arealight_oracle::material::Material;
 use glam::Vec3;
 use gltf::json;
 use gltf::json::material::AlphaMode;

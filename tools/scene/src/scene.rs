@@ -1,8 +1,9 @@
 //! What a scene holds.
 
 use crate::{Camera, SceneError, SceneLightTexture};
+use arealight::Light;
 pub use arealight::texture_part::Wrap;
-use arealight::{Light, Material};
+use arealight_oracle::material::Material;
 use glam::{DVec3, Vec2, Vec3};
 use std::path::Path;
 

@@ -11,6 +11,7 @@
 //! cargo run -p xtask -- quotes                   # put the code that documents show into them
 //! cargo run -p xtask -- packages                 # is what would be published whole?
 //! cargo run -p xtask -- dependencies             # does the product stand without the laboratory?
+//! cargo run -p xtask -- types                    # has the crate arealight few public types?
 //! ```
 
 mod cargo;
@@ -26,6 +27,7 @@ mod packages;
 mod parallel;
 mod quotes;
 mod shaders;
+mod types;
 
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
@@ -52,6 +54,8 @@ enum Task {
     Packages,
     /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines on those for fitting.
     Dependencies,
+    /// Check that the crate arealight has no more public types than a programmer cares to know.
+    Types,
 }
 
 /// A task that cannot be carried out. Its text says what is wrong, where, and what to do.
@@ -94,6 +98,7 @@ fn main() -> ExitCode {
         Task::Quotes(arguments) => quotes::run(&root, &arguments),
         Task::Packages => packages::run(&root),
         Task::Dependencies => dependencies::run(&root),
+        Task::Types => types::run(&root),
     };
     match outcome {
         Ok(true) => ExitCode::SUCCESS,

@@ -1,6 +1,6 @@
 //! A formula as the source text that is checked in.
 
-use arealight::table::Formula;
+use arealight_oracle::formula::Formula;
 use std::fmt::Write as _;
 
 /// A formula as the Rust text of a [`Formula`].

@@ -1,6 +1,6 @@
 //! The table that is checked in, against the truth.
 
-use arealight::{GrazingDip, LightTable, TableDescription};
+use arealight::{LightTable, TableDescription};
 use arealight_fit::brdf::view_direction;
 use arealight_fit::report::{
     COUNT, Case, Level, PUBLISHED, REFLECTANCES, SEED, cases, measure, measure_lookup,
@@ -88,7 +88,7 @@ fn its_albedos_are_near_between_nodes() {
     assert!(errors[0] < 2e-3 && errors[1] < 2.2e-3, "{errors:?}");
 
     // The twin: the same albedos, interpolated as they are
-    let description = TableDescription { grazing_dip: GrazingDip::None, ..table.description().clone() };
+    let description = TableDescription { ggx_dip: false, ..table.description().clone() };
     let in_range = |[albedo, schlick]: [f32; 2]| {
         let albedo = albedo.clamp(0.0, 1.0);
         [albedo, schlick.clamp(0.0, albedo)]

@@ -1,11 +1,11 @@
 //! GGX without a table: the formula that is built in, against the fitter, the truth and the table.
 
-use arealight::table::{Formula, MIN_COS_VIEW};
 use arealight::{Fresnel, Horizon, LightTable};
 use arealight_fit::report::{
     Case, Level, PUBLISHED, SEED, cases, integrate, measure, measure_lookup, near_mirror_quads,
 };
 use arealight_fit::{Brdf, FitError, GgxBrdf, formula};
+use arealight_oracle::formula::{Formula, MIN_COS_VIEW};
 use arealight_table::ggx;
 use std::path::Path;
 use std::sync::LazyLock;

@@ -2,8 +2,9 @@
 
 use super::{Truth, fitted_sample};
 use crate::frame::SurfaceFrame;
+use crate::material::{Coat, Surface};
 use arealight::table::share_above_surface;
-use arealight::{Coat, LightTable, Quality, Surface};
+use arealight::{LightTable, Quality};
 use glam::{DMat3, DVec3};
 
 /// What a coated surface reflects: `bare` says what a surface without a coat does, with its normal and a direction to the viewer.

@@ -2,9 +2,10 @@
 //! `arealight bench textures` judge by.
 
 use super::footprint::Filter;
+use crate::material::Surface;
 use crate::polygon::transformed_form_factor;
 use crate::stream::Stream;
-use arealight::{Footprint, Light, LightShape, LightTable, LightTexture, Surface};
+use arealight::{Footprint, Light, LightShape, LightTable, LightTexture};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use serde::Serialize;
 

@@ -59,11 +59,11 @@ impl Pyramid {
 
 /// Half the texels a side: the kernel of `level` along both axes, mirrored beyond the border.
 fn halved(finer: &Texture, size: PyramidSize, level: u32) -> Texture {
-    let kernel = size.kernel(level);
+    let weights = size.weights(level);
     let [width, height] = size.extent(level).map(|side| side as usize);
     let filtered = |texel: &dyn Fn(isize) -> DVec3, index: usize| -> DVec3 {
         let middle = 2 * index.cast_signed();
-        let taps = kernel.weights.iter().take(kernel.radius as usize).zip(0_isize..);
+        let taps = weights.iter().take(size.taps(level) as usize).zip(0_isize..);
         taps.map(|(weight, i)| (texel(middle - i) + texel(middle + 1 + i)) * f64::from(*weight)).sum()
     };
     let narrowed = Texture::from_fn(width, finer.height(), |column, row| {

@@ -1,8 +1,9 @@
 //! Clear coats: how the layers share light.
 
 use crate::common::{box_around, view_at};
-use arealight::{Coat, Horizon, LightTable, MIN_ALPHA, Quality, Surface};
+use arealight::{Horizon, LightTable, MIN_ALPHA, Quality};
 use arealight_oracle::frame::SurfaceFrame;
+use arealight_oracle::material::{Coat, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, ltc_on};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;

@@ -1,11 +1,12 @@
 //! The truth against sampling and closed forms, and the table's answer against cubature of its own lobe.
 
 use crate::common::{box_around, direction, lengths_through, square_points, star, view_angle, view_at};
-use arealight::{LightTable, MIN_ALPHA, Surface, TableDescription};
+use arealight::{LightTable, MIN_ALPHA, TableDescription};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
+use arealight_oracle::material::Surface;
 use arealight_oracle::polygon::{emitted, form_factor};
 use arealight_oracle::shading::{RelativeLight, lobe_integrals, ltc, truth};
 use glam::DVec3;

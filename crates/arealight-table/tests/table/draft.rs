@@ -1,6 +1,6 @@
 //! Files made by hand, so that they can be wrong.
 
-use arealight::{GrazingDip, LightTable, TableDescription};
+use arealight::{LightTable, TableDescription};
 use exr::prelude::*;
 use std::io::Cursor;
 
@@ -117,10 +117,7 @@ pub fn table(size: u32) -> LightTable {
     let matrix =
         (0..count).map(|i| [1.0 + number(i, 0), number(i, 1), -number(i, 2), 1.0 + number(i, 3)]).collect();
     let magnitude = (0..count).map(|i| [1.0 - number(i, 0), number(i, 1)]).collect();
-    let description = TableDescription {
-        brdf: "a test".into(),
-        made_by: "files.rs, François".into(),
-        grazing_dip: GrazingDip::None,
-    };
+    let description =
+        TableDescription { brdf: "a test".into(), made_by: "files.rs, François".into(), ggx_dip: false };
     LightTable::new(description, size, matrix, magnitude).unwrap()
 }

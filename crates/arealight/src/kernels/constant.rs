@@ -4,7 +4,7 @@
 pub const EFFECTS: u32 = 0;
 /// [`crate::FormFactor`].
 pub const FORM_FACTOR: u32 = 1;
-/// [`crate::plan::PositionSource`].
+/// [`crate::plan::ShadeOptions::from_depth`].
 pub const POSITION_SOURCE: u32 = 2;
 /// [`crate::plan::ShadeOptions::output_bits`].
 pub const OUTPUT: u32 = 3;
@@ -16,7 +16,7 @@ pub const FRESNEL: u32 = 5;
 pub const LOBES: u32 = 6;
 /// [`crate::Footprint`].
 pub const FOOTPRINT: u32 = 7;
-/// Taps to a side of a level's kernel that are summed, from [`crate::pyramid::LevelKernel::radius`] on.
+/// Taps to a side of a level's kernel that are summed, from [`crate::PyramidSize::taps`] on.
 pub const RADIUS: u32 = 8;
 /// [`crate::gpu::TextureLoadConstants::called_for`].
 pub const CALLED_FOR: u32 = 9;

@@ -3,39 +3,8 @@
 //! GGX's albedo dips by a tenth where the cosine of the view is about alpha, and comes back to 1 at the horizon. For a
 //! lobe of alpha = 0.001 all of that is in the last 0.5 degrees, and a table of 64 nodes has its last row but one at 88. The dip
 //! depends on the ratio of the two alone, so that it can be written down: a table holds its albedos with the dip filled
-//! up, which is smooth, and a lookup takes away the dip of its own roughness and view.
-
-/// What is added to the albedos at a table's nodes, and taken away again by a lookup.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum GrazingDip {
-    /// Nothing: the magnitudes are the albedos, for a BRDF of which nothing is known.
-    #[default]
-    None,
-    /// [`ggx_grazing_dip`].
-    Ggx,
-}
-
-impl GrazingDip {
-    /// What is added to `(albedo, schlick)` at a roughness and the cosine of a view. Roughness and cosine are clamped as
-    /// [`super::LightTable::lookup`] does.
-    pub fn at(self, roughness: f64, cos_view: f64) -> [f64; 2] {
-        match self {
-            Self::None => [0.0; 2],
-            Self::Ggx => {
-                ggx_grazing_dip(super::clamped_roughness(roughness), super::clamped_cosine(cos_view))
-            }
-        }
-    }
-
-    /// How far an albedo at a node may lie outside of its range: not at all, or by twice what rounding to float16 moves
-    /// a number above 1.
-    pub(super) fn tolerance(self) -> f32 {
-        match self {
-            Self::None => 0.0,
-            Self::Ggx => 1e-3,
-        }
-    }
-}
+//! up, which is smooth, and a lookup takes away the dip of its own roughness and view
+//! ([`TableDescription::ggx_dip`](super::TableDescription::ggx_dip)).
 
 /// What fills the dips of GGX's two albedos, `(albedo, schlick)`, for a roughness in [0.01, 1] and the cosine of a view in
 /// [0, 1]: within [0, 0.23] and [-0.71, 0]. The twin of `arealight_ggx_grazing_dip`.

@@ -6,8 +6,7 @@ fn table(edit: impl Fn(usize, &mut [f32; 4], &mut [f32; 2])) -> Result<LightTabl
     for i in 0..9 {
         edit(i, &mut matrix[i], &mut magnitude[i]);
     }
-    let description =
-        TableDescription { brdf: "test".into(), made_by: "a test".into(), grazing_dip: GrazingDip::None };
+    let description = TableDescription { brdf: "test".into(), made_by: "a test".into(), ggx_dip: false };
     LightTable::new(description, 3, matrix, magnitude)
 }
 
@@ -56,12 +55,12 @@ fn an_identity_texel_is_a_cosine_about_the_mirror_direction() {
 /// The same albedos everywhere, with GGX's dip added at the nodes.
 fn dipped(size: u32, albedos: [f64; 2]) -> Result<LightTable, TableError> {
     let count = (size * size) as usize;
+    let description = TableDescription { ggx_dip: true, ..TableDescription::default() };
     let magnitude = |i: u32| {
         let (roughness, cos_view) = LightTable::node(size, i % size, i / size);
-        let dip = GrazingDip::Ggx.at(roughness, cos_view);
+        let dip = description.dip(roughness, cos_view);
         std::array::from_fn(|k| (albedos[k] + dip[k]) as f32)
     };
-    let description = TableDescription { grazing_dip: GrazingDip::Ggx, ..TableDescription::default() };
     let magnitude = (0..count as u32).map(magnitude).collect();
     LightTable::new(description, size, vec![[1.0, 0.0, 0.0, 1.0]; count], magnitude)
 }

@@ -3,12 +3,12 @@
 use crate::failure::Failure;
 use crate::output::print;
 use crate::progress;
-use arealight::table::Formula;
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_fit::report::{
     COUNT, Case, Errors, Level, METALS, PUBLISHED, SEED, cases, measure_lookup, measure_lookup_colour,
 };
 use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula};
+use arealight_oracle::formula::Formula;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::PathBuf;

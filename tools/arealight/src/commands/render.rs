@@ -139,13 +139,24 @@ impl std::str::FromStr for SurfaceChoice {
     fn from_str(text: &str) -> Result<Self, String> {
         match text {
             "required" => Ok(Self::Required),
-            list => match list.parse::<Effects>() {
-                Ok(effects) if Effects::SURFACES.contains(effects) => Ok(Self::Stated(effects)),
-                Ok(effects) => Err(format!("{} depends on the lights alone", effects - Effects::SURFACES)),
-                Err(error) => Err(error.to_string()),
+            list => match effects_of(list)? {
+                effects if Effects::SURFACES.contains(effects) => Ok(Self::Stated(effects)),
+                effects => Err(format!("{} depends on the lights alone", effects - Effects::SURFACES)),
             },
         }
     }
+}
+
+/// The set of names with commas between them, as [`Effects`] is displayed; `none` is the empty one.
+fn effects_of(list: &str) -> Result<Effects, String> {
+    if list.trim() == "none" {
+        return Ok(Effects::empty());
+    }
+    let effect = |name: &str| {
+        let found = Effects::all().iter().find(|effect| effect.names() == [name]);
+        found.ok_or_else(|| format!("'{name}' is no effect; there are {}", Effects::all()))
+    };
+    list.split(',').map(|name| effect(name.trim())).collect()
 }
 
 impl SurfaceChoice {

@@ -2,7 +2,8 @@
 
 use super::fields::Fields;
 use super::{CaseError, Unsupported};
-use arealight::{Coat, MIN_ALPHA};
+use arealight::MIN_ALPHA;
+use arealight_oracle::material::Coat;
 use glam::DVec3;
 
 /// A coat above other lobes.

@@ -1,7 +1,7 @@
 //! What a file of cases may say, and what is said about one that is wrong.
 
 use super::*;
-use arealight::Coat;
+use arealight_oracle::material::Coat;
 
 /// There is no image beside these cases.
 fn no_image(path: &str) -> Result<Arc<Texture>, String> {
@@ -139,7 +139,7 @@ fn a_textured_case_has_its_image_where_its_coordinates_say() {
     assert!((shown.map.corner - DVec3::new(0.0, 1.0, 1.0)).length() < 1e-12, "{:?}", shown.map);
     assert_eq!(supported.texture.unwrap().uv[2], DVec2::new(1.0, 0.5));
     let bent = with("[[0, 0], [1, 0], [0.7, 0.7], [0, 1]]").unwrap_err().to_string();
-    assert!(bent.starts_with("light.uv: uvs["), "{bent}");
+    assert!(bent.starts_with("light.texture: uvs["), "{bent}");
 }
 
 #[test]

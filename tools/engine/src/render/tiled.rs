@@ -4,7 +4,6 @@ use super::SceneRenderer;
 use crate::host::{Buffer, DescriptorPool, Location, Usage};
 use crate::kept::Kept;
 use crate::{Engine, EngineError};
-use arealight::gpu::GpuTileClass;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory, TileResources};
@@ -59,8 +58,8 @@ impl TileLists {
 
     /// How many tiles each class has.
     pub fn classes(&self) -> Vec<(TileClass, u32)> {
-        let found: &[GpuTileClass] = bytemuck::cast_slice(&self.words[..tiles::FIRST_LIST as usize]);
-        TileClass::ALL.into_iter().zip(found.iter().map(|found| found.tile_count)).collect()
+        let classes = self.words.chunks_exact(tiles::CLASS_WORDS);
+        TileClass::ALL.into_iter().zip(classes.map(|class| class[tiles::CLASS_WORDS - 1])).collect()
     }
 
     /// The column and row of each tile of a class.

@@ -3,7 +3,8 @@
 use crate::shapes::panel;
 use crate::writer::Writer;
 use crate::{error, load, panel_with, warnings};
-use arealight::{Effects, Material};
+use arealight::Effects;
+use arealight_oracle::material::Material;
 use arealight_scene::{Scene, SceneBuffers, Wrap, required_effects};
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
 use glam::{DVec3, Vec3};

@@ -40,7 +40,9 @@ fn the_sweep_covers_roughness_and_metalness_under_one_rectangle() {
     let scene = load("sweep.glb");
     for metalness in sweep::METALNESS {
         for roughness in sweep::ROUGHNESS {
-            let is_it = |m: &arealight::Material| m.metalness == metalness && m.roughness == roughness;
+            let is_it = |m: &arealight_oracle::material::Material| {
+                m.metalness == metalness && m.roughness == roughness
+            };
             assert!(scene.materials.iter().any(|m| is_it(&m.material)), "{roughness} {metalness}");
         }
     }

@@ -1,8 +1,9 @@
 //! How far the integrals of tables are from the truth, over roughness and view angle.
 
-use arealight::table::{ggx_formula, mirror_frame};
+use arealight::table::mirror_frame;
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_fit::report::{Case, Family, Level, Quad, integrate, measure_lookup, random_quads};
+use arealight_oracle::formula::ggx_formula;
 use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 

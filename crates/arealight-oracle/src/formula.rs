@@ -8,12 +8,12 @@
 //! Mean error of [`Formula::GGX`] over the fit's report, by F0 in one integral: 5.5e-4 at F0 = 0.02, 6.6e-4 at 0.04, 2.85e-3 at
 //! 1. The albedo is within 0.014 of the truth, that of Schlick's weight within 0.05 (2e-3 on average).
 
-use super::{TableSample, clamped_cosine, clamped_roughness, inverse_from_texel};
+use arealight::table::{TableSample, clamped_cosine, clamped_roughness, inverse_from_texel};
 
 /// The coefficients of a BRDF's lobes and albedos. `arealight-fit` makes them, [`Formula::GGX`] is built in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
-    /// `q00`, `q02 / alpha`, `q20` and `q22` of the lobe without Fresnel term, see [`crate::table`]: a row for each
+    /// `q00`, `q02 / alpha`, `q20` and `q22` of the lobe without Fresnel term, see [`arealight::table`]: a row for each
     /// monomial `1, y, y², y³, x, xy, xy², x², x²y, x³` of `x = alpha` and the view's cosine `y`.
     pub lobe: [[f64; 4]; 10],
     /// The same of the lobe of Schlick's weight.
@@ -42,7 +42,7 @@ pub fn ggx_formula(roughness: f64, cos_view: f64) -> TableSample {
 }
 
 impl Formula {
-    /// Looks the lobes up: what [`super::LightTable::lookup`] answers, with the same ranges.
+    /// Looks the lobes up: what [`arealight::LightTable::lookup`] answers, with the same ranges.
     ///
     /// Entries and albedos of a view below [`MIN_COS_VIEW`] are those at it; the mirror frame is the view's own.
     pub fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {

@@ -16,7 +16,7 @@ pub struct Material {
     pub dielectric_f0: Vec3,
     /// Reflectance of the dielectric at grazing incidence (the weight of `KHR_materials_specular`), in [0, 1].
     pub dielectric_f90: f32,
-    /// Weight of a clear coat in [0, 1]; 0 for none ([`Effects::COAT`](crate::Effects::COAT)).
+    /// Weight of a clear coat in [0, 1]; 0 for none ([`Effects::COAT`](arealight::Effects::COAT)).
     pub coat: f32,
     /// Perceptual roughness of the coat, in [0, 1].
     pub coat_roughness: f32,
@@ -46,7 +46,7 @@ pub struct Surface {
     pub f0: DVec3,
     /// Schlick's reflectance at grazing incidence.
     pub f90: f64,
-    /// GGX alpha, not below [`crate::MIN_ALPHA`].
+    /// GGX alpha, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
@@ -58,7 +58,7 @@ pub struct Surface {
 pub struct Coat {
     /// How much of the surface it covers, in (0, 1].
     pub weight: f64,
-    /// GGX alpha, not below [`crate::MIN_ALPHA`].
+    /// GGX alpha, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
     /// Its normal, of any length above zero; `None` where it is the surface's.
     pub normal: Option<DVec3>,
@@ -83,7 +83,7 @@ impl Material {
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
         let base = self.base_color.as_dvec3();
-        let alpha = |roughness: f32| (f64::from(roughness) * f64::from(roughness)).max(crate::MIN_ALPHA);
+        let alpha = |roughness: f32| (f64::from(roughness) * f64::from(roughness)).max(arealight::MIN_ALPHA);
         let weight = f64::from(self.coat);
         Surface {
             diffuse_albedo: base * (1.0 - metalness),
@@ -113,7 +113,7 @@ mod tests {
         let material = Material { roughness: 0.5, ..Material::default() };
         assert_eq!(material.surface().alpha, 0.25);
         let mirror = Material { roughness: 0.0, ..Material::default() };
-        assert_eq!(mirror.surface().alpha, crate::MIN_ALPHA);
+        assert_eq!(mirror.surface().alpha, arealight::MIN_ALPHA);
     }
 
     #[test]
