@@ -28,7 +28,7 @@ const float SEARCH_WIDTH = 3.0;
 // Pixels to a side of what a workgroup loads.
 const int PATCH = 8 + 2 * REACH;
 // The mean's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
-const float PENUMBRA_PART = 0.12;
+const float PENUMBRA_PART = 0.1;
 const float LEAST_WIDTH = 2.0;
 // Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this power of their normals' cosine.
 const float PLANE_PART = 0.004;
