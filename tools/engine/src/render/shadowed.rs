@@ -95,12 +95,14 @@ impl SceneRenderer<'_> {
         (filter, history): (ShadowFilter, ShadowHistory),
     ) -> Result<ShadowedView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
-        // SAFETY: As in Engine::pass.
+        // doc: passes
+        // SAFETY: The passes are dropped when no frame uses them, before the device.
         let (shade, shadow) = unsafe {
             let output = ShadowOptions { filter, history, output: Output::Add };
             (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), options, output)?)
         };
-        let blockers = blockers(scene)?;
+        let blockers = blockers(scene)?; // Blockers::new of the scene's triangles; upload its nodes and triangles
+        // doc end
         let image = |name, format| {
             let usage = vk::ImageUsageFlags::STORAGE;
             host.image(&ImageDescription { name, extent: self.size, layers: 1, format, usage })
@@ -124,17 +126,20 @@ impl SceneRenderer<'_> {
             shadow: Kept::new(host, shadow),
         };
         let resources = self.shadowed_resources(&view);
+        // doc: sets
         // SAFETY: The sets are new, and the resources live until submissions were waited for.
         unsafe {
             view.shade.write_set(view.sets[0], &resources)?;
             view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(&view))?;
         }
+        // doc end
         view.shade.prepare(&self.shade_frame())?;
         view.shadow.prepare()?;
         Ok(view)
     }
 
     fn shadow_resources(&self, view: &ShadowedView) -> ShadowResources {
+        // doc: resources
         ShadowResources {
             shadow: Resource::StorageImage { view: view.shadows.view() },
             radiance: Some(Resource::StorageImage { view: self.g_buffer.radiance.view() }),
@@ -145,6 +150,7 @@ impl SceneRenderer<'_> {
                 triangles: Resource::buffer(view.blockers[1].handle()),
             }),
         }
+        // doc end
     }
 
     fn shadowed_frame(&self, seed: u32) -> ShadeFrame {
@@ -176,6 +182,7 @@ impl SceneRenderer<'_> {
         self.engine.host().try_submit_timed(|commands| {
             view.begin(commands);
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+            // doc: record
             // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
             // submissions are waited for.
             unsafe {
@@ -183,6 +190,7 @@ impl SceneRenderer<'_> {
                 self.engine.compute_barrier(commands);
                 view.shadow.record(commands, view.sets[1], &resources, &frame)?;
             }
+            // doc end
             Ok(())
         })
     }
