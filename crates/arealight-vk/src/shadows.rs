@@ -400,12 +400,12 @@ impl ShadowPass {
         let device = self.rays.layouts().context().device();
         // SAFETY: the same contract.
         unsafe {
-            device.cmd_pipeline_barrier(command_buffer, before.stage, after.stage, flags, &barrier, &[], &[]);
+            device.cmd_pipeline_barrier(command_buffer, before.flags, after.flags, flags, &barrier, &[], &[]);
         }
     }
 }
 
-/// Of a history's head, what one frame writes: see shadow_history.glsl.
+/// Of a history's head, what one frame writes: see `shadow_history.glsl`.
 #[derive(Clone, Copy)]
 struct HistoryHead {
     buffer: vk::Buffer,
@@ -416,20 +416,20 @@ struct HistoryHead {
 /// A stage that the pass's barriers are between.
 #[derive(Clone, Copy)]
 struct Stage {
-    stage: vk::PipelineStageFlags,
+    flags: vk::PipelineStageFlags,
     written: vk::AccessFlags,
     used: vk::AccessFlags,
 }
 
 const COMPUTE: Stage = Stage {
-    stage: vk::PipelineStageFlags::COMPUTE_SHADER,
+    flags: vk::PipelineStageFlags::COMPUTE_SHADER,
     written: vk::AccessFlags::SHADER_WRITE,
     used: vk::AccessFlags::from_raw(
         vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
     ),
 };
 const TRANSFER: Stage = Stage {
-    stage: vk::PipelineStageFlags::TRANSFER,
+    flags: vk::PipelineStageFlags::TRANSFER,
     written: vk::AccessFlags::TRANSFER_WRITE,
     used: vk::AccessFlags::TRANSFER_WRITE,
 };
