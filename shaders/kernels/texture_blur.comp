@@ -15,7 +15,7 @@ layout(local_size_x = 32, local_size_y = 2) in;
 layout(set = 0, binding = 0) uniform texture2DArray finer_level;
 layout(set = 0, binding = 1, rgba16f) uniform writeonly image2DArray out_level;
 
-const int MAX_RADIUS = 6; // LevelKernel::MAX_RADIUS
+const int MAX_RADIUS = 6; // arealight::pyramid::MOST_TAPS
 
 layout(push_constant, std430) uniform TextureBlurConstants {
     float weights[MAX_RADIUS]; // half of the kernel, from the middle; zero beyond its radius

@@ -105,9 +105,7 @@ impl<'a> OnePixel<'a> {
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),
-                shapes: None,
-                picks: None,
-                tiles: None,
+                ..ShadeResources::default()
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
@@ -115,8 +113,7 @@ impl<'a> OnePixel<'a> {
                 camera,
                 position_from_clip: matrix,
                 lights: packed.summary(),
-                tile_lists: None,
-                seed: 0,
+                ..ShadeFrame::default()
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

@@ -7,7 +7,7 @@ use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_oracle::material::Material;
 use arealight_vk::{
     BlockerResources, Resource, ShadeFrame, ShadePass, ShadeResources, ShadowFrame, ShadowOptions,
-    ShadowPass, ShadowResources, TileResources,
+    ShadowPass, ShadowResources,
 };
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -161,10 +161,8 @@ impl ShadowPatch {
             let lists = host.buffer("tile lists", memory.size, memory.usage, Location::Device).unwrap();
             (lists, host.storage_buffer("lobe horizons", engine.lobe_horizons()).unwrap())
         });
-        let tiles = tiles.as_ref().map(|(lists, horizons)| TileResources {
-            tile_lists: buffer(lists),
-            lobe_horizons: buffer(horizons),
-        });
+        let (tile_lists, lobe_horizons) =
+            tiles.as_ref().map(|(lists, horizons)| (buffer(lists), buffer(horizons))).unzip();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
         unsafe {
             let sizes = [shade.pool_sizes(1), shadows.pool_sizes(1)].concat();
@@ -176,16 +174,16 @@ impl ShadowPatch {
                 lights: buffer(&lights),
                 light_vertices: buffer(&vertices),
                 shapes: Some(buffer(&shapes)),
-                light_textures: None,
                 position,
                 normal,
                 base_color,
                 specular: Some(specular),
                 coat: Some(coat),
                 radiance: of(&radiance),
-                glossy: None,
                 picks: Some(buffer(&picks)),
-                tiles,
+                lobe_horizons,
+                tile_lists,
+                ..ShadeResources::default()
             };
             shade.write_set(sets[0], &resources).unwrap();
             let of_shadows = ShadowResources {
@@ -201,10 +199,9 @@ impl ShadowPatch {
             let frame = ShadeFrame {
                 size: [SIDE; 2],
                 camera: self.view,
-                position_from_clip: None,
                 lights: packed.summary(),
-                tile_lists: tiles.map(|tiles| tiles.tile_lists),
-                seed: 0,
+                tile_lists,
+                ..ShadeFrame::default()
             };
             host.submit(|commands| match visibility_set {
                 Some(own) => shade.record_with_set(commands, sets[0], *own, &frame).unwrap(),

@@ -8,7 +8,7 @@ use arealight::LightTable;
 use arealight::table::LobeHorizon;
 use arealight_table::TableFile;
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Context, HostDevice, TableFormat, TableImage};
+use arealight_vk::{Context, TableFormat, TableImage};
 use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -85,12 +85,9 @@ pub unsafe extern "C" fn arealight_create(
         // SAFETY: the caller vouches for the handles; the device outlives what is made.
         let arealight = unsafe {
             let (instance, device) = loader::load(host)?;
-            let context = Context::new(&HostDevice {
-                instance: &instance,
-                physical_device: vk::PhysicalDevice::from_raw(host.physical_device as u64),
-                device: &device,
-                pipeline_cache: vk::PipelineCache::from_raw(host.pipeline_cache),
-            })?;
+            let physical_device = vk::PhysicalDevice::from_raw(host.physical_device as u64);
+            let context = Context::new(&instance, physical_device, &device)?
+                .with_pipeline_cache(vk::PipelineCache::from_raw(host.pipeline_cache));
             let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
             Arealight { context, format, table, image: Mutex::new(image) }
         };

@@ -11,7 +11,7 @@ use crate::{arguments, handles};
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -225,11 +225,9 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
             radiance: stored(resources.radiance),
             glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
-            picks: None,
-            tiles: pass.tiles().map(|_| TileResources {
-                lobe_horizons: buffer(resources.lobe_horizons),
-                tile_lists: buffer(resources.tile_lists),
-            }),
+            lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
+            tile_lists: pass.tiles().map(|_| buffer(resources.tile_lists)),
+            ..ShadeResources::default()
         };
         // SAFETY: the caller vouches for the set and the resources.
         Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
@@ -319,7 +317,7 @@ unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
         position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
         lights: read_summary(frame.lights)?,
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
-        seed: 0,
+        ..ShadeFrame::default()
     })
 }
 

@@ -6,22 +6,6 @@ use crate::light_textures::{FORMAT, USAGE};
 use crate::written_sets::WrittenSets;
 use ash::vk;
 
-/// The host's handles. All stay the host's: nothing here is destroyed, waited for or submitted to.
-///
-/// A host that uses another version of ash, or none, makes the function tables from its raw handles with
-/// `ash::Instance::load_with` and `ash::Device::load_with`, re-exported here as [`crate::ash`].
-#[derive(Clone)]
-pub struct HostDevice<'a> {
-    /// The instance that `physical_device` comes from, made for Vulkan 1.1 or later.
-    pub instance: &'a ash::Instance,
-    /// The physical device that `device` was made from.
-    pub physical_device: vk::PhysicalDevice,
-    /// The device, with a compute-capable queue. No optional feature is needed.
-    pub device: &'a ash::Device,
-    /// A cache that pipelines are made with, or null.
-    pub pipeline_cache: vk::PipelineCache,
-}
-
 /// The recorder's view of the host's device, from which passes are made. Cheap to clone.
 #[derive(Clone)]
 pub struct Context {
@@ -59,35 +43,53 @@ impl std::fmt::Debug for Context {
 }
 
 impl Context {
-    /// Checks the device and takes its function table.
+    /// Checks the device, which has a queue with compute, and takes its function table. No optional feature is needed. All handles stay the
+    /// host's: nothing of them is destroyed, waited for or submitted to.
+    ///
+    /// A host that uses another version of ash, or none, makes the function tables from its raw handles with
+    /// `ash::Instance::load_with` and `ash::Device::load_with`, re-exported here as [`crate::ash`].
     ///
     /// # Safety
-    /// - The handles are valid and belong together; the physical device and the device speak Vulkan 1.1 or later.
-    /// - The device and the pipeline cache outlive the context and everything made from it.
-    /// - The pipeline cache is not used elsewhere while a pass is being made (it is externally synchronised).
+    /// - The handles are valid, the physical device of the instance and the device of the physical device; all are for Vulkan 1.1 or later.
+    /// - The device outlives the context and everything made from it.
     ///
     /// # Errors
     /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1; [`Error::Vulkan`] where a call fails.
-    pub unsafe fn new(host: &HostDevice<'_>) -> Result<Self, Error> {
+    pub unsafe fn new(
+        instance: &ash::Instance,
+        physical_device: vk::PhysicalDevice,
+        device: &ash::Device,
+    ) -> Result<Self, Error> {
         // SAFETY: the caller vouches for the instance and the physical device.
-        let properties = unsafe { host.instance.get_physical_device_properties(host.physical_device) };
+        let properties = unsafe { instance.get_physical_device_properties(physical_device) };
         if properties.api_version < vk::API_VERSION_1_1 {
             return Err(Error::MissingFeature { feature: "Vulkan 1.1", needed_by: "every kernel" });
         }
         Ok(Self {
-            device: host.device.clone(),
-            pipeline_cache: host.pipeline_cache,
+            device: device.clone(),
+            pipeline_cache: vk::PipelineCache::null(),
             max_group_count: properties.limits.max_compute_work_group_count,
             limits: DescriptorLimits {
                 sampled_images: properties.limits.max_per_stage_descriptor_sampled_images,
                 storage_images: properties.limits.max_per_stage_descriptor_storage_images,
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
             },
-            light_texture_limits: light_texture_limits(host)?,
+            light_texture_limits: light_texture_limits(instance, physical_device)?,
             whole_modules: false,
             names: DebugNames::default(),
             written_sets: WrittenSets::default(),
         })
+    }
+
+    /// Makes pipelines with a cache of the host's.
+    ///
+    /// # Safety
+    /// The cache is the device's, and outlives what is made of the context. Nothing else uses it while a pipeline is made (it is externally
+    /// synchronised).
+    #[must_use = "the context is returned"]
+    pub unsafe fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
+        self.pipeline_cache = cache;
+        self
     }
 
     /// Hands modules to the driver as they are, without [`prune`](crate::prune()): for a debugger of shaders, or to compare. On Mesa
@@ -116,13 +118,16 @@ impl Context {
 }
 
 /// The largest light textures of the device.
-fn light_texture_limits(host: &HostDevice<'_>) -> Result<Option<ImageLimits>, Error> {
+fn light_texture_limits(
+    instance: &ash::Instance,
+    physical_device: vk::PhysicalDevice,
+) -> Result<Option<ImageLimits>, Error> {
     let needed = vk::FormatFeatureFlags::SAMPLED_IMAGE_FILTER_LINEAR | vk::FormatFeatureFlags::STORAGE_IMAGE;
-    // SAFETY: the host's handles are valid by the contract of Context::new; so for both calls.
+    // SAFETY: the handles are valid by the contract of Context::new; so for both calls.
     let (features, image) = unsafe {
-        let format = host.instance.get_physical_device_format_properties(host.physical_device, FORMAT);
-        let image = host.instance.get_physical_device_image_format_properties(
-            host.physical_device,
+        let format = instance.get_physical_device_format_properties(physical_device, FORMAT);
+        let image = instance.get_physical_device_image_format_properties(
+            physical_device,
             FORMAT,
             vk::ImageType::TYPE_2D,
             vk::ImageTiling::OPTIMAL,

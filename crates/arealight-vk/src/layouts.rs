@@ -204,15 +204,15 @@ impl Layouts {
             });
         }
         for (binding, resource) in bindings.iter().zip(resources) {
-            if resource.kind() != binding.kind {
-                let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
-                return Err(Error::InvalidArgument { field: binding.name, message });
-            }
             if resource.is_null() {
                 return Err(Error::InvalidArgument {
                     field: binding.name,
                     message: format!("is a null handle; it must hold {}", binding.content),
                 });
+            }
+            if resource.kind() != binding.kind {
+                let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
+                return Err(Error::InvalidArgument { field: binding.name, message });
             }
         }
 

@@ -5,27 +5,20 @@
 //! descriptor sets and the memory, and finds Vulkan: [`ash`] is re-exported without its loader.
 //!
 //! ```no_run
-//! use arealight_vk::{ash::vk, Context, HostDevice, ShadeFrame, ShadePass, ShadeResources};
+//! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources};
 //! use arealight::{plan::ShadeOptions, PackedLights};
 //!
-//! # unsafe fn frame(host: &HostDevice<'_>, command_buffer: vk::CommandBuffer, set: vk::DescriptorSet,
-//! #     resources: &ShadeResources, lights: &[arealight::Light], camera: glam::DVec3)
+//! # unsafe fn frame(instance: &ash::Instance, physical_device: vk::PhysicalDevice, device: &ash::Device,
+//! #     command_buffer: vk::CommandBuffer, set: vk::DescriptorSet, resources: &ShadeResources, lights: &[arealight::Light], camera: glam::DVec3)
 //! #     -> Result<(), arealight_vk::Error> {
 //! // Once
-//! let context = unsafe { Context::new(host) }?;
+//! let context = unsafe { Context::new(instance, physical_device, device) }?;
 //! let shade = unsafe { ShadePass::new(&context, ShadeOptions::default()) }?;
 //! // When lights change: pack them relative to an origin near the camera, and upload
 //! let packed = PackedLights::new(lights, camera)?;
 //! // Each frame
 //! unsafe { shade.write_set(set, resources) }?;
-//! let frame = ShadeFrame {
-//!     size: [1920, 1080],
-//!     camera: glam::Vec3::ZERO,
-//!     position_from_clip: None,
-//!     lights: packed.summary(),
-//!     tile_lists: None,
-//!     seed: 0,
-//! };
+//! let frame = ShadeFrame { size: [1920, 1080], lights: packed.summary(), ..ShadeFrame::default() };
 //! unsafe { shade.record(command_buffer, set, &frame) }?;
 //! # Ok(()) }
 //! ```
@@ -48,7 +41,7 @@ mod tiles;
 mod written_sets;
 
 pub use ash;
-pub use context::{Context, HostDevice};
+pub use context::Context;
 pub use error::Error;
 pub use formats::ShadeFormats;
 pub use layouts::filtered_image_sampler;
@@ -58,4 +51,4 @@ pub use prune::prune;
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
 pub use table_image::{TableFormat, TableImage};
-pub use tiles::{TileMemory, TileResources};
+pub use tiles::TileMemory;

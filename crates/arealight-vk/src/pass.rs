@@ -42,6 +42,21 @@ pub enum Resource {
 }
 
 impl Resource {
+    /// An image of colour that is read by texel, in layout `SHADER_READ_ONLY_OPTIMAL`.
+    pub fn sampled(view: vk::ImageView) -> Self {
+        Self::SampledImage { view, layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL }
+    }
+
+    /// An image of depth that is read by texel, in layout `DEPTH_STENCIL_READ_ONLY_OPTIMAL`.
+    pub fn depth(view: vk::ImageView) -> Self {
+        Self::SampledImage { view, layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL }
+    }
+
+    /// An image that is stored to.
+    pub fn stored(view: vk::ImageView) -> Self {
+        Self::StorageImage { view }
+    }
+
     /// A whole buffer.
     pub fn buffer(buffer: vk::Buffer) -> Self {
         Self::StorageBuffer { buffer, offset: 0, range: vk::WHOLE_SIZE }
@@ -71,6 +86,13 @@ impl Resource {
             Self::StorageBuffer { buffer, .. } => buffer == vk::Buffer::null(),
             image => image.view().is_some_and(|view| view == vk::ImageView::null()),
         }
+    }
+}
+
+impl Default for Resource {
+    /// Nothing, which no pass takes: the name of what it stands for is in the error.
+    fn default() -> Self {
+        Self::buffer(vk::Buffer::null())
     }
 }
 

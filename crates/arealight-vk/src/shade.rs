@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
-use crate::tiles::{TileMemory, TileResources, TiledFrame, Tiles};
+use crate::tiles::{TileMemory, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{Access, BindingKind, CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
@@ -18,7 +18,8 @@ use std::sync::Arc;
 /// What may be missing is not read in some frames: in debug builds a frame that reads it is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
-#[derive(Debug, Clone, Copy)]
+/// By default there is none; the pass refuses a set without the seven that are no `Option`.
+#[derive(Debug, Clone, Copy, Default)]
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
     pub table: Resource,
@@ -48,12 +49,14 @@ pub struct ShadeResources {
     /// With [`ShadeOptions::shadow_rays`], a buffer of [`ShadePass::picks_size`] bytes, which the pass writes and a
     /// [`crate::ShadowPass`] reads. Else none.
     pub picks: Option<Resource>,
-    /// What a pass with tiles needs; others do not use it.
-    pub tiles: Option<TileResources>,
+    /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
+    pub lobe_horizons: Option<Resource>,
+    /// With tiles, a buffer of [`ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each. Else none.
+    pub tile_lists: Option<Resource>,
 }
 
 /// What differs from frame to frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShadeFrame {
     /// Size of the radiance images in pixels. The G-buffer's images are of the same size.
     pub size: [u32; 2],
@@ -64,7 +67,7 @@ pub struct ShadeFrame {
     pub position_from_clip: Option<Mat4>,
     /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers.
     pub lights: LightSummary,
-    /// With tiles, [`TileResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
+    /// With tiles, [`ShadeResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
     pub tile_lists: Option<Resource>,
     /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each frame. Else ignored.
     pub seed: u32,
@@ -132,7 +135,7 @@ impl ShadePass {
         unsafe { Self::with_module(context, options, SHADE.words()) }
     }
 
-    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::tiles`] and [`ShadeFrame::tile_lists`] are needed then.
+    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::lobe_horizons`] and `tile_lists` are needed then.
     /// `table_size` is how many nodes a side the table has that will be bound, [`arealight::LightTable::size`].
     ///
     /// # Safety
@@ -212,7 +215,7 @@ impl ShadePass {
         self.tiles.as_ref().map(Tiles::options)
     }
 
-    /// What [`TileResources::tile_lists`] needs for images of `size` pixels; none in a pass without tiles.
+    /// What [`ShadeResources::tile_lists`] needs for images of `size` pixels; none in a pass without tiles.
     pub fn tile_memory(&self, size: [u32; 2]) -> Option<TileMemory> {
         self.tiles.as_ref().map(|tiles| tiles.memory(size))
     }
@@ -240,10 +243,18 @@ impl ShadePass {
         let mut accesses = accesses_of(&SHADE);
         accesses.retain(|access| access.name != TILE_LISTS);
         if self.tiles.is_some() {
-            accesses
-                .extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == "lobe_horizons"));
+            accesses.extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == LOBE_HORIZONS));
         }
         accesses
+    }
+
+    /// In which stages, and how, the pass uses any of its resources: what one barrier for all of them is made of.
+    pub fn stages_and_access(&self) -> (vk::PipelineStageFlags, vk::AccessFlags) {
+        let all = self.accesses();
+        (
+            all.iter().fold(vk::PipelineStageFlags::empty(), |stages, one| stages | one.stage),
+            all.iter().fold(vk::AccessFlags::empty(), |access, one| access | one.access),
+        )
     }
 
     /// Points a descriptor set at the resources of a run.
@@ -294,11 +305,12 @@ impl ShadePass {
             resources.picks.unwrap_or(resources.lights),
         ];
         if self.tiles.is_some() {
-            let Some(tiles) = resources.tiles else {
-                let message = "are missing, but the pass was made with tiles".into();
-                return Err(Error::InvalidArgument { field: "tiles", message });
-            };
-            all.extend([tiles.tile_lists, tiles.lobe_horizons]);
+            for (resource, field) in
+                [(resources.tile_lists, TILE_LISTS), (resources.lobe_horizons, LOBE_HORIZONS)]
+            {
+                let message = "is missing, but the pass was made with tiles".into();
+                all.push(resource.ok_or(Error::InvalidArgument { field, message })?);
+            }
         }
         // A whole module has bindings that no frame of this pass uses
         all.resize(self.pipelines.layouts().bindings().len(), resources.lights);
@@ -487,8 +499,9 @@ fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
     Ok(())
 }
 
-/// The name of the lists of tiles in the manifest.
+/// The names of bindings of tiles, in the manifest.
 const TILE_LISTS: &str = "tile_lists";
+const LOBE_HORIZONS: &str = "lobe_horizons";
 
 /// The names of bindings that may have nothing, in the manifest.
 const LIGHT_TEXTURES: &str = "light_textures";

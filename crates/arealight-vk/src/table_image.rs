@@ -40,7 +40,7 @@ impl TableFormat {
 /// The table's image and view. The host gives it memory:
 ///
 /// 1. [`TableImage::new`], 2. allocate for [`TableImage::memory_requirements`], 3. [`TableImage::bind_memory`],
-/// 4. fill a staging buffer with [`TableFormat::bytes`], 5. [`TableImage::record_upload`].
+/// 4. fill a staging buffer with [`TableImage::bytes`], 5. [`TableImage::record_upload`].
 ///
 /// Dropping it destroys image and view; the memory stays the host's.
 #[derive(Debug)]
@@ -79,6 +79,11 @@ impl TableImage {
         let image = unsafe { context.device.create_image(&info, None) }.call("vkCreateImage")?;
         context.names.name(image, "table");
         Ok(Self { context: context.clone(), image, view: vk::ImageView::null(), format, size: table.size() })
+    }
+
+    /// The texels of the table that it was made for, in its format: what the staging buffer of [`TableImage::record_upload`] holds.
+    pub fn bytes(&self, table: &LightTable) -> Vec<u8> {
+        self.format.bytes(table)
     }
 
     /// What memory the image needs.
@@ -141,7 +146,7 @@ impl TableImage {
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.
-    /// - `staging` holds [`TableFormat::bytes`] of the same table from `offset` on (a multiple of 16), is
+    /// - `staging` holds [`TableImage::bytes`] of the same table from `offset` on (a multiple of 16), is
     ///   visible to transfers, and outlives the recorded work.
     /// - [`TableImage::bind_memory`] was called; no pending work reads the image.
     pub unsafe fn record_upload(

@@ -13,16 +13,7 @@ use arealight::tiles::{self, TileClass, tile_counts};
 use ash::vk;
 use std::sync::Arc;
 
-/// What a pass with tiles needs beyond other passes: buffers of the host.
-#[derive(Debug, Clone, Copy)]
-pub struct TileResources {
-    /// [`arealight::LightTable::lobe_horizons`] of the table.
-    pub lobe_horizons: Resource,
-    /// A buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each.
-    pub tile_lists: Resource,
-}
-
-/// The buffer of tile lists: [`TileResources::tile_lists`].
+/// The buffer of tile lists: [`crate::ShadeResources::tile_lists`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TileMemory {
     /// Its size in bytes.

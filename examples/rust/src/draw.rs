@@ -18,6 +18,24 @@ pub struct Users {
     pub access: vk::AccessFlags,
 }
 
+impl Users {
+    /// Copies from them.
+    pub const TRANSFER_READ: Self =
+        Self { stages: vk::PipelineStageFlags::TRANSFER, access: vk::AccessFlags::TRANSFER_READ };
+
+    /// Compute shaders that write them.
+    pub const COMPUTE_WRITE: Self =
+        Self { stages: vk::PipelineStageFlags::COMPUTE_SHADER, access: vk::AccessFlags::SHADER_WRITE };
+}
+
+impl std::ops::BitOr for Users {
+    type Output = Self;
+
+    fn bitor(self, other: Self) -> Self {
+        Self { stages: self.stages | other.stages, access: self.access | other.access }
+    }
+}
+
 /// What is drawn how.
 pub struct DrawOptions<'a> {
     /// The images drawn to, by location, each with the layout it is left in.

@@ -6,7 +6,7 @@ use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Image, M
 use crate::picture::{Picture, Readback};
 use crate::scene;
 use arealight::PackedLights;
-use arealight_vk::{Context, HostDevice, TableFormat, TableImage};
+use arealight_vk::{Context, TableFormat, TableImage};
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
 
@@ -115,7 +115,7 @@ impl<'a> Forward<'a> {
             size,
             fragment: include_bytes!("../spirv/forward.frag.spv"),
             set_layout: Some(bindings.layout),
-            users: READER,
+            users: Users::TRANSFER_READ,
         };
         // SAFETY: images and layout outlive the drawing, which is dropped after the frames.
         let draw = unsafe { Draw::new(gpu, &options) }?;
@@ -163,39 +163,27 @@ impl<'a> Forward<'a> {
     /// Where the device refuses.
     pub fn picture(&mut self) -> Result<Picture> {
         // What the render pass left is visible to transfers
-        self.readback.read(&mut self.frames, &self.radiance, vk::ImageLayout::TRANSFER_SRC_OPTIMAL, READER)
+        let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        self.readback.read(&mut self.frames, &self.radiance, layout, Users::TRANSFER_READ)
     }
 }
-
-/// Who uses the image beside the drawing.
-const READER: Users =
-    Users { stages: vk::PipelineStageFlags::TRANSFER, access: vk::AccessFlags::TRANSFER_READ };
 
 /// The table on the device, with its memory.
 fn upload_table<'a>(gpu: &'a Gpu<'a>, frames: &mut Frames<'_>) -> Result<(TableImage, Memory<'a>)> {
     // doc: table
-    let host = HostDevice {
-        instance: gpu.instance,
-        physical_device: gpu.physical_device,
-        device: &gpu.device,
-        pipeline_cache: vk::PipelineCache::null(),
+    let table = arealight_table::ggx();
+    // SAFETY: the handles are of one device, which goes after the image, which goes after the frames.
+    let mut image = unsafe {
+        let context = Context::new(gpu.instance, gpu.physical_device, &gpu.device)?;
+        TableImage::new(&context, &table, TableFormat::Rgba16Float)?
     };
-    let (table, format) = (arealight_table::ggx(), TableFormat::Rgba16Float);
-    // SAFETY: the handles belong together; the image goes after the frames, and its memory after the image.
-    let mut image = unsafe { TableImage::new(&Context::new(&host)?, &table, format) }?;
     let memory = gpu.device_memory(image.memory_requirements())?;
     // SAFETY: the memory was made for the image.
     unsafe { image.bind_memory(memory.raw, 0) }?;
     // doc end
-    let bytes = format.bytes(&table);
-    let staging = gpu.buffer(vk::BufferUsageFlags::TRANSFER_SRC, bytes.len())?;
-    staging.write(&bytes)?;
-    frames.submit(|_, commands| {
-        // SAFETY: the staging buffer holds the table until the wait below.
-        unsafe { image.record_upload(commands, staging.raw, 0) };
-        Ok(())
-    })?;
-    frames.wait()?;
+    let staging = gpu.filled_buffer(vk::BufferUsageFlags::TRANSFER_SRC, &image.bytes(&table))?;
+    // SAFETY: the staging buffer holds the table until the commands are done.
+    frames.run(|commands| unsafe { image.record_upload(commands, staging.raw, 0) })?;
     Ok((image, memory))
 }
 

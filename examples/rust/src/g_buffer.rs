@@ -1,4 +1,4 @@
-//! The deferred engine's G-buffer.
+//! The deferred engine's G-buffer, and the drawing into it.
 
 use crate::Result;
 use crate::draw::{Draw, DrawOptions, Users};
@@ -6,8 +6,10 @@ use crate::gpu::{Gpu, Image};
 use arealight_vk::ShadeFormats;
 use ash::vk;
 
-/// The images: depth, and what the fragment shader writes.
+/// The images: depth, and what the fragment shader writes. The drawing is dropped before them.
 pub struct GBuffer<'a> {
+    /// Draws the scene into the images.
+    pub draw: Draw<'a>,
     /// Reversed.
     pub depth: Image<'a>,
     /// As [`arealight::plan::GBufferLayout::Arealight`] says.
@@ -16,62 +18,60 @@ pub struct GBuffer<'a> {
     pub base_color_metalness: Image<'a>,
     /// What is emitted, and then what the pass adds.
     pub radiance: Image<'a>,
+    /// Of all images, in pixels.
+    pub size: [u32; 2],
+    /// In which stages, and how, the images are used between one drawing and the next.
+    pub users: (vk::PipelineStageFlags, vk::AccessFlags),
 }
 
 impl<'a> GBuffer<'a> {
-    /// Makes the images.
+    // doc: formats
+    /// The images' formats.
+    pub const FORMATS: ShadeFormats = ShadeFormats {
+        position: vk::Format::D32_SFLOAT,
+        normal: vk::Format::R16G16B16A16_SFLOAT,
+        base_color: vk::Format::R8G8B8A8_UNORM,
+        radiance: vk::Format::R32G32B32A32_SFLOAT,
+        specular: vk::Format::UNDEFINED, // there is none
+        coat: vk::Format::UNDEFINED,
+    };
+    // doc end
+
+    /// Makes the images and the drawing; between one and the next the images are used in these stages, with this access, and copied from.
     ///
     /// # Errors
     /// Where memory is out, or the device has no such images.
-    pub fn new(gpu: &'a Gpu<'a>, size: [u32; 2]) -> Result<Self> {
+    pub fn new(
+        gpu: &'a Gpu<'a>,
+        size: [u32; 2],
+        users: (vk::PipelineStageFlags, vk::AccessFlags),
+    ) -> Result<Self> {
         // doc: g_buffer
+        let formats = Self::FORMATS;
         let (color, sampled) = (vk::ImageUsageFlags::COLOR_ATTACHMENT, vk::ImageUsageFlags::SAMPLED);
         let depth = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let radiance = color | vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::TRANSFER_SRC;
-        Ok(Self {
-            depth: gpu.image(vk::Format::D32_SFLOAT, size, depth)?,
-            normal_roughness: gpu.image(vk::Format::R16G16B16A16_SFLOAT, size, color | sampled)?,
-            base_color_metalness: gpu.image(vk::Format::R8G8B8A8_UNORM, size, color | sampled)?,
-            radiance: gpu.image(vk::Format::R32G32B32A32_SFLOAT, size, radiance)?,
-        })
+        let depth = gpu.image(formats.position, size, depth)?;
+        let normal_roughness = gpu.image(formats.normal, size, color | sampled)?;
+        let base_color_metalness = gpu.image(formats.base_color, size, color | sampled)?;
+        let radiance = gpu.image(formats.radiance, size, radiance)?;
         // doc end
-    }
-
-    /// What views do not tell the pass.
-    pub fn formats(&self) -> ShadeFormats {
-        ShadeFormats {
-            position: self.depth.format,
-            normal: self.normal_roughness.format,
-            base_color: self.base_color_metalness.format,
-            specular: vk::Format::UNDEFINED,
-            coat: vk::Format::UNDEFINED,
-            radiance: self.radiance.format,
-        }
-    }
-
-    /// The drawing into these images.
-    ///
-    /// # Safety
-    /// As [`Draw::new`].
-    ///
-    /// # Errors
-    /// As [`Draw::new`].
-    pub unsafe fn make_draw(&self, gpu: &'a Gpu<'a>, size: [u32; 2], users: Users) -> Result<Draw<'a>> {
         let read_only = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
         let colors = [
-            (&self.normal_roughness, read_only),
-            (&self.base_color_metalness, read_only),
-            (&self.radiance, vk::ImageLayout::GENERAL), // as the pass wants it
+            (&normal_roughness, read_only),
+            (&base_color_metalness, read_only),
+            (&radiance, vk::ImageLayout::GENERAL), // as the pass wants it
         ];
         let options = DrawOptions {
             colors: &colors,
-            depth: &self.depth,
+            depth: &depth,
             size,
             fragment: include_bytes!("../spirv/g_buffer.frag.spv"),
             set_layout: None,
-            users,
+            users: Users { stages: users.0, access: users.1 } | Users::TRANSFER_READ,
         };
-        // SAFETY: the same contract.
-        unsafe { Draw::new(gpu, &options) }
+        // SAFETY: the images are dropped after the drawing; owners wait for pending work first.
+        let draw = unsafe { Draw::new(gpu, &options) }?;
+        Ok(Self { draw, depth, normal_roughness, base_color_metalness, radiance, size, users })
     }
 }

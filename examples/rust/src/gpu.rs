@@ -169,6 +169,16 @@ impl<'a> Gpu<'a> {
         }
     }
 
+    /// A buffer that holds these bytes.
+    ///
+    /// # Errors
+    /// Where there is no memory left.
+    pub fn filled_buffer(&self, usage: vk::BufferUsageFlags, bytes: &[u8]) -> Result<Buffer<'_>> {
+        let buffer = self.buffer(usage, bytes.len())?;
+        buffer.write(bytes)?;
+        Ok(buffer)
+    }
+
     /// An image to draw to.
     ///
     /// # Errors
@@ -400,6 +410,18 @@ impl<'a> Frames<'a> {
         }
         self.next = (place + 1) % self.slots.len();
         Ok(())
+    }
+
+    /// Records commands, submits them and waits until they are done, and every frame in flight with them.
+    ///
+    /// # Errors
+    /// Where the device refuses.
+    pub fn run(&mut self, record: impl FnOnce(vk::CommandBuffer)) -> Result<()> {
+        self.submit_with(|_, commands| {
+            record(commands);
+            Ok(Semaphores::default())
+        })?;
+        self.wait()
     }
 
     /// Waits for every frame in flight.

@@ -120,7 +120,7 @@ impl<'a> View<'a> {
         let Some(swapchain) = (unsafe { Swapchain::new(gpu, surface, wanted) })? else { return Ok(None) };
         engine.resize(swapchain.size)?;
         // SAFETY: the image stays until the engine is resized, when no view is left; the swapchain waits before this goes.
-        let tone_map = unsafe { ToneMap::new(gpu, engine.radiance(), swapchain.size) }?;
+        let tone_map = unsafe { ToneMap::new(gpu, &engine.g_buffer.radiance, swapchain.size) }?;
         Ok(Some(Self { swapchain, tone_map, wanted }))
     }
 
@@ -130,7 +130,7 @@ impl<'a> View<'a> {
         // doc: frame
         // Behind the frame's own commands: acquire an image, and bring the radiance to it; then show it
         let mut shown = 0;
-        engine.frame_then(seconds, |place, commands| {
+        engine.frame(seconds, |place, commands| {
             // SAFETY: the place's last frame is over; the commands are being recorded, and wait for the image at TRANSFER.
             unsafe {
                 let (image, index, semaphores) = swapchain.acquire(place)?;

@@ -3,7 +3,7 @@
 use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::deferred::Deferred;
 use arealight_examples::forward::Forward;
-use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu};
+use arealight_examples::gpu::{FRAMES_IN_FLIGHT, Frames, Gpu, Semaphores};
 use arealight_examples::picture::Picture;
 use ash::vk;
 use std::process::Command;
@@ -30,7 +30,7 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     let (mut deferred, mut forward) = (Deferred::new(&gpu, SIZE).unwrap(), Forward::new(&gpu, SIZE).unwrap());
     let mut pictures = |seconds: &[f64]| {
         for &seconds in seconds {
-            deferred.frame(seconds).unwrap();
+            deferred.frame(seconds, |_, _| Ok(Semaphores::default())).unwrap();
             forward.frame(seconds).unwrap();
         }
         (deferred.picture().unwrap(), forward.picture().unwrap())
@@ -60,7 +60,7 @@ fn both_engines_make_the_same_picture_whatever_they_drew_before() {
     // Neither do other sizes, larger and smaller, with frames of the size before in flight
     let mut of_size = |size| {
         deferred.resize(size).unwrap();
-        deferred.frame(0.5).unwrap();
+        deferred.frame(0.5, |_, _| Ok(Semaphores::default())).unwrap();
         deferred.picture().unwrap()
     };
     let (large, small) = (of_size([136, 120]), of_size([24, 40]));

@@ -3,7 +3,7 @@
 use arealight_engine::host::testing::instance_or_skip;
 use arealight_examples::command_line::FRAME_RATE;
 use arealight_examples::deferred::Deferred;
-use arealight_examples::gpu::Gpu;
+use arealight_examples::gpu::{Gpu, Semaphores};
 use std::io::{BufRead as _, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -126,7 +126,7 @@ fn a_window_shows_what_the_engine_draws() {
     let gpu = Gpu::new(&instance).unwrap();
     let mut engine = Deferred::new(&gpu, SIZE).unwrap();
     let frames = (0..FRAMES).map(|frame| {
-        engine.frame(f64::from(frame) / FRAME_RATE).unwrap();
+        engine.frame(f64::from(frame) / FRAME_RATE, |_, _| Ok(Semaphores::default())).unwrap();
         engine.picture().unwrap().encoded()
     });
     let frames: Vec<_> = frames.collect();

@@ -169,23 +169,11 @@ fn draw(engine: &TestEngine, lights: &[Light]) -> Vec<[f32; 3]> {
         position: of(&position),
         normal: of(&normal),
         base_color: of(&base_color),
-        specular: None,
-        coat: None,
         radiance: Resource::StorageImage { view: radiance.view() },
-        glossy: None,
-        light_textures: None,
         shapes: Some(Resource::buffer(shape_buffer.handle())),
-        picks: None,
-        tiles: None,
+        ..ShadeResources::default()
     };
-    let frame = ShadeFrame {
-        size: SIZE,
-        camera: Vec3::ZERO,
-        position_from_clip: None,
-        lights: packed.summary(),
-        tile_lists: None,
-        seed: 0,
-    };
+    let frame = ShadeFrame { size: SIZE, lights: packed.summary(), ..ShadeFrame::default() };
     // SAFETY: the set is new, and what it points to lives until the submission was waited for.
     unsafe {
         let set = pool.allocate(pass.set_layout()).unwrap();

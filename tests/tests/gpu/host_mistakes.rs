@@ -7,11 +7,10 @@ use arealight_engine::host::Location;
 use arealight_tests::TestEngine;
 use arealight_tool_kernels::kernels::VISIBILITY;
 use arealight_vk::{
-    ComputePass, Context, Error, HostDevice, LightTextures, Resource, ShadeFrame, ShadePass, TableFormat,
-    TableImage,
+    ComputePass, Context, Error, LightTextures, Resource, ShadeFrame, ShadePass, TableFormat, TableImage,
 };
 use ash::vk;
-use glam::Vec3;
+
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
@@ -41,14 +40,8 @@ fn lying_instance(engine: &TestEngine, lies: &[(&CStr, *const c_void)]) -> ash::
 
 fn context(engine: &TestEngine, instance: &ash::Instance) -> Result<Context, Error> {
     let host = engine.host();
-    let handles = HostDevice {
-        instance,
-        physical_device: host.physical_device(),
-        device: host.device(),
-        pipeline_cache: vk::PipelineCache::null(),
-    };
     // SAFETY: the handles belong together, and live as long as the engine.
-    unsafe { Context::new(&handles) }
+    unsafe { Context::new(instance, host.physical_device(), host.device()) }
 }
 
 /// Properties of a device of Vulkan 1.0.
@@ -204,14 +197,8 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
         let options = ShadeOptions { surfaces: Effects::DIFFUSE, ..ShadeOptions::default() };
         let pass = ShadePass::new(&context, options).unwrap();
         // What is not recorded has no label either
-        let frame = ShadeFrame {
-            size: [u32::MAX, 8],
-            camera: Vec3::ZERO,
-            position_from_clip: None,
-            lights: LightSummary::default(),
-            tile_lists: None,
-            seed: 0,
-        };
+        let frame =
+            ShadeFrame { size: [u32::MAX, 8], lights: LightSummary::default(), ..ShadeFrame::default() };
         let none = vk::DescriptorSet::null();
         engine.host().submit(|commands| drop(pass.record(commands, none, &frame).unwrap_err())).unwrap();
         // A pipeline is named once it is made

@@ -107,14 +107,8 @@ fn the_glossy_image_is_asked_for_where_lobes_are_apart() {
         position: image,
         normal: image,
         base_color: image,
-        specular: None,
-        coat: None,
         radiance: view(7),
-        glossy: None,
-        light_textures: None,
-        shapes: None,
-        picks: None,
-        tiles: None,
+        ..ShadeResources::default()
     };
     let apart = ShadeOptions { separate_lobes: true, ..ShadeOptions::default() };
     // SAFETY: no submission uses the pass, and nothing is written where an error is returned.

@@ -17,14 +17,7 @@ pub(crate) fn field(error: &Error) -> &'static str {
 }
 
 fn frame() -> ShadeFrame {
-    ShadeFrame {
-        size: [8, 8],
-        camera: Vec3::ZERO,
-        position_from_clip: None,
-        lights: LightSummary::default(),
-        tile_lists: None,
-        seed: 0,
-    }
+    ShadeFrame { size: [8, 8], lights: LightSummary::default(), ..ShadeFrame::default() }
 }
 
 fn lights(light_count: u32, quad_count: u32, shape_count: u32, effects: Effects) -> ShadeFrame {

@@ -50,14 +50,8 @@ impl Images {
             position: of(&position),
             normal: of(&normal),
             base_color: of(&base_color),
-            specular: None,
-            coat: None,
             radiance: Resource::StorageImage { view: radiance.view() },
-            glossy: None,
-            light_textures: None,
-            shapes: None,
-            picks: None,
-            tiles: None,
+            ..ShadeResources::default()
         };
         // SAFETY: the set is new; tests wait before the images go.
         let set = unsafe {
@@ -142,10 +136,8 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
         let frame = ShadeFrame {
             size,
             camera: Vec3::new(0.0, -1.0, 1.0),
-            position_from_clip: None,
             lights: packed.summary(),
-            tile_lists: None,
-            seed: 0,
+            ..ShadeFrame::default()
         };
         // SAFETY: the commands are being recorded, with a set of images of at least this size.
         unsafe { pass.record(commands, images.set, &frame) }.unwrap();

@@ -179,11 +179,9 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             specular: Some(read(&specular)),
             coat: Some(read(&coat)),
             radiance: Resource::StorageImage { view: radiance.view() },
-            glossy: None,
             light_textures: Some(engine.light_textures()),
             shapes: Some(Resource::buffer(buffer.handle())),
-            picks: None,
-            tiles: None,
+            ..ShadeResources::default()
         };
         pass.write_set(set, &resources).expect("resources");
         let frame = ShadeFrame {

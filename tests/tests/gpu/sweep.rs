@@ -158,22 +158,15 @@ impl<'a> Sweep<'a> {
                 normal: sampled(normal),
                 base_color: sampled(color),
                 specular: Some(sampled(color)),
-                coat: None,
                 radiance: Resource::StorageImage { view: radiance.view() },
-                glossy: None,
-                light_textures: None,
-                shapes: None,
-                picks: None,
-                tiles: None,
+                ..ShadeResources::default()
             };
             pass.write_set(set, &resources).unwrap();
             let frame = ShadeFrame {
                 size: [SURFACES.len() as u32, FRAMES as u32],
                 camera: CAMERA,
-                position_from_clip: None,
                 lights: self.packed.summary(),
-                tile_lists: None,
-                seed: 0,
+                ..ShadeFrame::default()
             };
             host.submit(|commands| pass.record(commands, set, &frame).unwrap()).unwrap();
         }

@@ -399,8 +399,10 @@ fn options_out_of_range_and_missing_buffers_are_refused() {
         let none = vk::DescriptorSet::null();
         // SAFETY: Nothing is written or recorded where an error is returned.
         unsafe {
-            let without = ShadeResources { tiles: None, ..resources };
-            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "tiles");
+            let without = ShadeResources { tile_lists: None, ..resources };
+            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "tile_lists");
+            let without = ShadeResources { lobe_horizons: None, ..resources };
+            assert_eq!(field(pass.write_set(none, &without).unwrap_err()), "lobe_horizons");
             for lists in [None, Some(resources.position), Some(Resource::buffer(vk::Buffer::null()))] {
                 let frame = ShadeFrame { tile_lists: lists, ..frame };
                 let error = pass.record(vk::CommandBuffer::null(), none, &frame).unwrap_err();

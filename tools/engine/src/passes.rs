@@ -3,7 +3,7 @@
 use crate::host::{DescriptorPool, Host};
 use crate::{EngineError, Kept};
 use arealight::kernels::Kernel;
-use arealight_vk::{ComputePass, Context, HostDevice, Resource};
+use arealight_vk::{ComputePass, Context, Resource};
 use ash::vk;
 use bytemuck::Pod;
 use rayon::prelude::*;
@@ -32,14 +32,8 @@ impl Passes {
     /// # Errors
     /// [`EngineError`] where the device is too old.
     pub fn new(host: Host) -> Result<Self, EngineError> {
-        let handles = HostDevice {
-            instance: host.instance(),
-            physical_device: host.physical_device(),
-            device: host.device(),
-            pipeline_cache: vk::PipelineCache::null(),
-        };
         // SAFETY: The handles belong together and are kept alive by `host`, which this drops last.
-        let context = unsafe { Context::new(&handles) }?;
+        let context = unsafe { Context::new(host.instance(), host.physical_device(), host.device()) }?;
         Ok(Self { made: RefCell::default(), context, host })
     }
 

@@ -320,11 +320,9 @@ impl<'a> SceneRenderer<'a> {
             specular: Some(specular),
             coat: Some(coat),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
-            glossy: None,
             light_textures: Some(self.engine.light_textures()),
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),
-            picks: None,
-            tiles: None,
+            ..ShadeResources::default()
         }
     }
 
@@ -345,10 +343,8 @@ impl<'a> SceneRenderer<'a> {
         ShadeFrame {
             size: self.size,
             camera: Vec3::from(self.camera.camera),
-            position_from_clip: None,
             lights: self.lights,
-            tile_lists: None,
-            seed: 0,
+            ..ShadeFrame::default()
         }
     }
 

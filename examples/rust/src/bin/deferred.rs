@@ -3,7 +3,7 @@
 
 use arealight_examples::command_line::CommandLine;
 use arealight_examples::deferred::Deferred;
-use arealight_examples::gpu::{Gpu, Instance};
+use arealight_examples::gpu::{Gpu, Instance, Semaphores};
 
 fn main() -> arealight_examples::Result<()> {
     let wanted = CommandLine::parse(std::env::args().skip(1))?;
@@ -22,7 +22,7 @@ fn main() -> arealight_examples::Result<()> {
     let gpu = Gpu::new(&instance)?;
     let mut engine = Deferred::new(&gpu, wanted.size)?;
     for seconds in wanted.times() {
-        engine.frame(seconds)?;
+        engine.frame(seconds, |_, _| Ok(Semaphores::default()))?;
     }
     let path = wanted.path_or("deferred.png");
     engine.picture()?.save(&path)?;

@@ -6,7 +6,7 @@ use crate::kept::Kept;
 use crate::{Engine, EngineError};
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory, TileResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory};
 use ash::vk;
 use std::time::Duration;
 
@@ -85,11 +85,6 @@ impl TileLists {
 }
 
 impl TiledView {
-    fn resources(&self) -> TileResources {
-        let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
-        TileResources { lobe_horizons: buffer(&self.lobe_horizons), tile_lists: buffer(&self.tile_lists) }
-    }
-
     /// The lists that the last run wrote.
     ///
     /// # Errors
@@ -159,9 +154,10 @@ impl SceneRenderer<'_> {
 
     /// What the pass of a view takes for a run.
     pub fn tiled_run(&self, view: &TiledView) -> (ShadeResources, ShadeFrame) {
-        let tiles = view.resources();
-        let resources = ShadeResources { tiles: Some(tiles), ..self.shade_resources() };
-        (resources, ShadeFrame { tile_lists: Some(tiles.tile_lists), ..self.shade_frame() })
+        let buffer = |buffer: &Buffer| Some(Resource::buffer(buffer.handle()));
+        let (lobe_horizons, tile_lists) = (buffer(&view.lobe_horizons), buffer(&view.tile_lists));
+        let resources = ShadeResources { lobe_horizons, tile_lists, ..self.shade_resources() };
+        (resources, ShadeFrame { tile_lists, ..self.shade_frame() })
     }
 }
 
