@@ -3,7 +3,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 // The yardstick of shadow rays: plain area sampling. For each ray a light is chosen by its power over its distance squared, and a point of it
-// uniformly by area; what the true BRDF (Lambert + GGX) reflects of it, if it arrives, over the density of both choices, is added to the radiance.
+// by area; what the true BRDF (Lambert + GGX) reflects of it, if it arrives, over the density of both choices, is added to the radiance.
 // Nothing is known of the unshadowed radiance, so that there is noise where nothing is hidden too.
 //
 // The same blockers, random numbers and G-buffer as the product's passes. For convex quads of one colour.
@@ -75,20 +75,17 @@ void choose_lights(ivec2 pixel, vec3 position, out Choice choices[MOST_RAYS]) {
     }
 }
 
-// A point of a quad relative to its center, uniform by area; `area` is that of the quad.
+// A point of a quad relative to its center; `area` is what a density of 1 over the random numbers is one over, in area: the quad's, where it is a
+// parallelogram.
 vec3 point_of(ArealightGpuLight light, vec2 random, out float area) {
     vec3 a = light_vertices[light.first_vertex].xyz;
     vec3 b = light_vertices[light.first_vertex + 1u].xyz;
     vec3 c = light_vertices[light.first_vertex + 2u].xyz;
     vec3 d = light_vertices[light.first_vertex + min(3u, light.vertex_count - 1u)].xyz;
-    float first = 0.5 * length(cross(b - a, c - a));
-    float second = 0.5 * length(cross(c - a, d - a));
-    area = first + second;
-    float sum = first;
-    bool in_second = second > 0.0 && arealight_choose(random.x, sum, second);
-    float root = sqrt(random.x);
-    float v = random.y * root;
-    return a * (1.0 - root) + (in_second ? c : b) * (root - v) + (in_second ? d : c) * v;
+    vec3 along = mix(b - a, c - d, random.y);
+    vec3 across = mix(d - a, c - b, random.x);
+    area = length(cross(along, across));
+    return a + random.x * (b - a) + random.y * across;
 }
 
 // f cos of both lobes, for directions in the shading frame.

@@ -20,6 +20,7 @@
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
 //! | [`shadows`] | how far a picture with shadows is from the reference |
 //! | [`shadow_levels`] | the error and the time of every level of shadows, beside area sampling |
+//! | [`shadow_motion`] | the error of shadows in films, frame by frame |
 //! | [`sections`] | the sections of documents that commands write |
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
@@ -42,6 +43,7 @@ pub mod report;
 pub mod school;
 pub mod sections;
 pub mod shadow_levels;
+pub mod shadow_motion;
 pub mod shadows;
 pub mod shape_cost;
 pub mod shape_stability;

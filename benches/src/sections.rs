@@ -22,6 +22,12 @@ impl Markers {
         end: "<!-- end: arealight bench compiled --model -->",
     };
 
+    /// Of [`crate::shadow_motion`].
+    pub const SHADOWS_IN_MOTION: Self = Self {
+        begin: "<!-- begin: arealight bench shadows --motion -->",
+        end: "<!-- end: arealight bench shadows --motion -->",
+    };
+
     /// Of [`crate::shadow_levels`].
     pub const SHADOWS: Self = Self {
         begin: "<!-- begin: arealight bench shadows -->",

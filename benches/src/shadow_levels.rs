@@ -1,7 +1,7 @@
 //! What shadows err at each level, and what they take: beside the Monte Carlo reference, and beside area sampling with as many rays.
 
 mod area_sampling;
-mod pictures;
+pub(crate) mod pictures;
 mod text;
 
 pub use area_sampling::AREA_SAMPLING;

@@ -20,6 +20,13 @@ impl<'a> Pictures<'a> {
         Ok(Self { renderer, emission })
     }
 
+    /// As [`Pictures::begin`], for a view that has changed.
+    pub fn look_again(&mut self) -> Result<(), EngineError> {
+        self.begin()?;
+        self.emission = colors(self.renderer.radiance()?);
+        Ok(())
+    }
+
     /// Begins a picture: the radiance has nothing yet of what surfaces reflect.
     pub fn begin(&mut self) -> Result<(), EngineError> {
         self.renderer.visibility().map(drop)

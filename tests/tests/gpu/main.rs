@@ -35,6 +35,7 @@ mod shading;
 mod shadow_history;
 mod shadow_levels;
 mod shadow_mistakes;
+mod shadow_motion;
 mod shadow_rays;
 mod shadowed_reference;
 mod shadows;

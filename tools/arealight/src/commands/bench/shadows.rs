@@ -4,8 +4,9 @@ use super::{Ends, document};
 use crate::failure::Failure;
 use crate::progress;
 use arealight_benches::sections::Markers;
-use arealight_benches::shadow_levels::{self, Options};
+use arealight_benches::{shadow_levels, shadow_motion};
 use arealight_scene::Scene;
+use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,18 +16,25 @@ use std::process::ExitCode;
 /// each pixel's light that arrives, in all lit pixels and in penumbra alone, and the radiance. Times are of each pass of a frame.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenes to measure in place of the three that are built in
+    /// Scenes to measure in place of those that are built in
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// Pixels to a side of the pictures.
-    #[arg(long, default_value_t = 192, value_parser = clap::value_parser!(u32).range(16..=2048))]
-    size: u32,
-    /// Samples a pixel of the reference, of which there are two; less where there are many lights.
-    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(4..=65_536))]
-    samples: u32,
+    /// Films instead, in which the camera and the light move: errors with and without a history, each frame beside its own truth.
+    #[arg(long)]
+    motion: bool,
+    /// Pixels to a side of the pictures; of films, which are 16:9, the height [default: 192; 90 with --motion]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(16..=2048))]
+    size: Option<u32>,
+    /// Samples a pixel of the reference, of which there are two, and less where there are many lights; of films, frames of four rays [default: 256;
+    /// 64 with --motion]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(4..=65_536))]
+    samples: Option<u32>,
     /// Rounds in which time is taken.
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=1000), conflicts_with = "motion")]
     rounds: u32,
+    /// Judge every so many of a film's 64 frames.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64), requires = "motion")]
+    every: u32,
     #[command(flatten)]
     ends: Ends,
 }
@@ -38,32 +46,54 @@ const SCENES: [(&str, &[u8]); 3] = [
     ("hundred-lamps.glb", include_bytes!("../../../../../scenes/hundred-lamps.glb")),
 ];
 
+/// Of them, those that films are made of.
+const FILMED: usize = 2;
+
 impl Arguments {
     fn scenes(&self) -> Result<Vec<Scene>, Failure> {
         if self.scenes.is_empty() {
-            let built_in = |(name, bytes): (&str, &[u8])| {
+            let built_in = |(name, bytes): &(&str, &[u8])| {
                 Scene::from_bytes(bytes, name).map_err(|error| Failure::input(name, error))
             };
-            return SCENES.into_iter().map(built_in).collect();
+            let count = if self.motion { FILMED } else { SCENES.len() };
+            return SCENES.iter().take(count).map(built_in).collect();
         }
         let load = |path: &PathBuf| Scene::load(path).map_err(|error| Failure::Scene(error.to_string()));
         self.scenes.iter().map(load).collect()
     }
 
-    /// The command that runs the same again.
-    fn command(&self) -> String {
+    /// The command that runs the same again, with these options beside the scenes.
+    fn command(&self, options: &str) -> String {
         let mut command = "arealight bench shadows".to_owned();
         for path in &self.scenes {
             command += &format!(" {}", path.display());
         }
-        let Self { size, samples, rounds, .. } = self;
-        command + &format!(" --size {size} --samples {samples} --rounds {rounds} --markdown docs/shadows.md")
+        format!("{command} {options} --markdown docs/shadows.md")
+    }
+
+    /// Writes a section of a document, and prints.
+    fn report(
+        &self,
+        found: &impl Serialize,
+        markers: Markers,
+        section: &str,
+        text: &str,
+    ) -> Result<(), Failure> {
+        let whole = self.ends.markdown.as_deref().map(|path| document(path, markers, section));
+        self.ends.report(found, &whole.unwrap_or_default(), text)
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let Arguments { size, samples, rounds, .. } = *arguments;
-    let options = Options { size, samples, rounds };
+    if arguments.motion { run_motion(arguments) } else { run_levels(arguments) }?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn run_levels(arguments: &Arguments) -> Result<(), Failure> {
+    let base = shadow_levels::Options::default();
+    let size = arguments.size.unwrap_or(base.size);
+    let samples = arguments.samples.unwrap_or(base.samples);
+    let options = shadow_levels::Options { size, samples, rounds: arguments.rounds };
     let scenes = arguments.scenes()?;
     let host = arguments.ends.host()?;
 
@@ -73,9 +103,27 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
-    let section = found.to_markdown(&arguments.command());
-    let whole = arguments.ends.markdown.as_deref();
-    let whole = whole.map(|path| document(path, Markers::SHADOWS, &section)).unwrap_or_default();
-    arguments.ends.report(&found, &whole, &found.to_text())?;
-    Ok(ExitCode::SUCCESS)
+    let command =
+        arguments.command(&format!("--size {size} --samples {samples} --rounds {}", arguments.rounds));
+    arguments.report(&found, Markers::SHADOWS, &found.to_markdown(&command), &found.to_text())
+}
+
+fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
+    let base = shadow_motion::Options::default();
+    let height = arguments.size.unwrap_or(base.size[1]);
+    let truth = arguments.samples.unwrap_or(base.truth);
+    let size = [height * 16 / 9, height];
+    let options = shadow_motion::Options { size, truth, every: arguments.every, ..base };
+    let scenes = arguments.scenes()?;
+    let host = arguments.ends.host()?;
+
+    let bar = progress::bar(options.steps(scenes.len()), "frames");
+    let found =
+        shadow_motion::run(&host, &arealight_table::ggx(), &scenes, &options, &|count| bar.inc(count));
+    bar.finish_and_clear();
+    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+
+    let command =
+        arguments.command(&format!("--motion --size {height} --samples {truth} --every {}", arguments.every));
+    arguments.report(&found, Markers::SHADOWS_IN_MOTION, &found.to_markdown(&command), &found.to_text())
 }

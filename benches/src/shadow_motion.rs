@@ -1,0 +1,269 @@
+//! What shadows err while things move: of each frame of a film the error beside that frame's own truth.
+//!
+//! The truth is a mean over many frames of rays as they are: the lobes are the product's own, so that errors are those of rays, filter and history
+//! alone, and not of the fit.
+
+mod film;
+mod text;
+
+use crate::shadow_levels::ShadowLevelsError;
+use crate::shadows::{ShadowErrors, ShadowTruth, SizeError};
+use arealight::LightTable;
+use arealight_engine::Engine;
+use arealight_engine::host::Host;
+use arealight_scene::Scene;
+use arealight_vk::TableFormat;
+use film::Film;
+use serde::{Deserialize, Serialize};
+
+/// What to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Width and height of the pictures.
+    pub size: [u32; 2],
+    /// Frames of a film.
+    pub frames: u32,
+    /// Every so many of them is judged, from [`FIRST`] on.
+    pub every: u32,
+    /// Frames of four rays that a truth is the mean of.
+    pub truth: u32,
+}
+
+impl Default for Options {
+    /// Some four minutes on two processors.
+    fn default() -> Self {
+        Self { size: [160, 90], frames: 64, every: 4, truth: 64 }
+    }
+}
+
+/// The first frame that is judged: before it a history is short.
+pub const FIRST: u32 = 5;
+
+impl Options {
+    /// What progress adds up to over so many scenes.
+    pub fn steps(&self, scenes: usize) -> u64 {
+        (scenes * Motion::ALL.len()) as u64 * u64::from(self.frames)
+    }
+
+    fn is_judged(&self, frame: u32) -> bool {
+        frame >= FIRST && (frame - FIRST).is_multiple_of(self.every.max(1))
+    }
+}
+
+/// What moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Motion {
+    /// Nothing.
+    Rest,
+    /// The camera, about the vertical axis through the origin, by 1 degree a frame.
+    Camera,
+    /// The lights, by 4 cm and 1 degree a frame. What is seen of lamps stays.
+    Light,
+    /// Both.
+    Both,
+}
+
+impl Motion {
+    /// Every motion, in the order of the tables.
+    pub const ALL: [Self; 4] = [Self::Rest, Self::Camera, Self::Light, Self::Both];
+
+    /// A word for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Camera => "camera",
+            Self::Light => "light",
+            Self::Both => "both",
+        }
+    }
+}
+
+/// A way to shadows over frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Scheme {
+    /// Rays a pixel.
+    pub rays: u32,
+    /// Whether there is a history, by the camera.
+    pub history: bool,
+}
+
+impl Scheme {
+    /// Every scheme, in the order of the tables; all are filtered.
+    pub const ALL: [Self; 4] = [
+        Self { rays: 1, history: false },
+        Self { rays: 1, history: true },
+        Self { rays: 2, history: false },
+        Self { rays: 2, history: true },
+    ];
+
+    /// As the tables have it.
+    pub fn name(self) -> String {
+        let history = if self.history { ", history" } else { "" };
+        format!("filtered:{}{history}", self.rays)
+    }
+}
+
+/// The errors of a film: roots of means of squares, without the truth's noise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FilmErrors {
+    /// What moves.
+    pub motion: Motion,
+    /// By what.
+    pub scheme: Scheme,
+    /// Of the judged frames' lit pixels.
+    pub rmse: f64,
+    /// Of those in a penumbra.
+    pub penumbra: f64,
+    /// Of the pixels whose surface the frame before did not see; none where there are none.
+    pub uncovered: Option<f64>,
+    /// Of the frame with the largest error, over its lit pixels.
+    pub worst: f64,
+    /// Results that are NaN or infinite.
+    pub not_finite: usize,
+}
+
+/// The films of a scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SceneFilms {
+    /// The scene.
+    pub name: String,
+    /// A film for each motion and scheme.
+    pub films: Vec<FilmErrors>,
+    /// The noise of a truth, over lit pixels, that was taken out of the squares.
+    pub noise: f64,
+}
+
+impl SceneFilms {
+    /// The film of a motion and a scheme.
+    pub fn find(&self, motion: Motion, scheme: Scheme) -> Option<&FilmErrors> {
+        self.films.iter().find(|film| film.motion == motion && film.scheme == scheme)
+    }
+}
+
+/// What a run found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ShadowMotion {
+    /// The device.
+    pub device: String,
+    /// [`Options::size`].
+    pub size: [u32; 2],
+    /// [`Options::frames`].
+    pub frames: u32,
+    /// How many of them were judged.
+    pub judged: usize,
+    /// Each scene.
+    pub scenes: Vec<SceneFilms>,
+}
+
+/// Runs every scheme over films of each scene. `progress` is told of frames done.
+///
+/// # Errors
+/// [`ShadowLevelsError`].
+pub fn run(
+    host: &Host,
+    table: &LightTable,
+    scenes: &[Scene],
+    options: &Options,
+    progress: &dyn Fn(u64),
+) -> Result<ShadowMotion, ShadowLevelsError> {
+    let engine = Engine::new(host.clone(), table, TableFormat::default())?;
+    let run_scene = |scene: &Scene| -> Result<SceneFilms, ShadowLevelsError> {
+        let (mut films, mut noise) = (vec![], (0.0, 0));
+        for motion in Motion::ALL {
+            let mut sums = [Sums::default(); Scheme::ALL.len()];
+            let mut film = Film::new(&engine, scene, motion, options)?;
+            for frame in 0..options.frames {
+                film.advance(frame)?;
+                let truth = if options.is_judged(frame) { Some(film.truth(options.truth)?) } else { None };
+                for (place, sums) in sums.iter_mut().enumerate() {
+                    let found = film.shadows(place, frame)?;
+                    if let Some(truth) = &truth {
+                        sums.add(truth, &found, film.uncovered())?;
+                    }
+                }
+                if let Some(truth) = &truth {
+                    let errors = truth.errors(&truth.half)?;
+                    noise.0 += errors.rmse.powi(2) * errors.lit as f64;
+                    noise.1 += errors.lit;
+                }
+                progress(1);
+            }
+            films.extend(Scheme::ALL.iter().zip(sums).map(|(scheme, sums)| sums.errors(motion, *scheme)));
+        }
+        Ok(SceneFilms { name: scene.name.clone(), films, noise: root(noise) })
+    };
+    Ok(ShadowMotion {
+        device: host.device_name(),
+        size: options.size,
+        frames: options.frames,
+        judged: (0..options.frames).filter(|frame| options.is_judged(*frame)).count(),
+        scenes: scenes.iter().map(run_scene).collect::<Result<_, _>>()?,
+    })
+}
+
+/// The truth of a frame.
+struct FrameTruth {
+    mean: ShadowTruth,
+    /// The means of its first half: from the whole they are as far as the whole is from what is right.
+    half: Vec<f64>,
+}
+
+impl FrameTruth {
+    fn errors(&self, parts: &[f64]) -> Result<ShadowErrors, SizeError> {
+        self.mean.errors(parts, &self.mean.radiance)
+    }
+}
+
+/// Sums over the frames of a film: of squares of errors and how many they are.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    all: (f64, usize),
+    penumbra: (f64, usize),
+    uncovered: (f64, usize),
+    worst: f64,
+    not_finite: usize,
+}
+
+fn root((square, count): (f64, usize)) -> f64 {
+    (square.max(0.0) / count.max(1) as f64).sqrt()
+}
+
+impl Sums {
+    /// Adds a frame, less its truth's noise.
+    fn add(
+        &mut self,
+        truth: &FrameTruth,
+        found: &[f64],
+        uncovered: &[bool],
+    ) -> Result<(), ShadowLevelsError> {
+        let (errors, noise) = (truth.errors(found)?, truth.errors(&truth.half)?);
+        let rest = |error: f64, noise: f64| error * error - noise * noise;
+        let all = rest(errors.rmse, noise.rmse);
+        self.worst = self.worst.max(all.max(0.0).sqrt());
+        self.all.0 += all * errors.lit as f64;
+        self.all.1 += errors.lit;
+        self.penumbra.0 += rest(errors.penumbra_rmse, noise.penumbra_rmse) * errors.penumbra as f64;
+        self.penumbra.1 += errors.penumbra;
+        self.not_finite += errors.not_finite;
+        let pixels = truth.mean.parts.iter().zip(found.iter().zip(&truth.half)).zip(uncovered);
+        for ((part, (found, half)), uncovered) in pixels {
+            if let (Some(part), true) = (part, uncovered) {
+                self.uncovered.0 += rest(found - part, half - part);
+                self.uncovered.1 += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn errors(self, motion: Motion, scheme: Scheme) -> FilmErrors {
+        FilmErrors {
+            motion,
+            scheme,
+            rmse: root(self.all),
+            penumbra: root(self.penumbra),
+            uncovered: (self.uncovered.1 > 0).then(|| root(self.uncovered)),
+            worst: self.worst,
+            not_finite: self.not_finite,
+        }
+    }
+}
