@@ -1,4 +1,4 @@
-//! The kernel that shades by rays to points of lights: benches/kernels/area_sampling.comp.
+//! The kernel that shades by rays to points of lights: `benches/kernels/area_sampling.comp`.
 
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{

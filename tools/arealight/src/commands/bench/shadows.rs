@@ -66,7 +66,8 @@ impl Arguments {
     fn command(&self, options: &str) -> String {
         let mut command = "arealight bench shadows".to_owned();
         for path in &self.scenes {
-            command += &format!(" {}", path.display());
+            command.push(' ');
+            command.push_str(&path.display().to_string());
         }
         format!("{command} {options} --markdown docs/shadows.md")
     }
