@@ -56,7 +56,7 @@ fn what_is_checked_in_is_what_is_printed() {
         let lines = |text: &str| text.lines().map(str::trim).collect::<Vec<_>>().join("\n");
         lines(file).contains(lines(text).trim())
     };
-    let rust = read("crates/arealight/src/table/formula.rs");
+    let rust = read("crates/arealight-oracle/src/formula.rs");
     let glsl = read("shaders/include/arealight/lobes/formula.glsl");
     assert!(holds(&rust, &formula::rust(&Formula::GGX)), "{}", formula::rust(&Formula::GGX));
     assert!(holds(&glsl, &formula::glsl(&Formula::GGX)), "{}", formula::glsl(&Formula::GGX));

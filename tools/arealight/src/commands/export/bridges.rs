@@ -17,9 +17,11 @@ pub struct Bridge {
     pub toggle: Option<String>,
 }
 
-/// The bridges of a library of paths and texts.
+/// The bridges of a library of paths and texts: of one that several files declare, the first declaration.
 pub fn bridges(library: &[(&str, &str)]) -> Vec<Bridge> {
-    library.iter().flat_map(|(path, text)| bridges_of(path, text)).collect()
+    let mut names = BTreeSet::new();
+    let all = library.iter().flat_map(|(path, text)| bridges_of(path, text));
+    all.filter(|bridge| names.insert(bridge.name.clone())).collect()
 }
 
 fn bridges_of(path: &str, text: &str) -> Vec<Bridge> {

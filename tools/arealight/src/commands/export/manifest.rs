@@ -151,6 +151,10 @@ fn constant_name(id: u32) -> &'static str {
         (constant::CLASS, "CLASS"),
         (constant::LAYOUT, "LAYOUT"),
         (constant::CULL, "CULL"),
+        (constant::SHADOW_RAYS, "SHADOW_RAYS"),
+        (constant::SHADOW_FILTER, "SHADOW_FILTER"),
+        (constant::SHADOW_MOTION, "SHADOW_MOTION"),
+        (constant::SHADOW_HISTORY, "SHADOW_HISTORY"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }
