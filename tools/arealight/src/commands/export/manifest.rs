@@ -135,7 +135,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 15] = [
+    const NAMES: [(u32, &str); 19] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
