@@ -82,8 +82,8 @@ pub static BLOCKERS: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        Binding::storage_buffer("nodes", Access::Read, "GpuBvhNode[]"),
-        Binding::storage_buffer("blocker_triangles", Access::Read, "Blockers::triangles"),
+        arealight::kernels::BLOCKER_NODES,
+        arealight::kernels::BLOCKER_TRIANGLES,
         Binding::storage_buffer("rays", Access::Read, "vec4[2] a ray: origin; direction and distance"),
         Binding::storage_buffer("distances", Access::Write, "float a ray"),
     ],
@@ -97,7 +97,7 @@ pub static SCENE_BLOCKERS: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 4,
     bindings: &[
-        Binding::storage_buffer("nodes", Access::Read, "GpuBvhNode[]"),
+        arealight::kernels::BLOCKER_NODES,
         Binding::storage_buffer("triangles", Access::Read, "GpuTriangle[]"),
         Binding::storage_buffer("materials", Access::Read, "GpuMaterial[]"),
         Binding::storage_buffer("textures", Access::Read, "GpuTexture[]"),

@@ -2,8 +2,8 @@
 
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{
-    Access, Binding, BindingKind, G_BASE_COLOR, G_NORMAL, G_POSITION, G_SPECULAR, Kernel, LIGHT_VERTICES,
-    LIGHTS,
+    Access, BLOCKER_NODES, BLOCKER_TRIANGLES, Binding, BindingKind, G_BASE_COLOR, G_NORMAL, G_POSITION,
+    G_SPECULAR, Kernel, LIGHT_VERTICES, LIGHTS,
 };
 
 /// The id of the specialisation constant `RAYS`: how many a pixel has, 1 to 16.
@@ -28,12 +28,8 @@ pub static AREA_SAMPLING: Kernel = Kernel {
             access: Access::ReadWrite,
             content: "radiance is added (rgba32f)",
         },
-        Binding::storage_buffer("nodes", Access::Read, "Blockers::nodes: GpuBvhNode[]"),
-        Binding::storage_buffer(
-            "blocker_triangles",
-            Access::Read,
-            "Blockers::triangles: GpuBlockerTriangle[]",
-        ),
+        BLOCKER_NODES,
+        BLOCKER_TRIANGLES,
     ],
     constants: &[RAYS],
 };

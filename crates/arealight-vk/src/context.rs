@@ -115,6 +115,22 @@ impl Context {
     pub fn device(&self) -> &ash::Device {
         &self.device
     }
+
+    /// A barrier for what a pass's own commands hand on to each other: stages, and what they do.
+    ///
+    /// # Safety
+    /// `command_buffer` is being recorded, outside a render pass.
+    pub(crate) unsafe fn record_barrier(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        (before, written): (vk::PipelineStageFlags, vk::AccessFlags),
+        (after, used): (vk::PipelineStageFlags, vk::AccessFlags),
+    ) {
+        let barrier = [vk::MemoryBarrier::default().src_access_mask(written).dst_access_mask(used)];
+        let flags = vk::DependencyFlags::empty();
+        // SAFETY: the same contract.
+        unsafe { self.device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]) };
+    }
 }
 
 /// The largest light textures of the device.

@@ -42,23 +42,11 @@ impl Layouts {
         unsafe { Self::with(context, kernel, kernel.bindings, None) }
     }
 
-    /// As [`Layouts::new`], with the layout of a second set, which is the host's.
+    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, and with the layout of a second set, which is the
+    /// host's.
     ///
     /// # Safety
     /// As [`Layouts::new`]; the layout is valid until they are dropped.
-    pub(crate) unsafe fn with_host_set(
-        context: &Context,
-        kernel: &'static Kernel,
-        host_set: Option<vk::DescriptorSetLayout>,
-    ) -> Result<Arc<Self>, Error> {
-        // SAFETY: the same contract.
-        unsafe { Self::with(context, kernel, kernel.bindings, host_set) }
-    }
-
-    /// As [`Layouts::with_host_set`], with no more of the kernel's first bindings than its pipelines use.
-    ///
-    /// # Safety
-    /// As [`Layouts::with_host_set`].
     pub(crate) unsafe fn with(
         context: &Context,
         kernel: &'static Kernel,

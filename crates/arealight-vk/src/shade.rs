@@ -18,7 +18,6 @@ use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
 use resources::{LOBE_HORIZONS, TILE_LISTS, needed};
-use std::sync::Arc;
 
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -101,14 +100,10 @@ impl ShadePass {
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
-        mut module: Vec<u32>,
+        module: Vec<u32>,
     ) -> Result<Self, Error> {
-        check_module(&module)?;
-        check_shadows(options)?;
-        store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pipelines = unsafe { Pipelines::new(frame_layouts(context)?, &SHADE, module) };
-        Ok(Self { pipelines, tiles: None, options })
+        unsafe { Self::of_module(context, options, module, None) }
     }
 
     /// As [`ShadePass::with_module`], of a module that asks the host what part of each light arrives (docs/shadows.md): what it reads is in
@@ -122,15 +117,29 @@ impl ShadePass {
     pub unsafe fn with_module_and_set(
         context: &Context,
         options: ShadeOptions,
-        mut module: Vec<u32>,
+        module: Vec<u32>,
         host_set: vk::DescriptorSetLayout,
+    ) -> Result<Self, Error> {
+        // SAFETY: the same contract.
+        unsafe { Self::of_module(context, options, module, Some(host_set)) }
+    }
+
+    /// # Safety
+    /// As [`ShadePass::with_module_and_set`].
+    unsafe fn of_module(
+        context: &Context,
+        options: ShadeOptions,
+        mut module: Vec<u32>,
+        host_set: Option<vk::DescriptorSetLayout>,
     ) -> Result<Self, Error> {
         check_module(&module)?;
         check_shadows(options)?;
         store_to(options.format, &mut module);
+        // Frames without tiles have none of their bindings
+        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
         // SAFETY: the same contract.
         unsafe {
-            let layouts = Layouts::with_host_set(context, &SHADE, Some(host_set))?;
+            let layouts = Layouts::with(context, &SHADE, bindings, host_set)?;
             Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, module), tiles: None, options })
         }
     }
@@ -311,16 +320,6 @@ impl ShadePass {
             ..ShadeConstants::default()
         })
     }
-}
-
-/// The layouts of passes without tiles.
-///
-/// # Safety
-/// As [`Layouts::new`].
-unsafe fn frame_layouts(context: &Context) -> Result<Arc<Layouts>, Error> {
-    let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
-    // SAFETY: the same contract.
-    unsafe { Layouts::with(context, &SHADE, bindings, None) }
 }
 
 /// A frame's matrix from clip space and its camera, as kernels have them.

@@ -133,7 +133,7 @@ impl ShadowPass {
         check_module(&module)?;
         // SAFETY: the same contract.
         unsafe {
-            let layouts = Layouts::with_host_set(context, &SHADOW_RAYS, Some(host_set))?;
+            let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings, Some(host_set))?;
             Ok(Self::of(&layouts, options, shadows, module))
         }
     }
@@ -288,14 +288,16 @@ impl ShadowPass {
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
+        let ready = self.checked(set, resources, frame)?;
+        let context = self.rays.layouts().context();
         // SAFETY: the same contract; barriers are between the stages.
         unsafe {
-            let _label = self.rays.layouts().context().names.label(command_buffer, c"arealight shadows");
+            let _label = context.names.label(command_buffer, c"arealight shadows");
             for stage in self.stages() {
                 if *stage != ShadowStage::Rays {
-                    self.record_barrier(command_buffer, COMPUTE, COMPUTE);
+                    context.record_barrier(command_buffer, WRITTEN, USED);
                 }
-                self.record_stage(*stage, command_buffer, set, resources, frame)?;
+                self.dispatch(*stage, command_buffer, &ready)?;
             }
         }
         Ok(())
@@ -326,18 +328,40 @@ impl ShadowPass {
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
     ) -> Result<(), Error> {
-        // Check everything, and make what is missing, before anything is recorded
+        let ready = self.checked(set, resources, frame)?;
+        // SAFETY: the same contract.
+        unsafe { self.dispatch(stage, command_buffer, &ready) }
+    }
+
+    /// A frame, where everything about it is right; what is missing of the pipelines is made.
+    fn checked(
+        &self,
+        set: vk::DescriptorSet,
+        resources: &ShadowResources,
+        frame: &ShadowFrame<'_>,
+    ) -> Result<ReadyFrame, Error> {
         self.rays.layouts().check_host_set(frame.host_set)?;
         let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
         let head = self.history_head(resources, frame)?;
         let ShadeFrame { seed, size, .. } = *frame.shade;
         let constants = ShadowConstants { position_from_clip, camera, seed, size };
-        let bytes = bytemuck::bytes_of(&constants);
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
-        self.rays.check(set, bytes, groups)?;
+        self.rays.check(set, bytemuck::bytes_of(&constants), groups)?;
         self.prepare()?;
+        let sets = std::iter::once(set).chain(frame.host_set).collect();
+        Ok(ReadyFrame { sets, constants, groups, head })
+    }
 
-        let sets: Vec<_> = std::iter::once(set).chain(frame.host_set).collect();
+    /// Records one dispatch.
+    ///
+    /// # Safety
+    /// As [`ShadowPass::record`].
+    unsafe fn dispatch(
+        &self,
+        stage: ShadowStage,
+        command_buffer: vk::CommandBuffer,
+        ready: &ReadyFrame,
+    ) -> Result<(), Error> {
         let (pipelines, specialization) = match stage {
             ShadowStage::Rays => (&self.rays, self.rays_constants()),
             ShadowStage::History => (&self.history, self.history_constants()),
@@ -345,16 +369,23 @@ impl ShadowPass {
         };
         // SAFETY: the same contract; the head is within the buffer, which nothing else uses now.
         unsafe {
-            if let Some(HistoryHead { buffer, offset, words }) = head
+            if let Some(HistoryHead { buffer, offset, words }) = ready.head
                 && stage == ShadowStage::Rays
             {
-                let device = self.rays.layouts().context().device();
-                self.record_barrier(command_buffer, COMPUTE, TRANSFER);
-                device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&words));
-                self.record_barrier(command_buffer, TRANSFER, COMPUTE);
+                let context = self.rays.layouts().context();
+                let copied = (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE);
+                context.record_barrier(command_buffer, WRITTEN, copied);
+                context.device().cmd_update_buffer(
+                    command_buffer,
+                    buffer,
+                    offset,
+                    bytemuck::cast_slice(&words),
+                );
+                context.record_barrier(command_buffer, copied, USED);
             }
             pipelines.with(specialization, |pass| {
-                pass.record_checked(command_buffer, &sets, bytes, groups);
+                let bytes = bytemuck::bytes_of(&ready.constants);
+                pass.record_checked(command_buffer, &ready.sets, bytes, ready.groups);
             })
         }
     }
@@ -382,27 +413,21 @@ impl ShadowPass {
         if !frame.origin_shift.is_finite() {
             return wrong("origin_shift", "holds NaN or infinity");
         }
-        let mut words = [0.0; 20];
+        let mut words = [0.0; plan::SHADOW_HISTORY_HEAD / 2];
         words[..16].copy_from_slice(&clip_from_position.to_cols_array());
         words[16..19].copy_from_slice(&frame.origin_shift.to_array());
         let parity = vk::DeviceSize::from(frame.shade.seed & 1);
         Ok(Some(HistoryHead { buffer, offset: offset + parity * size_of_val(&words) as u64, words }))
     }
+}
 
-    /// What was written in one stage is used in another.
-    ///
-    /// # Safety
-    /// As [`ShadowPass::record`].
-    unsafe fn record_barrier(&self, command_buffer: vk::CommandBuffer, before: Stage, after: Stage) {
-        let barrier =
-            [vk::MemoryBarrier::default().src_access_mask(before.written).dst_access_mask(after.used)];
-        let flags = vk::DependencyFlags::empty();
-        let device = self.rays.layouts().context().device();
-        // SAFETY: the same contract.
-        unsafe {
-            device.cmd_pipeline_barrier(command_buffer, before.flags, after.flags, flags, &barrier, &[], &[]);
-        }
-    }
+/// A frame that was checked.
+struct ReadyFrame {
+    /// From 0 on.
+    sets: Vec<vk::DescriptorSet>,
+    constants: ShadowConstants,
+    groups: [u32; 3],
+    head: Option<HistoryHead>,
 }
 
 /// Of a history's head, what one frame writes: see `shadow_history.glsl`.
@@ -410,29 +435,16 @@ impl ShadowPass {
 struct HistoryHead {
     buffer: vk::Buffer,
     offset: vk::DeviceSize,
-    words: [f32; 20],
+    words: [f32; plan::SHADOW_HISTORY_HEAD / 2],
 }
 
-/// A stage that the pass's barriers are between.
-#[derive(Clone, Copy)]
-struct Stage {
-    flags: vk::PipelineStageFlags,
-    written: vk::AccessFlags,
-    used: vk::AccessFlags,
-}
-
-const COMPUTE: Stage = Stage {
-    flags: vk::PipelineStageFlags::COMPUTE_SHADER,
-    written: vk::AccessFlags::SHADER_WRITE,
-    used: vk::AccessFlags::from_raw(
-        vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
-    ),
-};
-const TRANSFER: Stage = Stage {
-    flags: vk::PipelineStageFlags::TRANSFER,
-    written: vk::AccessFlags::TRANSFER_WRITE,
-    used: vk::AccessFlags::TRANSFER_WRITE,
-};
+/// What a dispatch wrote, and what the next one may do with it.
+const WRITTEN: (vk::PipelineStageFlags, vk::AccessFlags) =
+    (vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE);
+const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
+    vk::PipelineStageFlags::COMPUTE_SHADER,
+    vk::AccessFlags::from_raw(vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw()),
+);
 
 fn check_rays(options: ShadeOptions) -> Result<(), Error> {
     if (1..=ShadeOptions::MOST_SHADOW_RAYS).contains(&options.shadow_rays) {

@@ -138,12 +138,13 @@ impl Tiles {
         self.prepare(shade, options, frame)?;
 
         let (buffer, offset) = frame.lists;
+        let context = self.classify.layouts().context();
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
         // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the classify kernel writes.
         unsafe {
             self.record_no_tiles(command_buffer, frame);
-            self.record_barrier(
+            context.record_barrier(
                 command_buffer,
                 (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE),
                 (compute, read | write),
@@ -151,7 +152,7 @@ impl Tiles {
             self.classify.with(self.classify_constants(options, frame), |pass| {
                 pass.record_checked(command_buffer, &[set], bytes, groups);
             })?;
-            self.record_barrier(
+            context.record_barrier(
                 command_buffer,
                 (compute, write),
                 (
@@ -180,23 +181,6 @@ impl Tiles {
         let device = self.classify.layouts().context().device();
         // SAFETY: the same contract.
         unsafe { device.cmd_update_buffer(command_buffer, buffer, offset, bytemuck::cast_slice(&none)) };
-    }
-
-    /// A barrier for what the dispatches hand on to each other.
-    ///
-    /// # Safety
-    /// As [`Tiles::record`].
-    unsafe fn record_barrier(
-        &self,
-        command_buffer: vk::CommandBuffer,
-        (before, written): (vk::PipelineStageFlags, vk::AccessFlags),
-        (after, used): (vk::PipelineStageFlags, vk::AccessFlags),
-    ) {
-        let barrier = [vk::MemoryBarrier::default().src_access_mask(written).dst_access_mask(used)];
-        let device = self.classify.layouts().context().device();
-        let flags = vk::DependencyFlags::empty();
-        // SAFETY: the same contract.
-        unsafe { device.cmd_pipeline_barrier(command_buffer, before, after, flags, &barrier, &[], &[]) };
     }
 }
 

@@ -282,8 +282,10 @@ const SHADOWED: Binding = write(
     Access::ReadWrite,
     "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be unshadowed_image's",
 );
-const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
-const BLOCKER_TRIANGLES: Binding =
+/// What blocks rays: nodes.
+pub const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
+/// And triangles.
+pub const BLOCKER_TRIANGLES: Binding =
     read("blocker_triangles", BindingKind::StorageBuffer, "Blockers::triangles: vec4[3][]");
 
 const SHADOW_KEPT: Binding = write(

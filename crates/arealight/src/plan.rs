@@ -195,10 +195,15 @@ pub enum ShadowHistory {
     MotionVectors = 2,
 }
 
+/// Words at the beginning of the buffer that keeps shadows from frame to frame: for frames of even and of odd seeds a half each.
+pub const SHADOW_HISTORY_HEAD: usize = 40;
+/// Words of a pixel in that buffer, of one frame; it has two.
+pub const SHADOW_HISTORY_PIXEL: usize = 6;
+
 /// Bytes of the buffer that keeps shadows from frame to frame, for images of `size` pixels. It holds zeros before the first frame.
 pub fn shadow_history_size(size: [u32; 2]) -> u64 {
-    let [head, pixel, frames] = [40, 6, 2];
-    4 * (head + frames * pixel * size.map(u64::from).iter().product::<u64>())
+    let pixels: u64 = size.map(u64::from).iter().product();
+    4 * (SHADOW_HISTORY_HEAD as u64 + 2 * SHADOW_HISTORY_PIXEL as u64 * pixels)
 }
 
 /// The values of the constants of the kernel [`kernels::SHADOW_HISTORY`].

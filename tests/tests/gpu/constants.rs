@@ -45,6 +45,7 @@ const TEXTURE_LOAD_COMP: &str = include_str!("../../../shaders/kernels/texture_l
 const TEXTURE_BLUR_COMP: &str = include_str!("../../../shaders/kernels/texture_blur.comp");
 const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl");
 const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_texel.glsl");
+const SHADOW_HISTORY_GLSL: &str = include_str!("../../../shaders/kernels/shadow_history.glsl");
 const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_picks.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
 const BVH_GLSL: &str = include_str!("../../../shaders/kernels/bvh.glsl");
@@ -178,6 +179,11 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(OUTPUT_TEXEL_GLSL, "OUTPUT_", &output);
     let most = number(ShadeOptions::MOST_SHADOW_RAYS);
     assert_constants(SHADOW_PICKS_GLSL, "MOST_SHADOW_RAYS", &[("", most)]);
+    let history = [
+        ("HEAD", number(arealight::plan::SHADOW_HISTORY_HEAD as u32)),
+        ("PIXEL", number(arealight::plan::SHADOW_HISTORY_PIXEL as u32)),
+    ];
+    assert_constants(SHADOW_HISTORY_GLSL, "HISTORY_", &history);
     assert_constants(TEXTURE_BLUR_COMP, "MAX_RADIUS", &[("", MOST_TAPS as f64)]);
     let shapes = [
         ("DISK", number(gpu::GpuShape::DISK)),
