@@ -34,9 +34,6 @@ layout(set = 0, binding = 6, rgba32f) uniform image2D radiance_image;
 
 #include "shade_constants.glsl"
 
-// Rays end this part of their length before the light, as the product's do.
-const float RAY_PART = 0.999755859375;
-
 const uint NO_LIGHT = 0xffffffffu;
 
 // The light of each ray, with the probability of its choice.
@@ -108,7 +105,7 @@ vec3 estimate(ArealightSurface surface, ArealightFrame frame, vec3 origin, Choic
     cosine = (light.flags & LIGHT_TWO_SIDED) != 0u ? abs(cosine) : cosine;
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     vec3 part = reflected(surface, view, arealight_frame_matrix(frame) * direction);
-    float end = sqrt(square) * RAY_PART;
+    float end = sqrt(square) * AREALIGHT_RAY_PART;
     if (cosine <= 0.0 || part == vec3(0.0) || arealight_bridge_blocker(origin, direction, end) < end) {
         return vec3(0.0);
     }

@@ -1,26 +1,19 @@
 #ifndef PICKED_LIGHT_GLSL
 #define PICKED_LIGHT_GLSL
 
-// A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel defines LIGHTS_BINDING (vertices are
-// at the binding after it) and SHAPES_BINDING.
+// A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel defines LIGHTS_BINDING
+// and SHAPES_BINDING.
 
 #include "light_records.glsl"
+#include "light_vertices.glsl"
 #include "arealight/form_factor/tube_outline.glsl"
 #include "arealight/shadows/outline_sampling.glsl"
 
-layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVertices {
-    vec4 light_vertices[];
-};
-
-vec3 arealight_bridge_vertex(uint index) {
-    return light_vertices[index].xyz;
-}
-
 struct PickedLight {
     ArealightShadowOutline outline; // of a mesh each face's in turn
-    float size;               // the root of its area
-    vec3 center;              // from the shading point
-    uint row;                 // of a mesh: that of the next face, and the last one's end
+    float size;                     // the root of its area
+    vec3 center;                    // from the shading point
+    uint row;                       // of a mesh: that of the next face, and the last one's end
     uint end;
     bool is_mesh;
     bool two_sided;
@@ -30,10 +23,10 @@ struct PickedLight {
 ArealightShadowOutline sphere_outline(vec3 center, float radius) {
     float square = max(dot(center, center), 1e-37);
     float part = max(1.0 - radius * radius / square, 0.0);
-    vec3 axis = center * inversesqrt(square);
-    vec3 axis_u = normalize(abs(axis.z) < 0.7 ? vec3(axis.y, -axis.x, 0.0) : vec3(0.0, axis.z, -axis.y));
-    float seen = radius * sqrt(part);
-    return arealight_ellipse_outline(part * center, seen * axis_u, seen * cross(axis, axis_u));
+    vec3 axis_u, axis_v;
+    arealight_perpendiculars(center * inversesqrt(square), axis_u, axis_v);
+    float rim = radius * sqrt(part);
+    return arealight_ellipse_outline(part * center, rim * axis_u, rim * axis_v);
 }
 
 // The silhouette of a tube: between its two tangent planes, and as long as it is; round ends as a straight edge of the same area. From within an
@@ -45,9 +38,10 @@ ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, i
     vec3 across = center - along * axis;
     float distance = length(across);
     if (distance <= radius) {
-        vec3 axis_u = normalize(abs(axis.z) < 0.7 ? vec3(axis.y, -axis.x, 0.0) : vec3(0.0, axis.z, -axis.y));
+        vec3 axis_u, axis_v;
+        arealight_perpendiculars(axis, axis_u, axis_v);
         vec3 end = center + (along > 0.0 ? -half_axis : half_axis);
-        return arealight_ellipse_outline(end, radius * axis_u, radius * cross(axis, axis_u));
+        return arealight_ellipse_outline(end, radius * axis_u, radius * axis_v);
     }
     vec3 toward = across / distance;
     float sine = radius / distance;
@@ -93,11 +87,11 @@ PickedLight picked_light(uint pick, vec3 position) {
 // Goes on to the next face of a mesh that is lit towards the point; false after the last one.
 bool next_face(inout PickedLight light) {
     while (light.row + 1u < light.end) {
-        vec4 face = light_vertices[light.row];
+        vec4 face = arealight_bridge_face(light.row);
         uint first = light.row + 1u;
         uint count = clamp(uint(face.w), 1u, light.end - first);
         light.row = first + count;
-        if (count >= 3u && arealight_lit_side(light.center + light_vertices[first].xyz, face.xyz, light.two_sided) != 0.0) {
+        if (count >= 3u && arealight_lit_side(light.center + arealight_bridge_vertex(first), face.xyz, light.two_sided) != 0.0) {
             light.outline = arealight_vertex_outline(light.center, first, count, count == 3u);
             return true;
         }
@@ -105,7 +99,7 @@ bool next_face(inout PickedLight light) {
     return false;
 }
 
-// The size of the form factor of a light in the space that `to_space` leads to, and for one lobe after the other of its faces: which is chosen.
+// The size of the form factor of a light in the space that `to_space` leads to: of a mesh the sum of its faces'.
 float picked_light_weight(PickedLight light, mat3 to_space) {
     if (!light.is_mesh) {
         return arealight_outline_weight(light.outline, to_space);

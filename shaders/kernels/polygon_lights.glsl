@@ -7,21 +7,7 @@
 #include "light_records.glsl"
 #include "light_textures.glsl"
 #include "arealight/arealight.glsl"
-
-// Of each light its vertices in xyz, from its center. A mesh has before each face's vertices its unit normal in xyz and their
-// count in w. A light with an image has after its vertices the image's place: (corner, low u), (axis u, low v), (axis v, width),
-// (height).
-layout(set = 0, binding = LIGHTS_BINDING + 1, std430) readonly buffer LightVertices {
-    vec4 light_vertices[];
-};
-
-vec3 arealight_bridge_vertex(uint index) {
-    return light_vertices[index].xyz;
-}
-
-vec4 arealight_bridge_face(uint index) {
-    return light_vertices[index];
-}
+#include "light_vertices.glsl"
 
 ArealightQuadLight load_quad(ArealightGpuLight record) {
     uint first = record.first_vertex;

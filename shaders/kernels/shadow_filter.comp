@@ -10,6 +10,7 @@
 
 #include "shadow_resources.glsl"
 #include "shadow_history.glsl"
+#include "shadow_neighbours.glsl"
 
 layout(constant_id = 3) const int OUTPUT = 0;
 layout(constant_id = 16) const int SHADOW_FILTER = 1;
@@ -30,9 +31,6 @@ const int PATCH = 8 + 2 * REACH;
 // The mean's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
 const float PENUMBRA_PART = 0.1;
 const float LEAST_WIDTH = 2.0;
-// Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this power of their normals' cosine.
-const float PLANE_PART = 0.004;
-const float NORMAL_POWER = 32.0;
 
 // What a workgroup knows of its pixels and those around them: the position, and in w (what arrives, the penumbra's width) as halves.
 shared vec4 patch_texels[PATCH * PATCH];
@@ -56,17 +54,13 @@ void load_patch(ivec2 corner, ivec2 size) {
         uint normal = 0u;
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
             shadow = load_shadow(pixel, size);
-            vec3 unit = arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
-            normal = shadow.b > 0.0 ? packUnorm4x8(vec4(0.5 * unit + 0.5, 1.0)) : 0u;
+            uint word = pack_normal(load_normal(pixel, position));
+            normal = shadow.b > 0.0 ? word : 0u;
         }
         patch_texels[i] = vec4(position, uintBitsToFloat(packHalf2x16(shadow.rg)));
         patch_normals[i] = normal;
     }
     barrier();
-}
-
-vec3 patch_normal(int i) {
-    return normalize(2.0 * unpackUnorm4x8(patch_normals[i]).xyz - 1.0);
 }
 
 // What arrives at a pixel of the patch, and the width of its penumbra.
@@ -79,13 +73,12 @@ struct Center {
     int place;
     vec3 position;
     vec3 normal;
-    float distance; // from the camera
+    float plane_scale;
 };
 
-// How much a neighbour counts as of the same surface.
-float likeness(Center center, int i) {
-    float plane = abs(dot(center.normal, patch_texels[i].xyz - center.position)) / (PLANE_PART * center.distance);
-    return exp(-plane) * pow(clamp(dot(center.normal, patch_normal(i)), 0.0, 1.0), NORMAL_POWER);
+// How much a pixel of the patch counts as of the same surface.
+float likeness_of(Center center, int i) {
+    return likeness(patch_texels[i].xyz - center.position, unpack_normal(patch_normals[i]), center.normal, center.plane_scale);
 }
 
 // The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is hidden. In y how far pixels are apart.
@@ -98,7 +91,7 @@ vec2 search(Center center) {
             int i = center.place + y * PATCH + x;
             if (patch_normals[i] != 0u) {
                 vec2 shadow = patch_shadow(i);
-                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH))) * likeness(center, i);
+                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH))) * likeness_of(center, i);
                 hidden += weight * (1.0 - shadow.x);
                 width += weight * shadow.y;
                 if (abs(x) + abs(y) == 1) {
@@ -119,7 +112,7 @@ float gathered(Center center, float deviation) {
             int i = center.place + y * PATCH + x;
             if (patch_normals[i] != 0u && (x != 0 || y != 0)) {
                 vec3 offset = (patch_texels[i].xyz - center.position) / deviation;
-                float weight = exp(-0.5 * dot(offset, offset)) * likeness(center, i);
+                float weight = exp(-0.5 * dot(offset, offset)) * likeness_of(center, i);
                 arrives += weight * patch_shadow(i).x;
                 sum += weight;
             }
@@ -136,7 +129,7 @@ float arriving(vec4 shadow) {
     ivec2 place = ivec2(gl_LocalInvocationID.xy) + REACH;
     int i = place.y * PATCH + place.x;
     vec3 position = patch_texels[i].xyz;
-    Center center = Center(i, position, patch_normal(i), distance(constants.camera, position));
+    Center center = Center(i, position, unpack_normal(patch_normals[i]), plane_scale(position));
     vec2 found = search(center);
     if (found.x < 0.0) {
         return 1.0;

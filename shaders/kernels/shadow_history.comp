@@ -7,6 +7,7 @@
 
 #include "shadow_resources.glsl"
 #include "shadow_history.glsl"
+#include "shadow_neighbours.glsl"
 
 // 1: the host says where a pixel's point was, in g_motion; else nothing but the camera moves.
 layout(constant_id = 17) const int SHADOW_MOTION = 0;
@@ -27,9 +28,6 @@ const int INNER = 8 + 2 * POOL;
 // A pixel of the frame before is of the same surface within this part of the camera's distance out of its plane, and this cosine of the normals.
 const float SAME_PLANE = 0.01;
 const float SAME_NORMAL = 0.9;
-// Weights of neighbours: as in shadow_filter.comp.
-const float PLANE_PART = 0.004;
-const float NORMAL_POWER = 32.0;
 // How much more than coins the rays of frames after one another differ: where one frame has too few the next has too many, by its numbers.
 const float SPREAD = 2.0;
 // What is left of the spread of rays that are all alike.
@@ -42,10 +40,6 @@ shared uint patch_before[PATCH * PATCH];
 shared uint patch_normals[PATCH * PATCH];
 // Of each pixel compared: the squared difference, and the variance that rays alone give it; that is negative where there is no history.
 shared vec2 differences[INNER * INNER];
-
-vec3 patch_normal(int i) {
-    return normalize(2.0 * unpackUnorm4x8(patch_normals[i]).xyz - 1.0);
-}
 
 // Where a pixel's point was in the image of the frame before, in pixels; false where it was behind the camera.
 bool place_before(ivec2 pixel, ivec2 size, vec3 position, out vec2 place) {
@@ -102,11 +96,11 @@ void load_patch(ivec2 corner, ivec2 size) {
         if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
             vec4 shadow = imageLoad(shadow_image, pixel);
             if (shadow.b > 0.0) {
-                vec3 normal = arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
+                vec3 normal = load_normal(pixel, position);
                 HistoryPixel before = reprojected(pixel, size, position, normal);
                 patch_texels[i] = vec4(position, shadow.r);
                 patch_before[i] = packHalf2x16(vec2(before.frames > 0.0 ? before.shadow.x : shadow.r, before.frames));
-                patch_normals[i] = packUnorm4x8(vec4(0.5 * normal + 0.5, 1.0));
+                patch_normals[i] = pack_normal(normal);
             }
         }
     }
@@ -120,16 +114,15 @@ vec2 compared(int center, float rays) {
         return vec2(0.0, -1.0);
     }
     vec3 position = patch_texels[center].xyz;
-    vec3 normal = patch_normal(center);
-    float plane_weight = 1.0 / (PLANE_PART * distance(constants.camera, position));
+    vec3 normal = unpack_normal(patch_normals[center]);
+    float scale = plane_scale(position);
     vec4 sums = vec4(0.0); // weights, their squares, this frame's, the history's
     for (int y = -REACH; y <= REACH; y++) {
         for (int x = -REACH; x <= REACH; x++) {
             int i = center + y * PATCH + x;
             if (patch_normals[i] != 0u) {
-                float likeness = exp(-abs(dot(normal, patch_texels[i].xyz - position)) * plane_weight)
-                                 * pow(clamp(dot(normal, patch_normal(i)), 0.0, 1.0), NORMAL_POWER);
-                float weight = exp(float(x * x + y * y) * (-0.5 / (WIDTH * WIDTH))) * likeness;
+                float alike = likeness(patch_texels[i].xyz - position, unpack_normal(patch_normals[i]), normal, scale);
+                float weight = exp(float(x * x + y * y) * (-0.5 / (WIDTH * WIDTH))) * alike;
                 sums += weight * vec4(1.0, weight, patch_texels[i].w, unpackHalf2x16(patch_before[i]).x);
             }
         }
@@ -180,7 +173,7 @@ void main() {
     int center = (local.y + REACH + POOL) * PATCH + local.x + REACH + POOL;
     HistoryPixel history = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0, 0.0, 1.0));
     if (patch_normals[center] != 0u) {
-        history = reprojected(pixel, size, patch_texels[center].xyz, patch_normal(center));
+        history = reprojected(pixel, size, patch_texels[center].xyz, unpack_normal(patch_normals[center]));
         vec2 now = imageLoad(shadow_image, pixel).rg;
         float frames = history.frames > 0.0 ? frames_of(local, history.frames) : 1.0;
         history.shadow = mix(history.shadow, now, 1.0 / frames);

@@ -3,6 +3,8 @@
 
 // What is kept of shadows from frame to frame. The including kernel has shadow_resources.glsl.
 
+#include "shadow_neighbours.glsl"
+
 // Words of the head, and of a pixel.
 const uint HISTORY_HEAD = 40u;
 const uint HISTORY_PIXEL = 6u;
@@ -46,7 +48,7 @@ void store_history(ivec2 pixel, ivec2 size, HistoryPixel history) {
     shadow_history[at + 2u] = position.x;
     shadow_history[at + 3u] = position.y;
     shadow_history[at + 4u] = position.z;
-    shadow_history[at + 5u] = packUnorm4x8(vec4(0.5 * history.normal + 0.5, 1.0));
+    shadow_history[at + 5u] = pack_normal(history.normal);
 }
 
 // The vector at a word of the head of this frame (0) or of the one before (1).

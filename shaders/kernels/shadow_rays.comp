@@ -36,9 +36,6 @@ float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
 #include "blockers.glsl"
 #endif
 
-// Rays end this part of their length before the light, whose own geometry may be there.
-const float RAY_PART = 0.999755859375;
-
 // The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each reflects of the light.
 int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
     if (!AREALIGHT_HAS_COAT && !AREALIGHT_SPLITS_FRESNEL) {
@@ -116,7 +113,7 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     if ((point.to_frame * ray.direction).z <= 0.0) {
         return vec2(0.0);
     }
-    float end = ray.distance * RAY_PART;
+    float end = ray.distance * AREALIGHT_RAY_PART;
     float blocker = arealight_bridge_blocker(origin, ray.direction, end);
     bool is_hidden = blocker < end;
     float width = penumbra_width(light, blocker / ray.distance, ray.distance, is_specular ? alpha : 1e9);

@@ -1,7 +1,7 @@
 #ifndef SHADOW_RESOURCES_GLSL
 #define SHADOW_RESOURCES_GLSL
 
-// What the kernels of shadows, shadow_rays and shadow_filter, have in common: a descriptor set, push constants, specialisation constants.
+// What the kernels of shadows, shadow_rays, shadow_history and shadow_filter, have in common: a descriptor set, push constants, specialisation constants.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -5,9 +5,7 @@
 // has it.
 
 #include "scene.glsl"
-
-// Rays end before the light by this factor, 1 - 2^-12: what lies in the light's plane does not block it.
-const float BLOCKER_REACH = 0.999755859375;
+#include "arealight/shadows/ray_origin.glsl"
 
 // Both faces of a triangle block, as far as its alpha mask lets it be seen; lamps do not.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit) {
@@ -23,7 +21,7 @@ void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit
 // The distance of a blocker, not always the nearest, on the way from `origin`, relative to the lights' origin, along a unit direction to a light at
 // `distance`; `distance` if there is none.
 float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance) {
-    BvhHit hit = bvh_trace(origin, direction, distance * BLOCKER_REACH, true);
+    BvhHit hit = bvh_trace(origin, direction, distance * AREALIGHT_RAY_PART, true);
     return hit.triangle == BVH_NO_TRIANGLE ? distance : hit.distance;
 }
 

@@ -12,6 +12,9 @@ const float AREALIGHT_ORIGIN_LENGTH = 1.52587890625e-5;
 // Units in the last place, per unit of the normal.
 const float AREALIGHT_ORIGIN_PLACES = 256.0;
 
+// Where a shadow ray ends, as a part of the way to the light: 1 - 2^-12, before the light's own geometry, which may be there.
+const float AREALIGHT_RAY_PART = 0.999755859375;
+
 // The origin of a ray that leaves the surface at `position` on the side of `normal`, the unit normal of its geometry (not of its shading).
 // `step`: by how much the position may be wrong along any axis beyond its own rounding, in its unit: 0 for positions in float32 and for reversed
 // float depth; for other depth the distance between the positions of two neighbouring values, along the view.
