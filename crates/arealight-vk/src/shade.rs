@@ -15,7 +15,7 @@ use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
-/// What may be missing is not read in some frames: in debug builds a frame that reads it is refused.
+/// What may be missing is not read in some frames: a frame that reads it is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 /// By default there is none; the pass refuses a set without the seven that are no `Option`.
@@ -177,7 +177,7 @@ impl ShadePass {
         check_shadows(options)?;
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
-        let pipelines = unsafe { Pipelines::new(frame_layouts(context)?, &SHADE, module) };
+        let pipelines = unsafe { Pipelines::new(frame_layouts(context, None)?, &SHADE, module) };
         Ok(Self { pipelines, tiles: None, options })
     }
 
@@ -200,7 +200,7 @@ impl ShadePass {
         store_to(options.format, &mut module);
         // SAFETY: the same contract.
         unsafe {
-            let layouts = Layouts::with_host_set(context, &SHADE, Some(host_set))?;
+            let layouts = frame_layouts(context, Some(host_set))?;
             Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, module), tiles: None, options })
         }
     }
@@ -357,7 +357,7 @@ impl ShadePass {
     ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource that its lights need and the set was
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or the resource that its lights need and the set was
     /// written without; [`Error::Vulkan`] where a pipeline cannot be made. Then nothing is recorded.
     pub unsafe fn record(
         &self,
@@ -447,14 +447,17 @@ impl ShadePass {
     }
 }
 
-/// The layouts of passes without tiles.
+/// The layouts of passes without tiles, with that of set 1 where it is the host's.
 ///
 /// # Safety
-/// As [`Layouts::new`].
-unsafe fn frame_layouts(context: &Context) -> Result<Arc<Layouts>, Error> {
+/// As [`Layouts::with_host_set`].
+unsafe fn frame_layouts(
+    context: &Context,
+    host_set: Option<vk::DescriptorSetLayout>,
+) -> Result<Arc<Layouts>, Error> {
     let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
     // SAFETY: the same contract.
-    unsafe { Layouts::with(context, &SHADE, bindings, None) }
+    unsafe { Layouts::with(context, &SHADE, bindings, host_set) }
 }
 
 /// A frame's matrix from clip space and its camera, as kernels have them.
