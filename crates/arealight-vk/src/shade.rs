@@ -1,5 +1,10 @@
 //! The shade pass: a G-buffer, lights and the table go in, radiance comes out.
 
+mod resources;
+
+pub(crate) use resources::accesses_of;
+pub use resources::{ResourceAccess, ShadeResources};
+
 use crate::context::Context;
 use crate::error::Error;
 use crate::layouts::Layouts;
@@ -7,53 +12,13 @@ use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{Access, BindingKind, CLASSIFY, FRAME_BINDINGS, Kernel, SHADE, store_to};
+use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, SHADE, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
+use resources::{LOBE_HORIZONS, TILE_LISTS, needed};
 use std::sync::Arc;
-
-/// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
-/// What may be missing is not read in some frames: a frame that reads it is refused.
-///
-/// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
-/// By default there is none; the pass refuses a set without the seven that are no `Option`.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct ShadeResources {
-    /// The light table, see [`crate::TableImage`].
-    pub table: Resource,
-    /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes or more.
-    pub lights: Resource,
-    /// [`PackedLights::vertices`](arealight::PackedLights::vertices), likewise.
-    pub light_vertices: Resource,
-    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or tubes.
-    pub shapes: Option<Resource>,
-    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's layer is there. None where no
-    /// frame has textured lights.
-    pub light_textures: Option<Resource>,
-    /// Positions or depth, by [`ShadeOptions::from_depth`].
-    pub position: Resource,
-    /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
-    pub normal: Resource,
-    /// Base colour and metalness.
-    pub base_color: Resource,
-    /// Dielectric reflectance, or the third image of another layout; none without [`ShadeOptions::reads_specular`].
-    pub specular: Option<Resource>,
-    /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
-    pub coat: Option<Resource>,
-    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
-    pub radiance: Resource,
-    /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
-    pub glossy: Option<Resource>,
-    /// With [`ShadeOptions::shadow_rays`], a buffer of [`ShadePass::picks_size`] bytes, which the pass writes and a
-    /// [`crate::ShadowPass`] reads. Else none.
-    pub picks: Option<Resource>,
-    /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
-    pub lobe_horizons: Option<Resource>,
-    /// With tiles, a buffer of [`ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each. Else none.
-    pub tile_lists: Option<Resource>,
-}
 
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,41 +36,6 @@ pub struct ShadeFrame {
     pub tile_lists: Option<Resource>,
     /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each frame. Else ignored.
     pub seed: u32,
-}
-
-/// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
-/// were found; the pass makes no barrier for host resources.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ResourceAccess {
-    /// The binding's name in the manifest.
-    pub name: &'static str,
-    /// The stage that uses it.
-    pub stage: vk::PipelineStageFlags,
-    /// What it does there.
-    pub access: vk::AccessFlags,
-    /// The layout that an image must have; `UNDEFINED` for a buffer, and for a sampled image, whose layout
-    /// the host states in its [`Resource`].
-    pub layout: vk::ImageLayout,
-}
-
-/// How `kernel` uses each of its bindings.
-pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
-    let used = kernel.bindings.iter().filter(|binding| binding.access != Access::None);
-    let accesses = used.map(|binding| ResourceAccess {
-        name: binding.name,
-        stage: vk::PipelineStageFlags::COMPUTE_SHADER,
-        access: match binding.access {
-            Access::Read => vk::AccessFlags::SHADER_READ,
-            Access::Write => vk::AccessFlags::SHADER_WRITE,
-            Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
-            Access::None => vk::AccessFlags::empty(),
-        },
-        layout: match binding.kind {
-            BindingKind::StorageImage => vk::ImageLayout::GENERAL,
-            _ => vk::ImageLayout::UNDEFINED,
-        },
-    });
-    accesses.collect()
 }
 
 /// The shade kernel, specialised for a host's surfaces and a quality, for every kind of light.
@@ -265,59 +195,10 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
-        let (resources, absent) = self.in_order(resources)?;
+        let bindings = self.pipelines.layouts().bindings().len();
+        let (resources, absent) = resources.in_order(self.options, self.tiles.is_some(), bindings)?;
         // SAFETY: the same contract.
         unsafe { self.pipelines.layouts().write_set_without(set, &resources, &absent) }
-    }
-
-    /// The resources as the kernel's bindings have them, and the bindings of those that are missing: something stands there in their place.
-    fn in_order(&self, resources: &ShadeResources) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
-        if resources.specular.is_none() && self.options.reads_specular() {
-            let message = "is missing, but the pass reads it: see ShadeOptions::reads_specular".into();
-            return Err(Error::InvalidArgument { field: "specular", message });
-        }
-        if resources.coat.is_none() && self.options.reads_coat() {
-            let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
-            return Err(Error::InvalidArgument { field: "coat", message });
-        }
-        if resources.picks.is_none() && self.options.shadow_rays > 0 {
-            let message =
-                "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
-            return Err(Error::InvalidArgument { field: "picks", message });
-        }
-        let textures_place = match resources.table {
-            Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
-            other => other,
-        };
-        let mut all = vec![
-            resources.table,
-            resources.lights,
-            resources.light_vertices,
-            resources.position,
-            resources.normal,
-            resources.base_color,
-            resources.specular.unwrap_or(resources.base_color),
-            resources.radiance,
-            resources.light_textures.unwrap_or(textures_place),
-            resources.shapes.unwrap_or(resources.lights),
-            self.glossy_image(resources)?,
-            resources.coat.unwrap_or(resources.base_color),
-            resources.picks.unwrap_or(resources.lights),
-        ];
-        if self.tiles.is_some() {
-            for (resource, field) in
-                [(resources.tile_lists, TILE_LISTS), (resources.lobe_horizons, LOBE_HORIZONS)]
-            {
-                let message = "is missing, but the pass was made with tiles".into();
-                all.push(resource.ok_or(Error::InvalidArgument { field, message })?);
-            }
-        }
-        // A whole module has bindings that no frame of this pass uses
-        all.resize(self.pipelines.layouts().bindings().len(), resources.lights);
-        let absent =
-            [(LIGHT_TEXTURES, resources.light_textures.is_none()), (SHAPES, resources.shapes.is_none())];
-        let absent = absent.into_iter().filter_map(|(name, is_absent)| is_absent.then_some(name)).collect();
-        Ok((all, absent))
     }
 
     /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That takes a moment,
@@ -330,21 +211,6 @@ impl ShadePass {
         match self.tiled(frame, constants)? {
             Some((tiles, frame)) => tiles.prepare(&self.pipelines, self.options, &frame),
             None => self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |_| ()),
-        }
-    }
-
-    /// What is bound for the glossy lobe's radiance: where there is one image, that again.
-    fn glossy_image(&self, resources: &ShadeResources) -> Result<Resource, Error> {
-        let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
-        match (self.options.separate_lobes, resources.glossy) {
-            (false, _) => Ok(resources.radiance),
-            (true, None) => {
-                Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
-            }
-            (true, Some(glossy)) if glossy.view() == resources.radiance.view() => {
-                Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
-            }
-            (true, Some(glossy)) => Ok(glossy),
         }
     }
 
@@ -500,21 +366,6 @@ fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
         return wrong("separate_lobes", "is set, but with shadow rays the lobes' radiance is one sum");
     }
     Ok(())
-}
-
-/// The names of bindings of tiles, in the manifest.
-const TILE_LISTS: &str = "tile_lists";
-const LOBE_HORIZONS: &str = "lobe_horizons";
-
-/// The names of bindings that may have nothing, in the manifest.
-const LIGHT_TEXTURES: &str = "light_textures";
-const SHAPES: &str = "shapes";
-
-/// The bindings that lights need, of those that may have nothing.
-fn needed(lights: LightSummary) -> Vec<&'static str> {
-    let images = lights.effects.intersects(Effects::IMAGES).then_some(LIGHT_TEXTURES);
-    let shapes = (lights.shape_count > 0).then_some(SHAPES);
-    images.into_iter().chain(shapes).collect()
 }
 
 /// Refuses what is no summary of packed lights.

@@ -19,6 +19,7 @@ mod guard;
 mod host_mistakes;
 mod host_shadows;
 mod light_textures;
+mod lobe_horizons;
 mod manifest;
 mod meshes;
 mod modules;

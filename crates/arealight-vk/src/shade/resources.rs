@@ -1,0 +1,168 @@
+//! What a shade pass reads and writes: the host's images and buffers.
+
+use crate::error::Error;
+use crate::pass::Resource;
+use arealight::kernels::{Access, BindingKind, Kernel};
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightSummary};
+use ash::vk;
+
+/// The names of bindings of tiles, in the manifest.
+pub(super) const TILE_LISTS: &str = "tile_lists";
+pub(super) const LOBE_HORIZONS: &str = "lobe_horizons";
+
+/// The names of bindings that may have nothing, in the manifest.
+const LIGHT_TEXTURES: &str = "light_textures";
+const SHAPES: &str = "shapes";
+
+/// The bindings that lights need, of those that may have nothing.
+pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
+    let images = lights.effects.intersects(Effects::IMAGES).then_some(LIGHT_TEXTURES);
+    let shapes = (lights.shape_count > 0).then_some(SHAPES);
+    images.into_iter().chain(shapes).collect()
+}
+
+/// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
+/// What may be missing is not read in some frames: a frame that reads it is refused.
+///
+/// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
+/// By default there is none; the pass refuses a set without the seven that are no `Option`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ShadeResources {
+    /// The light table, see [`crate::TableImage`].
+    pub table: Resource,
+    /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes or more.
+    pub lights: Resource,
+    /// [`PackedLights::vertices`](arealight::PackedLights::vertices), likewise.
+    pub light_vertices: Resource,
+    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or tubes.
+    pub shapes: Option<Resource>,
+    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's layer is there. None where no
+    /// frame has textured lights.
+    pub light_textures: Option<Resource>,
+    /// Positions or depth, by [`ShadeOptions::from_depth`].
+    pub position: Resource,
+    /// Normal and roughness: this and the next two by [`ShadeOptions::g_buffer`].
+    pub normal: Resource,
+    /// Base colour and metalness.
+    pub base_color: Resource,
+    /// Dielectric reflectance, or the third image of another layout; none without [`ShadeOptions::reads_specular`].
+    pub specular: Option<Resource>,
+    /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
+    pub coat: Option<Resource>,
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
+    pub radiance: Resource,
+    /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
+    pub glossy: Option<Resource>,
+    /// With [`ShadeOptions::shadow_rays`], a buffer of [`crate::ShadePass::picks_size`] bytes, which the pass writes and a
+    /// [`crate::ShadowPass`] reads. Else none.
+    pub picks: Option<Resource>,
+    /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
+    pub lobe_horizons: Option<Resource>,
+    /// With tiles, a buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each. Else none.
+    pub tile_lists: Option<Resource>,
+}
+
+impl ShadeResources {
+    /// The resources as the kernel's first `bindings` have them, and the bindings of those that are missing: something stands there in their place.
+    pub(super) fn in_order(
+        &self,
+        options: ShadeOptions,
+        has_tiles: bool,
+        bindings: usize,
+    ) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
+        if self.specular.is_none() && options.reads_specular() {
+            let message = "is missing, but the pass reads it: see ShadeOptions::reads_specular".into();
+            return Err(Error::InvalidArgument { field: "specular", message });
+        }
+        if self.coat.is_none() && options.reads_coat() {
+            let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
+            return Err(Error::InvalidArgument { field: "coat", message });
+        }
+        if self.picks.is_none() && options.shadow_rays > 0 {
+            let message =
+                "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
+            return Err(Error::InvalidArgument { field: "picks", message });
+        }
+        let textures_place = match self.table {
+            Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
+            other => other,
+        };
+        let mut all = vec![
+            self.table,
+            self.lights,
+            self.light_vertices,
+            self.position,
+            self.normal,
+            self.base_color,
+            self.specular.unwrap_or(self.base_color),
+            self.radiance,
+            self.light_textures.unwrap_or(textures_place),
+            self.shapes.unwrap_or(self.lights),
+            self.glossy_image(options)?,
+            self.coat.unwrap_or(self.base_color),
+            self.picks.unwrap_or(self.lights),
+        ];
+        if has_tiles {
+            for (resource, field) in [(self.tile_lists, TILE_LISTS), (self.lobe_horizons, LOBE_HORIZONS)] {
+                let message = "is missing, but the pass was made with tiles".into();
+                all.push(resource.ok_or(Error::InvalidArgument { field, message })?);
+            }
+        }
+        // A whole module has bindings that no frame of this pass uses
+        all.resize(bindings, self.lights);
+        let absent = [(LIGHT_TEXTURES, self.light_textures.is_none()), (SHAPES, self.shapes.is_none())];
+        let absent = absent.into_iter().filter_map(|(name, is_absent)| is_absent.then_some(name)).collect();
+        Ok((all, absent))
+    }
+
+    /// What is bound for the glossy lobe's radiance: where there is one image, that again.
+    fn glossy_image(&self, options: ShadeOptions) -> Result<Resource, Error> {
+        let wrong = |message: &str| Error::InvalidArgument { field: "glossy", message: message.into() };
+        match (options.separate_lobes, self.glossy) {
+            (false, _) => Ok(self.radiance),
+            (true, None) => {
+                Err(wrong("is missing, but the pass stores the lobes' radiance to an image each"))
+            }
+            (true, Some(glossy)) if glossy.view() == self.radiance.view() => {
+                Err(wrong("is the image of `radiance`; each lobe's radiance needs its own"))
+            }
+            (true, Some(glossy)) => Ok(glossy),
+        }
+    }
+}
+
+/// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
+/// were found; the pass makes no barrier for host resources.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ResourceAccess {
+    /// The binding's name in the manifest.
+    pub name: &'static str,
+    /// The stage that uses it.
+    pub stage: vk::PipelineStageFlags,
+    /// What it does there.
+    pub access: vk::AccessFlags,
+    /// The layout that an image must have; `UNDEFINED` for a buffer, and for a sampled image, whose layout
+    /// the host states in its [`Resource`].
+    pub layout: vk::ImageLayout,
+}
+
+/// How `kernel` uses each of its bindings.
+pub(crate) fn accesses_of(kernel: &Kernel) -> Vec<ResourceAccess> {
+    let used = kernel.bindings.iter().filter(|binding| binding.access != Access::None);
+    let accesses = used.map(|binding| ResourceAccess {
+        name: binding.name,
+        stage: vk::PipelineStageFlags::COMPUTE_SHADER,
+        access: match binding.access {
+            Access::Read => vk::AccessFlags::SHADER_READ,
+            Access::Write => vk::AccessFlags::SHADER_WRITE,
+            Access::ReadWrite => vk::AccessFlags::SHADER_READ | vk::AccessFlags::SHADER_WRITE,
+            Access::None => vk::AccessFlags::empty(),
+        },
+        layout: match binding.kind {
+            BindingKind::StorageImage => vk::ImageLayout::GENERAL,
+            _ => vk::ImageLayout::UNDEFINED,
+        },
+    });
+    accesses.collect()
+}

@@ -1,0 +1,301 @@
+//! Every structure that the CPU writes has the same offsets and sizes in Rust and in the modules.
+
+use super::reflection::{
+    bound_variables, decoration, definition, literal, member_decorations, member_name, module, offsets,
+    pointee,
+};
+use arealight::gpu;
+use arealight::kernels;
+use arealight::pyramid::MOST_TAPS;
+use arealight_tests::kernel::BLOCKERS;
+use arealight_tool_kernels as tool;
+use rspirv::dr::{Module, Operand};
+use rspirv::spirv::{Decoration, Op, StorageClass};
+use std::mem::offset_of;
+
+macro_rules! layout {
+    ($type:ty, $($rust:ident $(as $glsl:literal)?),+ $(,)?) => {
+        vec![$((layout!(@name $rust $($glsl)?), offset_of!($type, $rust) as u32)),+]
+    };
+    (@name $rust:ident) => { stringify!($rust).to_owned() };
+    (@name $rust:ident $glsl:literal) => { $glsl.to_owned() };
+}
+
+fn shade_constants() -> Vec<(String, u32)> {
+    layout!(
+        gpu::ShadeConstants,
+        position_from_clip,
+        camera,
+        light_count,
+        shape_count,
+        quad_count,
+        seed,
+        capacity,
+        size,
+        horizon_cells,
+        cull_threshold
+    )
+}
+
+fn light_layout() -> Vec<(String, u32)> {
+    layout!(
+        gpu::GpuLight,
+        radiance,
+        first_vertex,
+        center,
+        radius,
+        normal,
+        area,
+        vertex_count,
+        flags,
+        texture_layer,
+        reserved
+    )
+}
+
+#[test]
+fn every_structure_has_the_same_offsets() {
+    let shade = module(&kernels::SHADE);
+    let eval = module(&tool::kernels::EVAL);
+    let visibility = module(&tool::kernels::VISIBILITY);
+    let light = light_layout();
+    for (kernel, structure, expected) in [
+        (&shade, "ArealightGpuLight", light.clone()),
+        (&eval, "ArealightGpuLight", light),
+        (&shade, "ShadeConstants", shade_constants()),
+        (&eval, "EvalConstants", layout!(tool::gpu::EvalConstants, case_count)),
+        (
+            &eval,
+            "ArealightGpuCase",
+            layout!(
+                tool::gpu::GpuCase,
+                normal,
+                roughness,
+                view,
+                f90,
+                diffuse_albedo,
+                light,
+                f0,
+                coat_weight,
+                coat_normal,
+                coat_roughness
+            ),
+        ),
+        (
+            &visibility,
+            "ArealightGpuBvhNode",
+            layout!(gpu::GpuBvhNode, min as "min_corner", first,
+                                                     max as "max_corner", count),
+        ),
+        (
+            &visibility,
+            "ArealightGpuTriangle",
+            layout!(tool::gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
+                                                      u1, n2, u2, v2, flags, reserved as "reserved0"),
+        ),
+        (
+            &visibility,
+            "ArealightGpuMaterial",
+            layout!(
+                tool::gpu::GpuMaterial,
+                base_color,
+                metalness,
+                emission,
+                roughness,
+                dielectric_f0,
+                dielectric_f90,
+                base_color_texture,
+                metallic_roughness_texture,
+                normal_texture,
+                normal_scale,
+                flags,
+                alpha_cutoff,
+                base_alpha,
+                emission_texture,
+                coat,
+                coat_roughness,
+                coat_texture,
+                coat_roughness_texture,
+                coat_normal_texture,
+                coat_normal_scale,
+                reserved as "reserved0"
+            ),
+        ),
+        (
+            &visibility,
+            "ArealightGpuTexture",
+            layout!(tool::gpu::GpuTexture, first_texel, width, height, flags),
+        ),
+        (
+            &visibility,
+            "VisibilityConstants",
+            layout!(
+                tool::gpu::VisibilityConstants,
+                camera,
+                reserved0,
+                right,
+                reserved1,
+                up,
+                reserved2,
+                forward,
+                reserved3,
+                background,
+                reserved4
+            ),
+        ),
+    ] {
+        assert_offsets(kernel, structure, &expected);
+    }
+}
+
+#[test]
+fn the_structures_of_tiles_have_the_same_offsets() {
+    let classify = module(&kernels::CLASSIFY);
+    let shadow = layout!(gpu::ShadowConstants, position_from_clip, camera, seed, size);
+    assert_eq!(offsets(&module(&kernels::SHADOW_RAYS), "ShadowConstants"), Some(shadow));
+    let horizon = layout!(
+        arealight::table::LobeHorizon,
+        lobe,
+        schlick,
+        weight,
+        envelope,
+        schlick_albedo,
+        reserved as "reserved0"
+    );
+    for (kernel, structure, expected) in [
+        (&classify, "ShadeConstants", &shade_constants()),
+        (&classify, "ArealightGpuLobeHorizon", &horizon),
+        (&classify, "ArealightGpuLight", &light_layout()),
+    ] {
+        assert_offsets(kernel, structure, expected);
+    }
+}
+
+#[test]
+fn the_reference_s_structures_have_the_same_offsets() {
+    let reference = module(&tool::kernels::REFERENCE);
+    let light = light_layout();
+    for (kernel, structure, expected) in [
+        (&reference, "ArealightGpuLight", light),
+        (
+            &reference,
+            "ReferenceConstants",
+            layout!(
+                tool::gpu::ReferenceConstants,
+                camera,
+                light_count,
+                first_sample,
+                sample_count,
+                weight,
+                seed,
+                shape_count
+            ),
+        ),
+        (
+            &reference,
+            "ArealightGpuLightSampling",
+            layout!(tool::gpu::GpuLightSampling, normal, area, first_triangle,
+                                                          triangle_count, reserved as "reserved0"),
+        ),
+        (
+            &reference,
+            "ArealightGpuLightTriangle",
+            layout!(tool::gpu::GpuLightTriangle, vertices as "vertex0",
+                                                          cumulative),
+        ),
+    ] {
+        assert_offsets(kernel, structure, &expected);
+    }
+}
+
+#[test]
+fn shapes_have_the_same_offsets() {
+    let shape = layout!(gpu::GpuShape, radiance, kind, center, radius, axis_u, detail, axis_v, flags);
+    for kernel in [&kernels::SHADE, &tool::kernels::EVAL_SHAPES, &tool::kernels::REFERENCE] {
+        assert_offsets(&module(kernel), "ArealightGpuShape", &shape);
+    }
+    let constants = layout!(tool::gpu::EvalConstants, case_count);
+    assert_offsets(&module(&tool::kernels::EVAL_SHAPES), "EvalConstants", &constants);
+}
+
+#[test]
+fn the_texture_kernels_constants_have_the_same_offsets() {
+    for (kernel, structure, expected) in [
+        (
+            &kernels::TEXTURE_LOAD,
+            "TextureLoadConstants",
+            layout!(gpu::TextureLoadConstants, first_texel, first_offset, stride, flags, layer),
+        ),
+        (
+            &kernels::TEXTURE_BLUR,
+            "TextureBlurConstants",
+            vec![("weights".to_owned(), 0), ("first_layer".to_owned(), 4 * MOST_TAPS as u32)],
+        ),
+    ] {
+        assert_offsets(&module(kernel), structure, &expected);
+    }
+}
+
+/// Fails unless a structure of a module has the members of `expected` at the same offsets.
+fn assert_offsets(module: &Module, structure: &str, expected: &[(String, u32)]) {
+    let found = offsets(module, structure).unwrap_or_else(|| panic!("{structure} is in the module"));
+    // An array in Rust may be several members in GLSL: compare the first of each
+    let found: Vec<_> =
+        found.into_iter().filter(|(name, _)| expected.iter().any(|(e, _)| e == name)).collect();
+    assert_eq!(found, expected, "{structure}");
+}
+
+#[test]
+fn array_strides_are_the_sizes_in_rust() {
+    for (kernel, buffer, size) in [
+        (&kernels::SHADE, "lights", size_of::<gpu::GpuLight>()),
+        (&tool::kernels::EVAL, "cases", size_of::<tool::gpu::GpuCase>()),
+        (&tool::kernels::EVAL_SHAPES, "cases", size_of::<tool::gpu::GpuCase>()),
+        (&tool::kernels::EVAL_SHAPES, "shapes", size_of::<gpu::GpuShape>()),
+        (&kernels::SHADE, "shapes", size_of::<gpu::GpuShape>()),
+        (&tool::kernels::REFERENCE, "light_sampling", size_of::<tool::gpu::GpuLightSampling>()),
+        (&tool::kernels::REFERENCE, "light_triangles", size_of::<tool::gpu::GpuLightTriangle>()),
+        (&BLOCKERS, "nodes", size_of::<gpu::GpuBvhNode>()),
+        (&BLOCKERS, "blocker_triangles", size_of::<[[f32; 4]; 3]>()),
+        (&tool::kernels::VISIBILITY, "nodes", size_of::<gpu::GpuBvhNode>()),
+        (&tool::kernels::VISIBILITY, "triangles", size_of::<tool::gpu::GpuTriangle>()),
+        (&tool::kernels::VISIBILITY, "materials", size_of::<tool::gpu::GpuMaterial>()),
+        (&tool::kernels::VISIBILITY, "textures", size_of::<tool::gpu::GpuTexture>()),
+    ] {
+        let module = module(kernel);
+        let number =
+            kernel.bindings.iter().position(|b| b.name == buffer).expect("the manifest has it") as u32;
+        let block = pointee(&module, bound_variables(&module)[&number]);
+        assert_eq!(member_name(&module, block.result_id.unwrap(), 0), buffer);
+        let array = literal(&block.operands[0]);
+        let stride = literal(&decoration(&module, array, Decoration::ArrayStride).expect("an array")[0]);
+        assert_eq!(stride as usize, size, "{buffer}");
+    }
+}
+
+#[test]
+fn push_constants_have_the_size_in_the_manifest() {
+    for kernel in kernels::ALL.into_iter().chain(tool::kernels::ALL) {
+        let module = module(kernel);
+        let block = module
+            .types_global_values
+            .iter()
+            .find(|i| {
+                i.class.opcode == Op::Variable
+                    && i.operands[0] == Operand::StorageClass(StorageClass::PushConstant)
+            })
+            .map(|variable| pointee(&module, variable))
+            .expect("every kernel has push constants");
+        let id = block.result_id.unwrap();
+        let last = member_decorations(&module, id, Decoration::Offset);
+        let (member, offset) = last.iter().next_back().unwrap();
+        // Every last member is of 32-bit scalars
+        let kind = definition(&module, literal(&block.operands[*member as usize]));
+        let scalars = match kind.class.opcode {
+            Op::TypeInt | Op::TypeFloat => 1,
+            Op::TypeVector => literal(&kind.operands[1]),
+            other => panic!("{}: {other:?}", kernel.name),
+        };
+        assert_eq!(literal(&offset[0]) + 4 * scalars, kernel.push_constant_size, "{}", kernel.name);
+    }
+}
