@@ -26,7 +26,7 @@ use ash::vk::Format;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ShadeFormats {
-    /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::position`].
+    /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::from_depth`].
     pub position: Format,
     /// Of [`crate::ShadeResources::normal`]: signed, with four channels, or as [`ShadeOptions::g_buffer`] has it.
     pub normal: Format,

@@ -135,7 +135,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 15] = [
+    const NAMES: [(u32, &str); 19] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -145,7 +145,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::LOBES, "LOBES"),
         (constant::FOOTPRINT, "FOOTPRINT"),
         (constant::RADIUS, "RADIUS"),
-        (constant::CALLED_FOR, "CALLED_FOR"),
+        (constant::LOAD_STEPS, "LOAD_STEPS"),
         (constant::SHAPE, "SHAPE"),
         (constant::HAS_QUADS, "HAS_QUADS"),
         (constant::CLASS, "CLASS"),
