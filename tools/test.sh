@@ -108,6 +108,8 @@ step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests
 step "GPU tests, GPU-assisted validation" run_assisted
 step "examples in the documentation" cargo test --workspace --doc --locked --quiet
+# Without debug assertions: what it checks of a host in every build
+step "the recorder in a release build" cargo test --locked --quiet --release -p arealight-vk --lib
 # The command line and the library have the same name, and their pages would collide.
 step "documentation" env RUSTDOCFLAGS="-D warnings" \
     cargo doc --workspace --exclude arealight-cli --features arealight-examples/window --no-deps --locked --quiet

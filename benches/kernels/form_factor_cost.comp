@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-// What a form factor of a quad costs: each work item computes those of one quad at many places, by one method. Its memory
-// traffic, one quad and one result a work item, is lost in that.
+// What a form factor of a quad costs: each invocation computes those of one quad at many places, by one method. Its memory
+// traffic, one quad and one result per invocation, is lost in that.
 
 layout(local_size_x = 64) in;
 
@@ -24,7 +24,7 @@ const int METHOD_NOTHING = 16;
 const int METHOD_YARDSTICK = 17; // plus a school of yardsticks.glsl
 
 layout(set = 0, binding = 0, std430) readonly buffer Vertices {
-    vec4 vertices[]; // four a work item, in a box above the horizon
+    vec4 vertices[]; // four per invocation, in a box above the horizon
 };
 layout(set = 0, binding = 1, std430) writeonly buffer Results {
     float results[];

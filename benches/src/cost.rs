@@ -20,8 +20,8 @@ pub static FORM_FACTOR_COST: Kernel = Kernel {
     local_size: [64, 1, 1],
     push_constant_size: 0,
     bindings: &[
-        Binding::storage_buffer("vertices", Access::Read, "vec4[]: four vertices a work item, 0"),
-        Binding::storage_buffer("results", Access::Write, "float[]: the mean form factor of a work item"),
+        Binding::storage_buffer("vertices", Access::Read, "vec4[]: four vertices per invocation, 0"),
+        Binding::storage_buffer("results", Access::Write, "float[]: the mean form factor of an invocation"),
     ],
     constants: &[0, 1],
 };

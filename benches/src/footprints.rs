@@ -164,7 +164,7 @@ pub struct Far {
     pub surface: &'static str,
     /// The method's name.
     pub method: &'static str,
-    /// The answer over the truth, all channels together.
+    /// The answer over the truth, the sum of all channels.
     pub ratio: f64,
 }
 

@@ -129,7 +129,7 @@ pub enum Function {
 }
 
 impl TestEngine {
-    /// Runs a kernel of the tests over `count` items, with `inputs` bound in turn and the results, `R` an item, at the
+    /// Runs a kernel of the tests over `count` invocations, with `inputs` bound in turn and the results, `R` per invocation, at the
     /// last binding.
     ///
     /// # Panics
@@ -150,9 +150,11 @@ impl TestEngine {
         // SAFETY: Host::submit waits, and the resources live until then.
         unsafe {
             let set = self.passes().bind(&pass, &resources).expect("the resources fit");
-            let items = [count as u32, 1, 1];
-            host.submit(|commands| set.record(&pass, commands, &(count as u32), items).expect("it records"))
-                .expect("it runs");
+            let invocations = [count as u32, 1, 1];
+            host.submit(|commands| {
+                set.record(&pass, commands, &(count as u32), invocations).expect("it records");
+            })
+            .expect("it runs");
         }
         results.download().expect("the results come back")
     }

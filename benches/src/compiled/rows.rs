@@ -259,8 +259,8 @@ fn tiles(lights: &'static str, level: &'static str, class: TileClass, kinds: Eff
     row(&kernels::SHADE, lights, level, None, specialization)
 }
 
-fn load(level: &'static str, called_for: u32) -> Row {
-    row(&kernels::TEXTURE_LOAD, "images", level, None, vec![(kernels::constant::CALLED_FOR, called_for)])
+fn load(level: &'static str, steps: u32) -> Row {
+    row(&kernels::TEXTURE_LOAD, "images", level, None, vec![(kernels::constant::LOAD_STEPS, steps)])
 }
 
 fn blur(level: &'static str, radius: u32) -> Row {

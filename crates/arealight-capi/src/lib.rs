@@ -1,6 +1,6 @@
 //! Arealight's recorder for hosts in C and C++.
 //!
-//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embedding.md walks through it.
+//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embedding.md goes through it.
 //! Here is how it is done:
 //!
 //! | module | holds |

@@ -228,7 +228,7 @@ impl Layouts {
         Ok(())
     }
 
-    /// Checks, in debug builds, that a set has what a frame needs.
+    /// Checks that a set has what a frame needs.
     pub(crate) fn check_present(&self, set: vk::DescriptorSet, needed: &[&'static str]) -> Result<(), Error> {
         self.context.written_sets.check_present(set, needed)
     }

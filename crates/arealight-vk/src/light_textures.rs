@@ -100,7 +100,7 @@ impl LightTextures {
             // SAFETY: the same contract.
             unsafe { ComputePass::new(context, kernel, &[constant]) }
         };
-        let load = |called_for| pass(&TEXTURE_LOAD, (constant::CALLED_FOR, called_for));
+        let load = |steps| pass(&TEXTURE_LOAD, (constant::LOAD_STEPS, steps));
         let load = [load(0)?, load(1)?, load(2)?, load(3)?];
         let blur = |variant: usize| pass(&TEXTURE_BLUR, (constant::RADIUS, plan::BLUR_RADII[variant]));
         let blur = [blur(0)?, blur(1)?, blur(2)?];
@@ -369,7 +369,7 @@ impl LightTextures {
         for (update, constants) in updates.iter().zip(&constants) {
             let [width, height] = self.size.extent(0);
             let groups = TEXTURE_LOAD.groups_for([width, height, 1]);
-            let pass = &self.load[constants.called_for() as usize];
+            let pass = &self.load[constants.steps() as usize];
             let bytes = bytemuck::bytes_of(constants);
             // SAFETY: as above.
             unsafe { pass.record(command_buffer, update.source_set, bytes, groups) }?;

@@ -1,6 +1,6 @@
 //! What blocks light, as shadow rays on the GPU meet it: triangles, and a hierarchy of boxes around them.
 //!
-//! For hosts that have no acceleration structure of their own to answer a shadow ray with. The kernels' `blockers.glsl` walks it.
+//! For hosts that have no acceleration structure of their own to answer a shadow ray with. The kernels' `blockers.glsl` traverses it.
 
 use crate::gpu::GpuBvhNode;
 use glam::Vec3;
@@ -10,7 +10,7 @@ use std::ops::Range;
 /// neighbours, after it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blockers {
-    /// Never empty: without triangles it is one node of zeros, which a walk passes by.
+    /// Never empty: without triangles it is one node of zeros, which a traversal passes by.
     pub nodes: Vec<GpuBvhNode>,
     /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero. Empty without triangles; a descriptor wants a
     /// buffer all the same, of any content.
@@ -21,7 +21,7 @@ pub struct Blockers {
     pub max_depth: u32,
 }
 
-/// The deepest hierarchy, in nodes from the root to a leaf: a walk with a stack of so many entries holds it. `BVH_STACK_SIZE` in
+/// The deepest hierarchy, in nodes from the root to a leaf: a traversal with a stack of so many entries holds it. `BVH_STACK_SIZE` in
 /// `shaders/kernels/bvh.glsl`.
 pub const MAX_DEPTH: u32 = 32;
 
@@ -302,7 +302,7 @@ mod tests {
             let own = [Vec3::from_array(node.min), Vec3::from_array(node.max)];
             assert!(own[0].cmpge(low).all() && own[1].cmple(high).all(), "node {index} leaves its parent");
             if node.is_inner() {
-                assert!(node.first as usize > index, "a walk ends");
+                assert!(node.first as usize > index, "a traversal ends");
                 stack.extend([(node.first as usize, own), (node.first as usize + 1, own)]);
             }
             for place in node.first..node.first + node.count {

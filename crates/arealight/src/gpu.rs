@@ -170,15 +170,15 @@ impl TextureLoadConstants {
     /// v is mirrored at every repeat.
     pub const MIRROR_V: u32 = 16;
 
-    /// What the kernel must be specialised for, to load with these: bits of [`crate::kernels::constant::CALLED_FOR`].
-    pub fn called_for(&self) -> u32 {
+    /// What the kernel does beyond copying, to load with these: bits of [`crate::kernels::constant::LOAD_STEPS`].
+    pub fn steps(&self) -> u32 {
         let copies = self.first_offset == [0.0; 2] && self.stride == [1.0; 2];
         let decodes = self.flags & Self::SRGB != 0;
-        (u32::from(!copies) * Self::RESAMPLING) | (u32::from(decodes) * Self::DECODING)
+        (u32::from(!copies) * Self::RESAMPLE) | (u32::from(decodes) * Self::DECODE)
     }
 
-    /// Called for: texels are not copied one to one.
-    pub const RESAMPLING: u32 = 1;
-    /// Called for: sRGB is decoded.
-    pub const DECODING: u32 = 2;
+    /// A step: texels are resampled.
+    pub const RESAMPLE: u32 = 1;
+    /// A step: sRGB is decoded.
+    pub const DECODE: u32 = 2;
 }

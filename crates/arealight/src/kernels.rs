@@ -15,7 +15,7 @@ pub struct Kernel {
     pub name: &'static str,
     /// SPIR-V 1.3 for Vulkan 1.1, entry point `main`; a multiple of four bytes.
     pub spirv: &'static [u8],
-    /// Work items a group in x, y and z.
+    /// Invocations of a workgroup in x, y and z.
     pub local_size: [u32; 3],
     /// Size of the push constants in bytes, of the struct of [`crate::gpu`] named for the kernel.
     pub push_constant_size: u32,
@@ -26,9 +26,9 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// How many groups cover `items`.
-    pub fn groups_for(&self, items: [u32; 3]) -> [u32; 3] {
-        [0, 1, 2].map(|i| items[i].div_ceil(self.local_size[i]))
+    /// How many workgroups cover so many invocations.
+    pub fn groups_for(&self, invocations: [u32; 3]) -> [u32; 3] {
+        [0, 1, 2].map(|i| invocations[i].div_ceil(self.local_size[i]))
     }
 
     /// A kernel of another module, that is bound and specialised as this one is.
@@ -414,7 +414,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
     ],
 };
 
-/// Loads a part of an image into level 0 of a layer of the light textures; an item a texel of the level. Push constants: [`crate::gpu::TextureLoadConstants`].
+/// Loads a part of an image into level 0 of a layer of the light textures; an invocation per texel of the level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel {
     name: "texture_load",
     spirv: include_bytes!("../spirv/texture_load.spv"),
@@ -428,10 +428,10 @@ pub static TEXTURE_LOAD: Kernel = Kernel {
         ),
         write("out_level", BindingKind::StorageImage, Access::Write, "level 0, every layer (rgba16f)"),
     ],
-    constants: &[constant::CALLED_FOR],
+    constants: &[constant::LOAD_STEPS],
 };
 
-/// Makes a level of the light textures from the one before; an item a block of
+/// Makes a level of the light textures from the one before; an invocation per block of
 /// [`crate::plan::BLUR_BLOCK`] texels of the level and layer. Push constants:
 /// [`crate::pyramid::PyramidSize::weights`] of the level, six
 /// floats, and the first layer.

@@ -270,7 +270,7 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     ]
 }
 
-/// Width and height in texels of what an item of the blur kernel makes.
+/// Width and height in texels of what an invocation of the blur kernel makes.
 pub const BLUR_BLOCK: [u32; 2] = [4, 4];
 
 /// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the largest, and

@@ -179,7 +179,7 @@ mod tests {
         let piece = constants(TexturePart { low, size, ..TexturePart::default() }, [300, 77]).unwrap();
         assert_eq!((piece.first_texel, piece.first_offset, piece.stride), ([22, 5], [0.0, 0.0], [1.0, 1.0]));
         let larger = constants(TexturePart::default(), [100, 64]).unwrap();
-        assert_eq!(larger.called_for(), TextureLoadConstants::RESAMPLING);
+        assert_eq!(larger.steps(), TextureLoadConstants::RESAMPLE);
     }
 
     #[test]

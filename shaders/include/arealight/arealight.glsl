@@ -6,7 +6,7 @@
 //     radiance = sum over lights  L_e(light)  x  sum over lobes  albedo(lobe) x F(light in the lobe's cosine space)
 //
 // A kind of light knows its vector form factor F in any linear space, and no lobe; a lobe knows its space and its albedo,
-// and no light; light_kind.glsl brings the two together. Use:
+// and no light; light_kind.glsl sums over both. Use:
 //
 //     #define AREALIGHT_DISKS 1                                     // options.glsl has all options
 //     #include "arealight/arealight.glsl"

@@ -3,7 +3,7 @@
 
 #include "arealight/material.glsl"
 
-// The loop that brings lights and lobes together. A kind of light is a record with `radiance`, a type for it in the shading
+// The sum of a light over lobes. A kind of light is a record with `radiance`, a type for it in the shading
 // frame of a point, and three functions:
 //
 //     // The light in the shading frame; false where it does not shine onto the point's side

@@ -51,7 +51,7 @@ fn upload(engine: &TestEngine, rays: &[Ray]) -> Buffer {
 }
 
 /// The kernel's distances.
-fn distances(engine: &TestEngine, blockers: &Blockers, rays: &[Ray]) -> Vec<f64> {
+fn hits(engine: &TestEngine, blockers: &Blockers, rays: &[Ray]) -> Vec<f64> {
     let host = engine.host();
     let nodes = host.storage_buffer("nodes", &blockers.nodes).unwrap();
     let nothing = [[0.0_f32; 4]; 3];
@@ -110,7 +110,7 @@ fn boxes(random: &mut Random, count: usize, extent: f64) -> Vec<Triangle> {
 }
 
 #[test]
-fn a_ray_finds_a_blocker_where_one_is() {
+fn a_walk_finds_a_blocker_where_one_is() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(20);
     for (triangles, extent) in [
@@ -121,7 +121,7 @@ fn a_ray_finds_a_blocker_where_one_is() {
     ] {
         let blockers = Blockers::new(&triangles).unwrap();
         let rays = rays(&mut random, 1000, extent);
-        let found = distances(&engine, &blockers, &rays);
+        let found = hits(&engine, &blockers, &rays);
         // Float32 in coordinates up to twice the extent, over cosines down to about a hundredth
         let margin = 1e-5 * extent;
         assert_eq!(wrong(&rays, &found, &triangles, margin), 0, "{} triangles", triangles.len());
@@ -130,19 +130,19 @@ fn a_ray_finds_a_blocker_where_one_is() {
         assert!(triangles.len() == 1 || (30..970).contains(&blocked), "{blocked} rays of 1000 are blocked");
         // The twin: without half of the triangles, or as far away as they block, it is wrong
         let half = &triangles[triangles.len() / 2..];
-        let fewer = distances(&engine, &Blockers::new(half).unwrap(), &rays);
+        let fewer = hits(&engine, &Blockers::new(half).unwrap(), &rays);
         assert!(triangles.len() == 1 || wrong(&rays, &fewer, &triangles, margin) > 10);
         assert!(triangles.len() == 1 || wrong(&rays, &found, half, margin) > 10);
     }
 }
 
 #[test]
-fn rays_agree_with_the_oracle_s_visibility() {
+fn a_walk_agrees_with_the_oracle_s_visibility() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(21);
     let triangles = crowd(&mut random, 300, 1.0);
     let rays = rays(&mut random, 1000, 1.0);
-    let found = distances(&engine, &Blockers::new(&triangles).unwrap(), &rays);
+    let found = hits(&engine, &Blockers::new(&triangles).unwrap(), &rays);
     let agrees = |(ray, found): &(&Ray, &f64)| {
         let origin = ray.origin.as_dvec3();
         let seen: Vec<_> = triangles.iter().map(|t| t.map(|vertex| vertex.as_dvec3() - origin)).collect();
@@ -163,14 +163,14 @@ fn both_faces_block_and_nothing_behind_or_beyond() {
     let rays =
         [at(1.0, 1.0, 2.0), at(-1.0, -1.0, 2.0), at(1.0, -1.0, 2.0), at(1.0, 1.0, 0.9), at(0.0, 1.0, 5.0)];
     let blockers = Blockers::new(&[triangle]).unwrap();
-    assert_eq!(distances(&engine, &blockers, &rays), [1.0, 1.0, 2.0, f64::from(0.9_f32), 5.0]);
+    assert_eq!(hits(&engine, &blockers, &rays), [1.0, 1.0, 2.0, f64::from(0.9_f32), 5.0]);
     // Without triangles all rays are free, also through zero
     let none = Blockers::new(&[]).unwrap();
-    assert_eq!(distances(&engine, &none, &rays), [2.0, 2.0, 2.0, f64::from(0.9_f32), 5.0]);
+    assert_eq!(hits(&engine, &none, &rays), [2.0, 2.0, 2.0, f64::from(0.9_f32), 5.0]);
 }
 
 /// The distances that the scene's own bridge gives.
-fn distances_in_scene(engine: &TestEngine, scene: &Scene, rays: &[Ray]) -> Vec<f64> {
+fn hit_in_scene(engine: &TestEngine, scene: &Scene, rays: &[Ray]) -> Vec<f64> {
     let host = engine.host();
     let buffers = SceneBuffers::new(scene, DVec3::ZERO).unwrap();
     let given = [
@@ -201,18 +201,18 @@ fn a_scene_blocks_but_by_its_lamps_and_where_it_is_masked_out() {
     let Some(engine) = TestEngine::new() else { return };
     let mut scene = masked_scene();
     let mut ray = Ray::new(DVec3::new(1.0, 1.0, 0.0), DVec3::Z, 10.0);
-    let met = |scene: &Scene, ray: Ray| distances_in_scene(&engine, scene, &[ray])[0];
+    let hit = |scene: &Scene, ray: Ray| hit_in_scene(&engine, scene, &[ray])[0];
     // Any of the three; from below they show their back, which is not seen
     scene.materials[0].double_sided = false;
-    assert!([1.0, 2.0, 3.0].contains(&met(&scene, ray)));
+    assert!([1.0, 2.0, 3.0].contains(&hit(&scene, ray)));
     // Lamps do not block
     scene.triangles[0].lamp = true;
     scene.triangles[2].lamp = true;
-    assert_eq!(met(&scene, ray), 2.0);
+    assert_eq!(hit(&scene, ray), 2.0);
     // What is at the light does not, nor is there anything before 1.9
     for (distance, expected) in [(2.0, 2.0), (2.0003, 2.0003), (2.001, 2.0), (1.9, 1.9)] {
         ray.distance = distance as f32;
-        assert_eq!(met(&scene, ray), f64::from(expected as f32), "{distance}");
+        assert_eq!(hit(&scene, ray), f64::from(expected as f32), "{distance}");
     }
     // A mask whose left texel is transparent
     let masked = |cutoff| {
@@ -224,6 +224,6 @@ fn a_scene_blocks_but_by_its_lamps_and_where_it_is_masked_out() {
     };
     for (x, cutoff, expected) in [(0.2, Some(0.5), 10.0), (0.8, Some(0.5), 2.0), (0.2, None, 2.0)] {
         let ray = Ray::new(DVec3::new(x, 1.0, 0.0), DVec3::Z, 10.0);
-        assert_eq!(met(&masked(cutoff), ray), expected, "{x} {cutoff:?}");
+        assert_eq!(hit(&masked(cutoff), ray), expected, "{x} {cutoff:?}");
     }
 }

@@ -200,10 +200,10 @@ fn choices_have_the_same_numbers_in_glsl() {
     assert_constants(TUBE_OUTLINE_GLSL, "AREALIGHT_TUBE_", &ends);
     let [width, height] = arealight::plan::BLUR_BLOCK.map(number);
     assert_constants(TEXTURE_BLUR_COMP, "BLOCK_", &[("WIDTH", width), ("HEIGHT", height)]);
-    let called_for = [
-        ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLING)),
-        ("DECODING", number(gpu::TextureLoadConstants::DECODING)),
+    let steps = [
+        ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLE)),
+        ("DECODING", number(gpu::TextureLoadConstants::DECODE)),
     ];
-    assert_constants(TEXTURE_LOAD_COMP, "CALLED_FOR_", &called_for);
+    assert_constants(TEXTURE_LOAD_COMP, "LOAD_STEP_", &steps);
     assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
 }

@@ -76,11 +76,11 @@ fn no_lobe_is_denser_than_the_envelope_of_its_cell() {
                 let sine = (fall * (2.0 - fall)).max(0.0).sqrt();
                 let direction =
                     mirror_frame(cos_view) * DVec3::new(sine * turn.cos(), sine * turn.sin(), 1.0 - fall);
-                let seen = inverse * direction;
-                let density = inverse.determinant() * seen.z.max(0.0)
-                    / (std::f64::consts::PI * seen.length_squared().powi(2));
+                let transformed = inverse * direction;
+                let density = inverse.determinant() * transformed.z.max(0.0)
+                    / (std::f64::consts::PI * transformed.length_squared().powi(2));
                 // The sine of the elevation above the lobe's horizon
-                let sine = seen.z.max(1e-9) / lobe_height(inverse).length();
+                let sine = transformed.z.max(1e-9) / lobe_height(inverse).length();
                 closest = closest.max(density * (b + fall).powi(2) / (a * sine));
             }
             assert!(closest <= 1.0, "{roughness}, {cos_view}, {reflectance}: {closest}");

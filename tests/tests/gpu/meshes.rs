@@ -50,7 +50,7 @@ fn group(random: &mut Random, glossy: bool, two_sided: bool) -> Vec<EvalPoint> {
     [vec![light.clone()], split(&light)].concat().into_iter().map(seen).collect()
 }
 
-/// That meshes send what their faces do together, by some levels.
+/// That meshes send the sum of what their faces do, by some levels.
 fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, levels: &[Level]) {
     let mut random = Random::new(401);
     let groups: Vec<Vec<EvalPoint>> =

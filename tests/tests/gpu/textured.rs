@@ -3,7 +3,7 @@
 use arealight::{Footprint, FormFactor, Fresnel, Horizon, Light, LightTexture, PyramidSize, Quality};
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::material::Surface;
-use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
+use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
 use arealight_oracle::texture::{Pyramid, Texture};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point};
 use glam::{DVec2, DVec3, Vec3};
@@ -192,7 +192,7 @@ fn seen_color(point: &EvalPoint, pyramid: &Pyramid, filter: Filter) -> DVec3 {
         shown(&mut light, WHITE);
     }
     let map = light.texture.as_ref().unwrap().map(&light.shape).unwrap();
-    let seen = SeenLight {
+    let seen = LobeSpaceLight {
         vertices: light.shape.vertices().to_vec(),
         center: light.shape.center(),
         map,

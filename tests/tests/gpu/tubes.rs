@@ -141,11 +141,11 @@ fn thin_and_far_tubes_keep_relative_precision() {
                 let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)) * lobe;
                 let whole = truth + transformed_form_factor(&mirror, &tube);
                 let thickness = tube.radius / distance(&tube);
-                // A line's own error is the thickness's square. What is no line is walked: near by its error is absolute, of which the
+                // A line's own error is the thickness's square. What is no line is summed edge by edge: near by its error is absolute, of which the
                 // vertices' rounding leaves some 2^-27. Heights in the lobe's space are rounded to 2^-23 of the
                 // distance, of which they are a hundredth
-                let walked = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
-                let bound = walked + 1e-4 + 10.0 * thickness * thickness;
+                let summed = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
+                let bound = summed + 1e-4 + 10.0 * thickness * thickness;
                 if whole > 0.0 {
                     comparison.add(found / whole, truth / whole, bound, || {
                         format!("{tube:?}, {lobe:?}, {whole:e}")

@@ -4,7 +4,6 @@ mod budget;
 mod commands;
 mod failure;
 mod gpu;
-mod images;
 mod output;
 mod picture;
 mod progress;

@@ -275,7 +275,7 @@ fn a_scene_without_lights_or_triangles_is_rendered_with_a_warning() {
 }
 
 #[test]
-fn effects_are_told_with_who_calls_for_them() {
+fn effects_are_listed_with_what_needs_them() {
     let folder = tempfile::tempdir().unwrap();
     let output = run(folder.path(), &["effects", &scene("screen.glb"), "--json"]);
     assert!(output.status.success(), "{}", text(&output.stderr));

@@ -4,6 +4,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`cases`] | files of shading points |
+//! | [`images`] | textures beside a file of shading points |
 //! | [`answers`] | files of answers and of known radiance |
 //! | [`measure`] | how far answers lie from the truth |
 //! | [`hard`] | polygons and ellipses that break form factors in float32, with their truth |
@@ -11,4 +12,5 @@
 pub mod answers;
 pub mod cases;
 pub mod hard;
+pub mod images;
 pub mod measure;

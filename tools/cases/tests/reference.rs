@@ -3,11 +3,12 @@
 use arealight::LightShape;
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{Case, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::images::Images;
 use arealight_cases::measure::{Family, relative_error};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{shape_truth, truth};
 use arealight_oracle::texture::Texture;
-use glam::DVec3;
+use std::path::Path;
 use std::sync::{Arc, LazyLock};
 
 fn read(file: &str) -> String {
@@ -28,24 +29,9 @@ fn supported() -> Vec<(Family, SupportedCase)> {
 
 /// The reference's one image.
 fn image(path: &str) -> Arc<Texture> {
-    use exr::prelude::{ReadChannels, ReadLayers, read};
     static IMAGE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
-        let path = format!("{}/../../tests/data/reference/light.exr", env!("CARGO_MANIFEST_DIR"));
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .rgb_channels(
-                |size, _| (size.width(), vec![DVec3::ZERO; size.area()]),
-                |(width, texels), at, (r, g, b): (f32, f32, f32)| {
-                    texels[at.y() * *width + at.x()] = DVec3::new(r.into(), g.into(), b.into());
-                },
-            )
-            .first_valid_layer()
-            .all_attributes()
-            .from_file(&path)
-            .unwrap_or_else(|error| panic!("{path}: {error}"));
-        let (width, texels) = image.layer_data.channel_data.pixels;
-        Arc::new(Texture::new(width, texels.len() / width, texels).unwrap())
+        let cases = format!("{}/../../tests/data/reference/cases.json", env!("CARGO_MANIFEST_DIR"));
+        Images::beside(Path::new(&cases)).load("light.exr").unwrap_or_else(|error| panic!("{error}"))
     });
     assert_eq!(path, "light.exr");
     Arc::clone(&IMAGE)

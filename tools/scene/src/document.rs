@@ -190,7 +190,7 @@ fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
     if length > bytes.len() {
         return Err(format!("cut short: {} bytes of {length}", bytes.len()));
     }
-    // Walk the chunks: the first is JSON, a second one is binary, others are to be ignored
+    // Go through the chunks: the first is JSON, a second one is binary, others are to be ignored
     let chunk = |at: usize, kind: &[u8; 4]| -> Result<&[u8], String> {
         let size = word(at)? as usize;
         if bytes.get(at + 4..at + 8) != Some(kind) {

@@ -10,7 +10,7 @@ use std::io::Cursor;
 /// The widest and highest image that is decoded.
 const MAX_SIDE: u32 = 16384;
 
-/// The most texels a scene's images may have together: one gibibyte on the GPU.
+/// The most texels a scene's images may have in all: one gibibyte on the GPU.
 const MAX_TEXELS: u64 = 1 << 28;
 
 /// The scene's index of the file's texture `index`, read as sRGB or as it is.

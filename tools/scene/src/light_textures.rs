@@ -20,7 +20,7 @@ use std::collections::{HashMap, HashSet};
 /// Vulkan device can have in an image.
 pub const MAX_LIGHT_TEXTURES: usize = 256;
 
-/// The most texels that [`Scene::light_texture_size`] allows all layers together: half a gibibyte at eight bytes each.
+/// The most texels that [`Scene::light_texture_size`] allows for all layers: half a gibibyte at eight bytes each.
 pub const MAX_LIGHT_TEXELS: u64 = 1 << 26;
 
 /// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean colour. At
@@ -74,7 +74,7 @@ impl Scene {
     }
 
     /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most
-    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] together. None if there are no
+    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] in all. None if there are no
     /// light textures.
     pub fn light_texture_size(&self, largest: u32) -> Option<PyramidSize> {
         let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);

@@ -32,7 +32,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
     let mut seen = vec![false; nodes.len()];
     let mut placed = Vec::new();
     let mut skinned = Vec::new();
-    // Walk depth first with a stack of our own: a file may nest deeper than the thread's stack
+    // Traverse depth first with a stack of our own: a file may nest deeper than the thread's stack
     let mut stack: Vec<(usize, DAffine3)> =
         roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
     while let Some((index, parent)) = stack.pop() {

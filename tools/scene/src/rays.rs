@@ -1,4 +1,4 @@
-//! A float64 twin of the visibility kernel's walk through the hierarchy of boxes around triangles.
+//! A float64 twin of the visibility kernel's traversal of the hierarchy of boxes around triangles.
 
 use arealight::gpu::GpuBvhNode;
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTriangle};

@@ -124,7 +124,7 @@ impl Metadata {
                 wrong.push(format!("{}: Cargo.toml has no rust-version", package.name));
                 continue;
             };
-            // Walk what is built, which leaves dependencies of tests out
+            // Traverse what is built, which leaves dependencies of tests out
             let (mut seen, mut next) = (BTreeSet::new(), vec![package.id.as_str()]);
             while let Some(id) = next.pop() {
                 if !seen.insert(id) {

@@ -7,7 +7,7 @@ use arealight::table::share_above_surface;
 use arealight::{LightTable, Quality};
 use glam::{DMat3, DVec3};
 
-/// What a coated surface reflects: `bare` says what a surface without a coat does, with its normal and a direction to the viewer.
+/// What a coated surface reflects: `uncoated` says what a surface without a coat does, with its normal and a direction to the viewer.
 ///
 /// A coat is such a surface itself: GGX without Fresnel term, about its own normal. A view from below the base counts as grazing,
 /// for the coat too.
@@ -15,16 +15,16 @@ pub(super) fn layered<E>(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,
-    bare: impl Fn(&Surface, DVec3, DVec3) -> Result<Truth, E>,
+    uncoated: impl Fn(&Surface, DVec3, DVec3) -> Result<Truth, E>,
 ) -> Result<Truth, E> {
-    let below = bare(surface, normal, view)?;
+    let below = uncoated(surface, normal, view)?;
     let Some(coat) = surface.coat else { return Ok(below) };
     let frame = SurfaceFrame::new(normal, view);
     let view = frame.from_surface(frame.view());
     let own_normal = coat.normal.unwrap_or_else(|| frame.from_surface(DVec3::Z));
     let lobe =
         Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: coat.alpha, coat: None };
-    let above = bare(&lobe, own_normal, view)?;
+    let above = uncoated(&lobe, own_normal, view)?;
     let share = coat.share(SurfaceFrame::new(own_normal, view).cos_view());
     Ok(Truth {
         radiance: below.radiance.lerp(above.radiance, share),

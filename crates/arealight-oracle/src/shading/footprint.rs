@@ -18,7 +18,7 @@ pub enum Filter {
 
 /// A textured light, in the cosine space of a lobe.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SeenLight {
+pub struct LobeSpaceLight {
     /// The outline, not clipped.
     pub vertices: Vec<DVec3>,
     /// The middle of its area.
@@ -36,7 +36,7 @@ pub struct SeenLight {
 /// The lobe's integral of the image over the light, signed as form factors are. `lookup` gives the image at a texture
 /// coordinate, blurred by a standard deviation in units of the root of the box's area, in a metric in which texels are as
 /// long in both directions: [`crate::texture::Pyramid::blurred`].
-pub fn filtered(filter: Filter, light: &SeenLight, lookup: impl Fn(DVec2, f64) -> DVec3) -> DVec3 {
+pub fn filtered(filter: Filter, light: &LobeSpaceLight, lookup: impl Fn(DVec2, f64) -> DVec3) -> DVec3 {
     let whole = Part { low: DVec2::ZERO, high: DVec2::ONE, parts: 1.0 };
     let lookup = |place: DVec2, sigma: f64| lookup(light.map.low + light.map.size * place, sigma);
     match filter {
@@ -102,7 +102,7 @@ impl Part {
     }
 }
 
-impl SeenLight {
+impl LobeSpaceLight {
     fn normal(&self) -> DVec3 {
         self.map.axis_u.cross(self.map.axis_v)
     }

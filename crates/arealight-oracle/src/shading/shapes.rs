@@ -30,7 +30,7 @@ pub fn shape_ltc_on(
     light: &Light,
 ) -> Option<DVec3> {
     let frame = SurfaceFrame::new(normal, view);
-    let seen = SeenShape::new(light, &frame)?;
+    let seen = LocalShape::new(light, &frame)?;
     let both_horizons = quality.horizon == Horizon::Both;
     // Integrate the transformed cosine
     let lobe = |inverse: &DMat3, above_surface: f64| {
@@ -75,7 +75,7 @@ fn uncoated_truth(
     settings: &Settings,
 ) -> Option<Truth> {
     let frame = SurfaceFrame::new(normal, view);
-    let seen = SeenShape::new(light, &frame)?;
+    let seen = LocalShape::new(light, &frame)?;
     let radiance = light.radiance.as_dvec3();
     let at = |count| {
         let signed = reflected(surface, frame.view(), &seen.region(count), settings, |_| DVec3::ONE);
@@ -94,13 +94,13 @@ fn uncoated_truth(
 }
 
 /// A shape in the surface's frame.
-enum SeenShape {
+enum LocalShape {
     Ellipse { ellipse: Ellipse, two_sided: bool },
     Sphere { sphere: Sphere, two_sided: bool },
     Tube(Tube),
 }
 
-impl SeenShape {
+impl LocalShape {
     /// None for a polygon or mesh.
     fn new(light: &Light, frame: &SurfaceFrame) -> Option<Self> {
         let two_sided = light.two_sided;

@@ -24,7 +24,7 @@ pub fn transformed_image_integral(
     both_horizons: bool,
 ) -> DVec3 {
     let outline: Vec<DVec2> = vertices.iter().map(|vertex| box_coordinate(&image.map, *vertex)).collect();
-    let lobe = SeenPlane::new(transformed(&image.map, inverse));
+    let lobe = ImagePlane::new(transformed(&image.map, inverse));
     if !outline.iter().all(|place| place.is_finite()) || !lobe.density(DVec2::ZERO).is_finite() {
         return DVec3::ZERO;
     }
@@ -75,13 +75,13 @@ fn heights(map: &TextureMap) -> DVec3 {
 }
 
 /// A plane as the cosine lobe about z sees it from the origin.
-struct SeenPlane {
+struct ImagePlane {
     map: TextureMap,
     /// -n·p / pi, the same for every point.
     factor: f64,
 }
 
-impl SeenPlane {
+impl ImagePlane {
     fn new(map: TextureMap) -> Self {
         Self { map, factor: -map.axis_u.cross(map.axis_v).dot(map.corner) / PI }
     }

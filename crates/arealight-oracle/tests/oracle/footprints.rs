@@ -4,7 +4,7 @@
 //! `cargo test --release -p arealight-oracle --test oracle footprints -- --nocapture` prints them.
 
 use arealight::{Footprint, PyramidSize};
-use arealight_oracle::shading::footprint::{Filter, SeenLight, filtered};
+use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
 use arealight_oracle::shading::poses::{Bar, Errors, Family, Summary, poses};
 use arealight_oracle::shading::{RelativeLight, transformed_image_integral};
 use arealight_oracle::texture::{Pyramid, Texture};
@@ -35,7 +35,7 @@ fn measure(family: Family, textures: &[Arc<Texture>], count: usize) -> Vec<Summa
             let mut map = image.map;
             [map.corner, map.axis_u, map.axis_v] =
                 [map.corner, map.axis_u, map.axis_v].map(|vector| inverse * vector);
-            let seen = SeenLight {
+            let seen = LobeSpaceLight {
                 vertices: pose.vertices.iter().map(|vertex| inverse * *vertex).collect(),
                 center: map.corner + 0.5 * (map.axis_u + map.axis_v),
                 map,

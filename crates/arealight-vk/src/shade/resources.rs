@@ -23,7 +23,7 @@ pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
 }
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
-/// What may be missing is not read in some frames: in debug builds a frame that reads it is refused.
+/// What may be missing is not read in some frames: a frame that reads it is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 /// By default there is none; the pass refuses a set without the seven that are no `Option`.

@@ -18,8 +18,8 @@ pub const LOBES: u32 = 6;
 pub const FOOTPRINT: u32 = 7;
 /// Taps to a side of a level's kernel that are summed, from [`crate::PyramidSize::taps`] on.
 pub const RADIUS: u32 = 8;
-/// [`crate::gpu::TextureLoadConstants::called_for`].
-pub const CALLED_FOR: u32 = 9;
+/// [`crate::gpu::TextureLoadConstants::steps`].
+pub const LOAD_STEPS: u32 = 9;
 /// [`crate::gpu::GpuShape`]'s kinds, or [`crate::gpu::GpuShape::ANY`].
 pub const SHAPE: u32 = 10;
 /// 0 where no polygon light of a frame is a convex quad without an image, else 1.

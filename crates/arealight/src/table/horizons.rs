@@ -138,11 +138,11 @@ impl LightTable {
                 for turn in 0..=AZIMUTHS {
                     let (s, c) = (std::f64::consts::PI * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
                     let direction = largest * cosine + (u * c + v * s) * sine;
-                    let seen = inverse * direction;
-                    if seen.z <= 0.0 {
+                    let transformed = inverse * direction;
+                    if transformed.z <= 0.0 {
                         continue;
                     }
-                    let density = scale / seen.length_squared().powi(2);
+                    let density = scale / transformed.length_squared().powi(2);
                     // As precise near the mirror direction as 1 - cos is not
                     let from_mirror = 0.5 * (direction - frame.z_axis).length_squared();
                     for (index, most) in scaled.iter_mut().enumerate() {

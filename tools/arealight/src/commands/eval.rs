@@ -1,13 +1,13 @@
 //! `arealight eval`
 
 use crate::failure::Failure;
-use crate::images::Images;
 use crate::output::print;
 use crate::quality::QualityArguments;
 use crate::{gpu, progress, visible};
 use arealight::{Footprint, FormFactor, Fresnel, Quality};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
 use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
+use arealight_cases::images::Images;
 use arealight_cases::measure::{Measure, UnknownTruth, measure};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::shading::{

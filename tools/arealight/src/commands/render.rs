@@ -23,7 +23,7 @@ use std::time::Duration;
 
 /// Renders a glTF scene: what emits is a light.
 ///
-/// Visibility by a walk through a bounding volume hierarchy, shading by linearly transformed cosines, both on
+/// Visibility by traversal of a bounding volume hierarchy, shading by linearly transformed cosines, both on
 /// the GPU, with shadows by rays that are drawn from the lobes.
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -247,7 +247,7 @@ fn masks_and_sides_become_flags() {
 }
 
 #[test]
-fn effects_are_what_the_scene_calls_for() {
+fn effects_are_what_the_scene_needs() {
     let calls = |scene: &Scene| -> Vec<String> {
         let calls = required_effects(scene);
         let union: Effects = calls.iter().map(|call| call.effect).collect();

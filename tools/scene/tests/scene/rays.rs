@@ -52,10 +52,10 @@ proptest! {
             let mut along = DVec3::ZERO;
             along[axis] = 1.0;
             for direction in [towards, along, -along] {
-                let walked = buffers.closest_hit(origin, direction);
+                let hit = buffers.closest_hit(origin, direction);
                 let expected = brute_force(&buffers, origin, direction);
                 // The same arithmetic on the same triangle: equal to the bit, unless two are equally near
-                prop_assert_eq!(walked.map(|h| h.distance), expected.map(|h| h.distance));
+                prop_assert_eq!(hit.map(|h| h.distance), expected.map(|h| h.distance));
             }
         }
     }
@@ -69,7 +69,7 @@ fn brute_force_would_notice_a_missing_triangle() {
     let (origin, direction) = (DVec3::new(0.2, 0.2, 3.0), DVec3::NEG_Z);
     let hit = buffers.closest_hit(origin, direction).unwrap();
     assert_eq!((hit.distance, hit.barycentric), (3.0, [0.2, 0.2]));
-    // The twin: without that triangle the walk finds the next one
+    // The twin: without that triangle the traversal finds the next one
     buffers.triangles[hit.triangle].p1 = buffers.triangles[hit.triangle].p0;
     assert_eq!(buffers.closest_hit(origin, direction).unwrap().distance, 4.0);
 }

@@ -145,7 +145,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::LOBES, "LOBES"),
         (constant::FOOTPRINT, "FOOTPRINT"),
         (constant::RADIUS, "RADIUS"),
-        (constant::CALLED_FOR, "CALLED_FOR"),
+        (constant::LOAD_STEPS, "LOAD_STEPS"),
         (constant::SHAPE, "SHAPE"),
         (constant::HAS_QUADS, "HAS_QUADS"),
         (constant::CLASS, "CLASS"),
