@@ -23,8 +23,8 @@ layout(push_constant, std430) uniform TextureLoadConstants {
 
 // What the pipeline can do beside copying texels one to one, by bits; what is not needed costs nothing.
 layout(constant_id = 9) const uint LOAD_STEPS = 3u;
-const uint LOAD_STEP_RESAMPLE = 1u;
-const uint LOAD_STEP_DECODE = 2u;
+const uint STEP_RESAMPLING = 1u;
+const uint STEP_DECODING = 2u;
 
 const uint LOAD_SRGB = 1u;
 const uint LOAD_CLAMP_U = 2u;
@@ -52,7 +52,7 @@ ivec2 wrap(ivec2 place) {
 // A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they can.
 vec3 fetch_linear(ivec2 texel) {
     vec3 color = texelFetch(source, texel, 0).rgb;
-    if ((LOAD_STEPS & LOAD_STEP_DECODE) != 0u && (constants.flags & LOAD_SRGB) != 0u) {
+    if ((LOAD_STEPS & STEP_DECODING) != 0u && (constants.flags & LOAD_SRGB) != 0u) {
         color = linear_from_srgb(color);
     }
     return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
@@ -89,7 +89,7 @@ void main() {
     if (any(greaterThanEqual(texel, extent))) {
         return;
     }
-    vec3 color = (LOAD_STEPS & LOAD_STEP_RESAMPLE) != 0u
+    vec3 color = (LOAD_STEPS & STEP_RESAMPLING) != 0u
         ? resampled(texel) : fetch_linear(wrap(constants.first_texel + texel));
     imageStore(out_level, ivec3(texel, constants.layer), vec4(round_to_half(color), 1.0));
 }

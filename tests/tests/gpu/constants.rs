@@ -204,6 +204,6 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("RESAMPLING", number(gpu::TextureLoadConstants::RESAMPLE)),
         ("DECODING", number(gpu::TextureLoadConstants::DECODE)),
     ];
-    assert_constants(TEXTURE_LOAD_COMP, "LOAD_STEP_", &steps);
+    assert_constants(TEXTURE_LOAD_COMP, "STEP_", &steps);
     assert_constants(COMMON_GLSL, "AREALIGHT_MIN_ALPHA", &[("", arealight::MIN_ALPHA)]);
 }
