@@ -26,6 +26,8 @@ const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
 const uint EFFECT_COAT = 8192u;
 // Some coat has a normal of its own; EFFECT_COAT is set then, too.
 const uint EFFECT_COAT_NORMAL = 16384u;
+// Some surface has sheen.
+const uint EFFECT_SHEEN = 32768u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -42,6 +44,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
 #define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
+#define AREALIGHT_SHEEN ((EFFECTS & EFFECT_SHEEN) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS ((EFFECTS & EFFECT_TEXTURED) != 0u)

@@ -1,8 +1,8 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING where it shades coats, and
-// G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING and SHEEN_BINDING where it shades
+// coats and sheen, and G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
 // its own.
 
 #include "arealight/options.glsl"
@@ -27,8 +27,9 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
 
-// Of the host: declares the images of the next three bindings and of COAT_BINDING as it likes, and defines arealight_bridge_surface,
-// which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT alone. It lies in an include folder of the host's compiler.
+// Of the host: declares the images of the next three bindings, of COAT_BINDING and of SHEEN_BINDING as it likes, and defines
+// arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT and
+// its sheen with AREALIGHT_HAS_SHEEN alone. It lies in an include folder of the host's compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -46,6 +47,9 @@ layout(set = 0, binding = G_BUFFER_BINDING + 2) uniform texture2D g_base_color;
 layout(set = 0, binding = G_BUFFER_BINDING + 3) uniform texture2D g_specular;
 #ifdef COAT_BINDING
 layout(set = 0, binding = COAT_BINDING) uniform texture2D g_coat;
+#endif
+#ifdef SHEEN_BINDING
+layout(set = 0, binding = SHEEN_BINDING) uniform texture2D g_sheen;
 #endif
 
 // A direction, of any length, from its place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
@@ -69,6 +73,18 @@ ArealightCoat load_coat(ivec2 pixel) {
     return coat;
 }
 
+// The sheen that a pixel sees, in every layout: its colour, and its roughness.
+ArealightSheen load_sheen(ivec2 pixel) {
+    ArealightSheen sheen = ArealightSheen(vec3(0.0), 0.0);
+#ifdef SHEEN_BINDING
+    if (AREALIGHT_HAS_SHEEN) {
+        vec4 texel = texelFetch(g_sheen, pixel, 0);
+        sheen = ArealightSheen(texel.rgb, texel.a);
+    }
+#endif
+    return sheen;
+}
+
 // The surface that a pixel sees from `camera`, at `position`.
 ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     vec4 normal = texelFetch(g_normal, pixel, 0);
@@ -81,6 +97,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.position = position;
     surface.view = camera - position;
     surface.coat = load_coat(pixel);
+    surface.sheen = load_sheen(pixel);
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
         surface.roughness = specular.b;

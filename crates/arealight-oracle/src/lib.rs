@@ -10,6 +10,7 @@
 //! | [`formula`] | the lobes by formulas, in the place of the table |
 //! | [`material`] | metallic-roughness materials, and the surface that they make |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
+//! | [`sheen`] | the Charlie lobe of sheen, and the transformed cosine that stands for it |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
 //! | [`ellipse`] | the clamped cosine over an ellipse, which is a disk light, in closed form and by quadrature |
@@ -30,6 +31,7 @@ pub mod ltsd;
 pub mod material;
 pub mod polygon;
 pub mod shading;
+pub mod sheen;
 pub mod sphere;
 pub mod stream;
 pub mod texture;

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 /// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior`,
-/// `KHR_materials_specular` and `KHR_materials_clearcoat`). Textures belong to the scene that samples them.
+/// `KHR_materials_specular`, `KHR_materials_clearcoat` and `KHR_materials_sheen`). Textures belong to the scene that samples them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Linear Rec. 709 colour in [0, 1]: the Lambert albedo of a dielectric, F0 of a metal.
@@ -20,10 +20,14 @@ pub struct Material {
     pub coat: f32,
     /// Perceptual roughness of the coat, in [0, 1].
     pub coat_roughness: f32,
+    /// Linear Rec. 709 colour of sheen in [0, 1]; black for none ([`Effects::SHEEN`](arealight::Effects::SHEEN)).
+    pub sheen_color: Vec3,
+    /// Perceptual roughness of the sheen, in [0, 1].
+    pub sheen_roughness: f32,
 }
 
 impl Default for Material {
-    /// A white, rough dielectric of index 1.5, without a coat.
+    /// A white, rough dielectric of index 1.5, without a coat or sheen.
     fn default() -> Self {
         Self {
             base_color: Vec3::ONE,
@@ -33,6 +37,8 @@ impl Default for Material {
             dielectric_f90: 1.0,
             coat: 0.0,
             coat_roughness: 0.0,
+            sheen_color: Vec3::ZERO,
+            sheen_roughness: 0.0,
         }
     }
 }
@@ -50,6 +56,25 @@ pub struct Surface {
     pub alpha: f64,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
+    /// What lies above both lobes and below the coat.
+    pub sheen: Option<Sheen>,
+}
+
+/// Sheen, as `KHR_materials_sheen` has it: the Charlie lobe ([`crate::sheen`]), added to what its albedo at the view leaves of the lobes
+/// below.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sheen {
+    /// In [0, 1], a channel.
+    pub color: DVec3,
+    /// Perceptual roughness in [0, 1]; below [`crate::sheen::MIN_ROUGHNESS`] it counts as that.
+    pub roughness: f64,
+}
+
+impl Sheen {
+    /// The part of the light that the lobes below get, in [0, 1], where a sheen of colour 1 has this albedo.
+    pub fn left_below(&self, albedo: f64) -> f64 {
+        (1.0 - self.color.max_element() * albedo).max(0.0)
+    }
 }
 
 /// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel term. It reflects the part
@@ -91,6 +116,10 @@ impl Material {
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
             coat: (weight > 0.0).then(|| Coat { weight, alpha: alpha(self.coat_roughness), normal: None }),
+            sheen: (self.sheen_color != Vec3::ZERO).then(|| Sheen {
+                color: self.sheen_color.as_dvec3(),
+                roughness: f64::from(self.sheen_roughness),
+            }),
         }
     }
 }

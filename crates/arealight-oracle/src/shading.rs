@@ -5,6 +5,7 @@ mod coat;
 pub mod footprint;
 pub mod poses;
 mod shapes;
+mod sheen;
 mod shown;
 mod textured;
 
@@ -23,6 +24,7 @@ use arealight::table::share_above_surface;
 use arealight::{Fresnel, Horizon, Light, LightFault, LightTable, Lobes, Quality, TableSample};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
+use sheen::{sheen_truth, with_sheen};
 use std::convert::Infallible;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -77,8 +79,8 @@ pub struct Truth {
     pub evaluations: usize,
 }
 
-/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, below a coat where the
-/// surface has one, times what the light shows.
+/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, below sheen and a coat where
+/// the surface has them, times what the light shows.
 ///
 /// An image is cut where it bends, at its texels' centres, as long as a two-hundredth of the evaluations reach for that: up to
 /// 141 by 141 texels with the default settings. A larger one converges more slowly.
@@ -160,10 +162,14 @@ fn reflected(
     let sum = |diffuse: [f64; 3], glossy: [f64; 3]| {
         surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)
     };
-    Truth {
+    let base = Truth {
         radiance: sum(diffuse.value, glossy.value),
         error: sum(diffuse.error, glossy.error),
         evaluations: diffuse.evaluations + glossy.evaluations,
+    };
+    match &surface.sheen {
+        None => base,
+        Some(sheen) => sheen_truth(sheen, view, &region, settings, shown, base),
     }
 }
 
@@ -284,11 +290,11 @@ pub fn ltc_on(
         }
     };
     let diffuse = surface.diffuse_albedo * shown;
-    light.radiance * coated(quality, table, surface, &frame, diffuse + glossy, lobe)
+    light.radiance * layered(quality, table, surface, &frame, diffuse + glossy, lobe)
 }
 
-/// What is left of what the lobes below reflect, with what the coat does, `lobe` being as for [`glossy_part`].
-fn coated(
+/// What is left of what the lobes below reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`].
+fn layered(
     quality: Quality,
     table: &LightTable,
     surface: &Surface,
@@ -296,6 +302,10 @@ fn coated(
     below: DVec3,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
+    let below = match &surface.sheen {
+        None => below,
+        Some(sheen) => with_sheen(sheen, frame, below, &lobe),
+    };
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
     below.lerp(coat.albedo * lobe(&coat.inverse, coat.above_surface), coat.share)

@@ -38,6 +38,8 @@ bitflags::bitflags! {
         const COAT = 1 << 13;
         /// Some coat has a normal of its own, other than its surface's. Such a surface needs [`Effects::COAT`], too.
         const COAT_NORMAL = 1 << 14;
+        /// Some surface has sheen, so the G-buffer's image of sheen is read.
+        const SHEEN = 1 << 15;
     }
 }
 
@@ -53,7 +55,8 @@ impl Effects {
         .union(Self::GLOSSY)
         .union(Self::SPECULAR_INPUT)
         .union(Self::COAT)
-        .union(Self::COAT_NORMAL);
+        .union(Self::COAT_NORMAL)
+        .union(Self::SHEEN);
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -71,6 +74,7 @@ impl Effects {
             (Self::TEXTURED_ELLIPSE, "textured_ellipse"),
             (Self::COAT, "coat"),
             (Self::COAT_NORMAL, "coat_normal"),
+            (Self::SHEEN, "sheen"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

@@ -18,6 +18,10 @@
 #ifndef AREALIGHT_COAT_NORMAL
 #define AREALIGHT_COAT_NORMAL 0
 #endif
+// Sheen above the first two and below a coat, ArealightSurface.sheen.
+#ifndef AREALIGHT_SHEEN
+#define AREALIGHT_SHEEN 0
+#endif
 
 // Some light emits from both sides: those whose record says so.
 #ifndef AREALIGHT_TWO_SIDED
@@ -89,6 +93,7 @@ const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
 const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
 const bool AREALIGHT_HAS_COAT = bool(AREALIGHT_COAT);
 const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
+const bool AREALIGHT_HAS_SHEEN = bool(AREALIGHT_SHEEN);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);

@@ -10,6 +10,12 @@ struct ArealightCoat {
     float roughness; // perceptual, in [0, 1]
 };
 
+// Sheen of a surface (with AREALIGHT_SHEEN): KHR_materials_sheen.
+struct ArealightSheen {
+    vec3 color;      // in [0, 1]; 0: none
+    float roughness; // perceptual, in [0, 1]
+};
+
 // A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added; and what lies on them.
 struct ArealightSurface {
     vec3 position;       // relative to the host's origin, in the lights' unit of length
@@ -20,6 +26,7 @@ struct ArealightSurface {
     float f90;           // reflectance at grazing incidence, in [0, 1]
     float roughness;     // perceptual, in [0, 1]
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
+    ArealightSheen sheen; // read with AREALIGHT_SHEEN alone
 };
 
 // The shading frame: the normal, the view's projection onto the surface, and their cross product.

@@ -33,6 +33,7 @@ fn coated(random: &mut Random, tilt: f64) -> Surface {
             alpha: 10.0_f64.powf(random.between(-2.0, 0.0)),
             normal: (tilt > 0.0).then_some(normal),
         }),
+        sheen: None,
     }
 }
 
@@ -264,6 +265,7 @@ fn every_layout_has_its_coats_in_an_image_of_their_own() {
             dielectric_f90: 0.25,
             coat: 0.75,
             coat_roughness: 0.3,
+            ..arealight_oracle::material::Material::default()
         };
         let given = |normal: Option<Vec3>| {
             let surface = material.surface();

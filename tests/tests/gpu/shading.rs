@@ -123,6 +123,7 @@ fn fresnel_and_both_lobes_add_up() {
         f90: random.unit(),
         alpha: random.between(0.05, 1.0),
         coat: None,
+        sheen: None,
     });
     let bound = |point: &EvalPoint| 2.0 * rounding(point.surface.alpha);
     let Some(comparison) = compare("both lobes", &points, Quality::default(), bound) else { return };
@@ -138,6 +139,7 @@ fn every_way_to_the_glossy_lobe_follows_its_twin() {
         f90: 1.0,
         alpha: random.between(0.05, 1.0),
         coat: None,
+        sheen: None,
     });
     let Some(engine) = TestEngine::new() else { return };
     let mut answers: Vec<Vec<glam::Vec3>> = Vec::new();

@@ -8,8 +8,9 @@ mod coat;
 mod fields;
 
 use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
-use arealight_oracle::material::Surface;
+use arealight_oracle::material::{Sheen, Surface};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
+use arealight_oracle::sheen::MIN_ROUGHNESS;
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
@@ -91,7 +92,11 @@ pub enum CaseMaterial {
         coupled: bool,
         /// What lies above both.
         coat: Option<CaseCoat>,
+        /// What lies above both, below the coat.
+        sheen: Option<Sheen>,
     },
+    /// Sheen above nothing.
+    Sheen(Sheen),
 }
 
 /// The light of a case.
@@ -255,7 +260,8 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
 fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
     match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
         "diffuse" => Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)? }),
-        bsdf @ ("ggx" | "coat") => {
+        "sheen" => Ok(CaseMaterial::Sheen(read_sheen(fields)?)),
+        bsdf @ ("ggx" | "coat" | "sheen_over") => {
             let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
                 if fields.has("alpha") {
                     return Err(fields.error("alpha", "give either alpha, or alpha_x and alpha_y"));
@@ -279,13 +285,18 @@ fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
                 }
             };
             let coat = if bsdf == "coat" { Some(CaseCoat::read(fields)?) } else { None };
-            Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat })
+            let sheen = if bsdf == "sheen_over" { Some(read_sheen(fields)?) } else { None };
+            Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat, sheen })
         }
         other => {
-            Err(fields
-                .error("bsdf", &format!("\"{other}\" is not known; \"ggx\", \"coat\" and \"diffuse\" are")))
+            let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\" and \"diffuse\" are";
+            Err(fields.error("bsdf", &format!("\"{other}\" is not known; {known}")))
         }
     }
+}
+
+fn read_sheen(fields: &Fields) -> Result<Sheen, CaseError> {
+    Ok(Sheen { color: fields.color("sheen_color", 1.0)?, roughness: fields.alpha("sheen_roughness")? })
 }
 
 fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
@@ -463,8 +474,25 @@ impl Case {
     fn surface(&self) -> Result<Surface, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         match &self.material {
-            CaseMaterial::Diffuse { albedo } => {
-                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: None })
+            CaseMaterial::Diffuse { albedo } => Ok(Surface {
+                diffuse_albedo: *albedo,
+                f0: DVec3::ZERO,
+                f90: 0.0,
+                alpha: 1.0,
+                coat: None,
+                sheen: None,
+            }),
+            CaseMaterial::Sheen(sheen) | CaseMaterial::Ggx { sheen: Some(sheen), .. }
+                if sheen.roughness < MIN_ROUGHNESS =>
+            {
+                let roughness = sheen.roughness;
+                unsupported(format!(
+                    "sheen_roughness {roughness} is below {MIN_ROUGHNESS}, the smallest that is shaded"
+                ))
+            }
+            CaseMaterial::Sheen(sheen) => {
+                let (none, sheen) = (DVec3::ZERO, Some(*sheen));
+                Ok(Surface { diffuse_albedo: none, f0: none, f90: 0.0, alpha: 1.0, coat: None, sheen })
             }
             CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
                 unsupported("anisotropic GGX is not supported yet".into())
@@ -475,12 +503,13 @@ impl Case {
             CaseMaterial::Ggx { albedo: Some(albedo), coupled: true, .. } if *albedo != DVec3::ZERO => {
                 unsupported("coupling of the Lambert lobe to the Fresnel term is not supported yet".into())
             }
-            CaseMaterial::Ggx { alpha, f0, albedo, coat, .. } => Ok(Surface {
+            CaseMaterial::Ggx { alpha, f0, albedo, coat, sheen, .. } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
                 alpha: alpha.x,
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
+                sheen: *sheen,
             }),
         }
     }

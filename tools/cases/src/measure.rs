@@ -27,6 +27,8 @@ impl Family {
         let material = match &case.material {
             CaseMaterial::Diffuse { .. } => "diffuse",
             CaseMaterial::Ggx { coat: Some(_), .. } => "coat",
+            CaseMaterial::Ggx { sheen: Some(_), .. } => "sheen_over",
+            CaseMaterial::Sheen(_) => "sheen",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {
                 (true, None) => "ggx",
                 (true, Some(_)) => "ggx + diffuse",

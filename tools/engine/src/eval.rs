@@ -3,7 +3,7 @@
 use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
 use arealight::{Effects, Light, PackedLights, Quality};
-use arealight_oracle::material::{Coat, Surface};
+use arealight_oracle::material::{Coat, Sheen, Surface};
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
@@ -36,7 +36,7 @@ impl Engine {
         // Points get a pipeline that has no more than they need
         let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
         for (index, point) in points.iter().enumerate() {
-            let needed = (point.light.effects() & POLYGONAL) | coat_effects(&point.surface);
+            let needed = (point.light.effects() & POLYGONAL) | layer_effects(&point.surface);
             match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
                 Some((_, subset)) => subset.push(index),
                 None => subsets.push((needed, vec![index])),
@@ -44,7 +44,7 @@ impl Engine {
         }
         let mut radiance = vec![Vec3::ZERO; points.len()];
         for (needed, indices) in subsets {
-            let effects = (Effects::all() - POLYGONAL - COATS) | needed;
+            let effects = (Effects::all() - POLYGONAL - LAYERS) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
             let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;
@@ -120,20 +120,25 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     surface_case(&point.surface, point.normal, point.view, light)
 }
 
-pub(crate) const COATS: Effects = Effects::COAT.union(Effects::COAT_NORMAL);
+const COATS: Effects = Effects::COAT.union(Effects::COAT_NORMAL);
 
-/// What a surface's coat needs.
-pub(crate) fn coat_effects(surface: &Surface) -> Effects {
-    match surface.coat {
+/// What lies above other lobes needs.
+pub(crate) const LAYERS: Effects = COATS.union(Effects::SHEEN);
+
+/// What a surface's coat and sheen need.
+pub(crate) fn layer_effects(surface: &Surface) -> Effects {
+    let coat = match surface.coat {
         None => Effects::empty(),
         Some(Coat { normal: None, .. }) => Effects::COAT,
         Some(_) => COATS,
-    }
+    };
+    if surface.sheen.is_some() { coat | Effects::SHEEN } else { coat }
 }
 
 /// A surface as the eval kernels read it.
 pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light: u32) -> GpuCase {
     let coat = surface.coat.unwrap_or(Coat { weight: 0.0, alpha: 1.0, normal: None });
+    let sheen = surface.sheen.unwrap_or(Sheen { color: DVec3::ZERO, roughness: 1.0 });
     GpuCase {
         normal: rounded(normal),
         roughness: surface.alpha.sqrt() as f32,
@@ -145,6 +150,8 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         coat_weight: coat.weight as f32,
         coat_normal: coat.normal.map_or([0.0; 3], rounded),
         coat_roughness: coat.alpha.sqrt() as f32,
+        sheen_color: sheen.color.as_vec3().to_array(),
+        sheen_roughness: sheen.roughness as f32,
     }
 }
 

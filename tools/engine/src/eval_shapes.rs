@@ -1,6 +1,6 @@
 //! Shading points one by one under disks, spheres and tubes.
 
-use crate::eval::{COATS, EvalPoint, POLYGONAL, coat_effects, surface_case};
+use crate::eval::{EvalPoint, LAYERS, POLYGONAL, layer_effects, surface_case};
 use crate::{Engine, EngineError};
 use arealight::gpu::GpuShape;
 use arealight::{Effects, PackedLights, Quality};
@@ -58,10 +58,10 @@ impl Engine {
             return Ok(Vec::new());
         }
 
-        // Points under lights of one colour do not pay for images, nor those without a coat for coats
+        // Points under lights of one colour do not pay for images, nor those without a coat or sheen for those
         let textured = points.iter().any(|point| point.light.texture.is_some());
-        let coats: Effects = points.iter().map(|point| coat_effects(&point.surface)).collect();
-        let mut effects = (Effects::all() - POLYGONAL - COATS) | coats;
+        let layers: Effects = points.iter().map(|point| layer_effects(&point.surface)).collect();
+        let mut effects = (Effects::all() - POLYGONAL - LAYERS) | layers;
         effects.set(Effects::TEXTURED_ELLIPSE, textured);
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);
         let shape_buffer = self.storage("shapes", &shapes)?;

@@ -17,6 +17,8 @@ struct ArealightGpuCase {
     float coat_weight;
     vec3 coat_normal;
     float coat_roughness;
+    vec3 sheen_color;
+    float sheen_roughness;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -32,7 +34,8 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness, ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness));
+                            given.roughness, ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness),
+                            ArealightSheen(given.sheen_color, given.sheen_roughness));
 }
 
 #endif

@@ -49,8 +49,10 @@ struct ArealightGpuMaterial {
     uint coat_roughness_texture;
     uint coat_normal_texture;
     float coat_normal_scale;
-    uint reserved0;
-    uint reserved1;
+    uint sheen_color_texture;
+    uint sheen_roughness_texture;
+    vec3 sheen_color;
+    float sheen_roughness;
 };
 
 struct ArealightGpuTexture {
@@ -93,6 +95,7 @@ struct ScenePoint {
     float dielectric_f90;
     vec3 emission;
     ArealightCoat coat; // its normal is unit
+    ArealightSheen sheen;
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -186,6 +189,8 @@ ScenePoint scene_point(BvhHit hit) {
     point.coat.normal = side * bend_normal(triangle, material.coat_normal_texture, material.coat_normal_scale, normal, uv);
     point.coat.weight = material.coat * sample_texture(material.coat_texture, uv).r;
     point.coat.roughness = material.coat_roughness * sample_texture(material.coat_roughness_texture, uv).g;
+    point.sheen.color = material.sheen_color * sample_texture(material.sheen_color_texture, uv).rgb;
+    point.sheen.roughness = material.sheen_roughness * sample_texture(material.sheen_roughness_texture, uv).a;
 
     vec4 metallic_roughness = sample_texture(material.metallic_roughness_texture, uv);
     point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb;

@@ -74,6 +74,10 @@ pub struct GpuCase {
     pub coat_normal: [f32; 3],
     /// The coat's perceptual roughness.
     pub coat_roughness: f32,
+    /// Colour of the sheen; black for none.
+    pub sheen_color: [f32; 3],
+    /// The sheen's perceptual roughness.
+    pub sheen_roughness: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.
@@ -169,8 +173,14 @@ pub struct GpuMaterial {
     pub coat_normal_texture: u32,
     /// Scale of its x and y.
     pub coat_normal_scale: f32,
-    /// Zero.
-    pub reserved: [u32; 2],
+    /// sRGB texture times `sheen_color`.
+    pub sheen_color_texture: u32,
+    /// Linear texture: alpha times `sheen_roughness`.
+    pub sheen_roughness_texture: u32,
+    /// Colour factor of the sheen.
+    pub sheen_color: [f32; 3],
+    /// Perceptual roughness factor of the sheen.
+    pub sheen_roughness: f32,
 }
 
 impl VisibilityConstants {

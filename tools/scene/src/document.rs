@@ -5,11 +5,12 @@ use gltf::json;
 use std::path::{Path, PathBuf};
 
 /// Extensions that a file may require.
-const SUPPORTED_EXTENSIONS: [&str; 5] = [
+const SUPPORTED_EXTENSIONS: [&str; 6] = [
     "EXT_lights_area",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_sheen",
     "KHR_materials_specular",
 ];
 

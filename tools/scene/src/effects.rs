@@ -45,6 +45,7 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::TEXTURED_ELLIPSE),
         material(Effects::COAT, has_coat),
         material(Effects::COAT_NORMAL, has_coat_normal),
+        material(Effects::SHEEN, has_sheen),
     ];
     calls.into_iter().flatten().collect()
 }
@@ -80,6 +81,10 @@ fn has_specular_input(material: &SceneMaterial) -> bool {
 
 fn has_coat(material: &SceneMaterial) -> bool {
     material.material.coat > 0.0
+}
+
+fn has_sheen(material: &SceneMaterial) -> bool {
+    material.material.sheen_color != Vec3::ZERO
 }
 
 /// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.

@@ -123,6 +123,8 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
             ("coat_texture", material.coat_texture),
             ("coat_roughness_texture", material.coat_roughness_texture),
             ("coat_normal_texture", material.coat_normal_texture),
+            ("sheen_color_texture", material.sheen_color_texture),
+            ("sheen_roughness_texture", material.sheen_roughness_texture),
         ];
         for (name, texture) in textures {
             let Some(texture) = texture else { continue };
@@ -187,7 +189,10 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         coat_roughness_texture: texture(material.coat_roughness_texture),
         coat_normal_texture: texture(material.coat_normal_texture),
         coat_normal_scale: material.coat_normal_scale,
-        reserved: [0; 2],
+        sheen_color_texture: texture(material.sheen_color_texture),
+        sheen_roughness_texture: texture(material.sheen_roughness_texture),
+        sheen_color: material.material.sheen_color.to_array(),
+        sheen_roughness: material.material.sheen_roughness,
     }
 }
 

@@ -32,6 +32,8 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.coat_texture,
         material.coat_roughness_texture,
         material.coat_normal_texture,
+        material.sheen_color_texture,
+        material.sheen_roughness_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
@@ -59,6 +61,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let clearcoat = reader.clearcoat(&source)?;
     let [coat] = reader.fractions("clearcoatFactor", [clearcoat.factor]);
     let [coat_roughness] = reader.fractions("clearcoatRoughnessFactor", [clearcoat.roughness_factor]);
+    let sheen = reader.sheen(&source)?;
+    let sheen_color = reader.fractions("sheenColorFactor", sheen.color_factor);
+    let [sheen_roughness] = reader.fractions("sheenRoughnessFactor", [sheen.roughness_factor]);
     let material = Material {
         base_color: Vec3::new(r, g, b),
         metalness,
@@ -67,6 +72,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         dielectric_f90,
         coat,
         coat_roughness,
+        sheen_color: Vec3::from_array(sheen_color),
+        sheen_roughness,
     };
     let emission = reader.emission(&source);
     // Textures
@@ -81,6 +88,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         reader.texture(clearcoat.roughness_texture.as_ref(), "clearcoatRoughnessTexture", false)?;
     let (coat_normal_texture, coat_normal_scale) =
         reader.normal_texture(clearcoat.normal_texture.as_ref(), "clearcoatNormalTexture")?;
+    let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), "sheenColorTexture", true)?;
+    let sheen_roughness_texture =
+        reader.texture(sheen.roughness_texture.as_ref(), "sheenRoughnessTexture", false)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -104,6 +114,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         coat_roughness_texture,
         coat_normal_texture,
         coat_normal_scale,
+        sheen_color_texture,
+        sheen_roughness_texture,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -160,6 +172,16 @@ impl Reader<'_> {
         Ok(if coat.factor == 0.0 { Clearcoat::default() } else { coat })
     }
 
+    /// The sheen; nothing of it where its colour is black.
+    fn sheen(&mut self, source: &json::Material) -> Result<Sheen, SceneError> {
+        let extension = source.extensions.as_ref().and_then(|e| e.others.get(SHEEN));
+        let Some(extension) = extension else { return Ok(Sheen::default()) };
+        let read = Sheen::deserialize(extension);
+        let field = format!("{}: {SHEEN}", self.place);
+        let sheen = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+        Ok(if sheen.color_factor == [0.0; 3] { Sheen::default() } else { sheen })
+    }
+
     /// emissiveFactor times `KHR_materials_emissive_strength`.
     fn emission(&mut self, source: &json::Material) -> Vec3 {
         let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
@@ -206,8 +228,11 @@ impl Reader<'_> {
     }
 
     fn warn_of_unknown_extensions(&mut self, source: &json::Material) {
-        let unknown =
-            source.extensions.iter().flat_map(|e| e.others.keys()).filter(|name| *name != CLEARCOAT);
+        let unknown = source
+            .extensions
+            .iter()
+            .flat_map(|e| e.others.keys())
+            .filter(|name| ![CLEARCOAT, SHEEN].contains(&name.as_str()));
         for extension in unknown {
             self.warn(format!("{extension} is not supported: ignored"));
         }
@@ -216,6 +241,21 @@ impl Reader<'_> {
 
 const TRANSFORM: &str = "KHR_texture_transform";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
+const SHEEN: &str = "KHR_materials_sheen";
+
+/// `KHR_materials_sheen`.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Sheen {
+    #[serde(rename = "sheenColorFactor")]
+    color_factor: [f32; 3],
+    #[serde(rename = "sheenColorTexture")]
+    color_texture: Option<json::texture::Info>,
+    #[serde(rename = "sheenRoughnessFactor")]
+    roughness_factor: f32,
+    #[serde(rename = "sheenRoughnessTexture")]
+    roughness_texture: Option<json::texture::Info>,
+}
 
 /// `KHR_materials_clearcoat`.
 #[derive(Default, Deserialize)]

@@ -82,6 +82,10 @@ pub struct SceneMaterial {
     pub coat_normal_texture: Option<u32>,
     /// Scale of its x and y.
     pub coat_normal_scale: f32,
+    /// Of an sRGB texture times the sheen's colour.
+    pub sheen_color_texture: Option<u32>,
+    /// Of a linear texture: alpha times the sheen's roughness.
+    pub sheen_roughness_texture: Option<u32>,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

@@ -22,8 +22,14 @@ pub(super) fn layered<E>(
     let frame = SurfaceFrame::new(normal, view);
     let view = frame.from_surface(frame.view());
     let own_normal = coat.normal.unwrap_or_else(|| frame.from_surface(DVec3::Z));
-    let lobe =
-        Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: coat.alpha, coat: None };
+    let lobe = Surface {
+        diffuse_albedo: DVec3::ZERO,
+        f0: DVec3::ONE,
+        f90: 1.0,
+        alpha: coat.alpha,
+        coat: None,
+        sheen: None,
+    };
     let above = uncoated(&lobe, own_normal, view)?;
     let share = coat.share(SurfaceFrame::new(own_normal, view).cos_view());
     Ok(Truth {

@@ -1,7 +1,7 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
-use super::coat::layered;
-use super::{RelativeLight, ShownImage, Truth, coated, glossy_part, reflected};
+use super::coat;
+use super::{RelativeLight, ShownImage, Truth, glossy_part, layered, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
 use crate::frame::SurfaceFrame;
@@ -44,7 +44,7 @@ pub fn shape_ltc_on(
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
     let base = surface.diffuse_albedo * seen.lambert_form_factor() + glossy;
-    Some(light.radiance.as_dvec3() * coated(quality, table, surface, &frame, base, lobe))
+    Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, base, lobe))
 }
 
 /// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the
@@ -61,7 +61,7 @@ pub fn shape_truth(
     light: &Light,
     settings: &Settings,
 ) -> Option<Truth> {
-    let truth = layered(surface, normal, view, |surface, normal, view| {
+    let truth = coat::layered(surface, normal, view, |surface, normal, view| {
         uncoated_truth(surface, normal, view, light, settings).ok_or(())
     });
     truth.ok()

@@ -12,7 +12,14 @@ use std::sync::LazyLock;
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 fn coated(coat: Coat) -> Surface {
-    Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: Some(coat) }
+    Surface {
+        diffuse_albedo: DVec3::ONE,
+        f0: DVec3::ZERO,
+        f90: 0.0,
+        alpha: 1.0,
+        coat: Some(coat),
+        sheen: None,
+    }
 }
 
 /// Light of unit radiance from every direction.

@@ -5,10 +5,6 @@
 
 // A coat above other lobes: KHR_materials_clearcoat. What it reflects, and what it keeps from the lobes below, depends on the view
 // alone, so that the layers conserve energy with a factor each: radiance = (1 - share) base + share coat.
-struct ArealightLayer {
-    ArealightLobe lobe;
-    float base; // of the light that the lobes below get, in [0, 1]
-};
 
 // The frame of a coat, in the shading frame's coordinates, where the view is `view`; the shading frame itself without
 // AREALIGHT_COAT_NORMAL and for a normal of zero.

@@ -11,6 +11,12 @@ struct ArealightLobe {
     float gain;  // of what is left by clipping at the surface's horizon, to keep the albedo; 1 without that
 };
 
+// A lobe that lies above others.
+struct ArealightLayer {
+    ArealightLobe lobe;
+    float base; // of the light that the lobes below get, in [0, 1]
+};
+
 // The gain of a lobe with this space, from 1 on: the inverse of its part above the surface, which is a lune of the cosine
 // (share_above_surface in Rust).
 float arealight_gain_above_surface(mat3 space) {

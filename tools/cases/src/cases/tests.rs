@@ -42,6 +42,7 @@ fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
         f90: 1.0,
         alpha: 0.25,
         coat: None,
+        sheen: None,
     };
     assert_eq!(supported.surface, surface);
     assert_eq!(supported.light.vertices[2], DVec3::new(1.0, 1.0, 1.0));

@@ -1,0 +1,46 @@
+//! Sheen above other lobes, in float64: its true BRDF, and its fitted lobe.
+
+use super::Truth;
+use crate::cubature::{Region, Settings, angles};
+use crate::formula::MIN_COS_VIEW;
+use crate::frame::SurfaceFrame;
+use crate::material::Sheen;
+use crate::sheen::{Charlie, MIN_ROUGHNESS, SheenLobe};
+use arealight::table::share_above_surface;
+use glam::{DMat3, DVec3};
+
+/// What a surface with sheen reflects, `base` being what the lobes below do: Charlie, and the base times what its albedo at the view
+/// leaves.
+pub(super) fn sheen_truth(
+    sheen: &Sheen,
+    view: DVec3,
+    region: &Region,
+    settings: &Settings,
+    shown: impl Fn(DVec3) -> DVec3,
+    base: Truth,
+) -> Truth {
+    let charlie = Charlie { roughness: sheen.roughness.max(MIN_ROUGHNESS) };
+    let view = view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
+    let lobe =
+        region.integrate(settings, angles, |light| (shown(light) * charlie.evaluate(view, light)).to_array());
+    let left = sheen.left_below(charlie.albedo(view.z));
+    Truth {
+        radiance: base.radiance * left + sheen.color * DVec3::from_array(lobe.value),
+        error: base.error * left + sheen.color * DVec3::from_array(lobe.error),
+        evaluations: base.evaluations + lobe.evaluations,
+    }
+}
+
+/// What is left of what the lobes below reflect, with what sheen does: the twin of `arealight_sheen_layer`. `lobe` is the form factor
+/// of the light in the cosine space of a lobe, a channel, of which a part lies above the surface.
+pub(super) fn with_sheen(
+    sheen: &Sheen,
+    frame: &SurfaceFrame,
+    below: DVec3,
+    lobe: impl Fn(&DMat3, f64) -> DVec3,
+) -> DVec3 {
+    let fitted = SheenLobe::new(sheen.roughness, frame.cos_view());
+    let above_surface = share_above_surface(&fitted.inverse);
+    below * sheen.left_below(fitted.albedo)
+        + sheen.color * fitted.albedo * lobe(&fitted.inverse, above_surface)
+}
