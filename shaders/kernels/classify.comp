@@ -22,9 +22,10 @@ layout(constant_id = 14) const uint CULL = 0u;
 #define G_BUFFER_LAYOUT LAYOUT
 #define SHAPES_BINDING 9
 #define COAT_BINDING 11
-#define TILE_LISTS_BINDING 13
+#define SHEEN_BINDING 12
+#define TILE_LISTS_BINDING 14
 #define TILE_LISTS_ACCESS
-#define LOBE_HORIZONS_BINDING 14
+#define LOBE_HORIZONS_BINDING 15
 #define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"

@@ -101,6 +101,9 @@ vec2 contribution(uint index) {
         bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe();
         is_below = is_below && (is_below_lobe || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
     }
+    if (AREALIGHT_HAS_SHEEN) {
+        is_below = is_below && (tile_has_lobe() || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
+    }
     if (tile_coat_spread() >= 0.0) {
         heights.coat.x = tile_heights(tile_planes(COAT_PAIR), light).y;
         bool is_below_coat = heights.coat.x < 0.0 && tile_has_coat_horizon();

@@ -137,6 +137,7 @@ void reduce_pixels(ivec2 pixel) {
 
     // The glossy lobe: its horizon, and what it reflects at most
     float spread = 0.0;
+    bool has_sheen = AREALIGHT_HAS_SHEEN && surface.sheen.color != vec3(0.0);
     vec3 reflection = vec3(0.0, -TILE_FAR, 0.0);
     if (HAS_HORIZON) {
         ArealightGpuLobeHorizon cell = lobe_horizon(surface.roughness, cosine);
@@ -151,6 +152,8 @@ void reduce_pixels(ivec2 pixel) {
             reflection = vec3(lobe.envelope.x, -lobe.envelope.y, arealight_max_component(albedo));
         }
     }
+    // Of sheen's lobe nothing is known
+    spread = has_sheen ? TILE_FAR : spread;
     tile_reduce(POSITION_PAIR, has_surface ? vec4(position, known_distance) : vec4(-TILE_FAR),
                 has_surface ? vec4(-position, spread) : vec4(-TILE_FAR));
 
@@ -173,9 +176,9 @@ bool tile_is_known() {
     return tile_distance() < TILE_FAR;
 }
 
-// Whether the horizons of every pixel's glossy lobe are known.
+// Whether the horizons of every pixel's glossy lobe are known, and none has sheen.
 bool tile_has_lobe() {
-    return HAS_HORIZON ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
+    return HAS_HORIZON || (AREALIGHT_HAS_SHEEN && !HAS_GLOSSY) ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
 }
 
 // The spread of the horizons of the coats: negative where no pixel has a coat.

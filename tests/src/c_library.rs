@@ -290,6 +290,7 @@ impl<'a> CLibrary<'a> {
             base_color: image(&pixel.base_color, Usage::COMPUTE_READ),
             specular: image(&pixel.specular, Usage::COMPUTE_READ),
             coat: image(&pixel.coat, Usage::COMPUTE_READ),
+            sheen: image(&pixel.sheen, Usage::COMPUTE_READ),
             light_textures,
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()

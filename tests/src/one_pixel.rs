@@ -27,6 +27,8 @@ pub struct OnePixel<'a> {
     pub specular: Image,
     /// At `g_coat`.
     pub coat: Image,
+    /// At `g_sheen`.
+    pub sheen: Image,
     /// Of a host that reads them in its own way.
     pub module: Option<Vec<u32>>,
 }
@@ -46,6 +48,7 @@ impl<'a> OnePixel<'a> {
             base_color: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
             specular: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
             coat: sampled(engine, float, [0.0_f32; 4]),
+            sheen: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
     }
@@ -102,6 +105,7 @@ impl<'a> OnePixel<'a> {
                 base_color: sampled(&self.base_color),
                 specular: Some(sampled(&self.specular)),
                 coat: Some(sampled(&self.coat)),
+                sheen: Some(sampled(&self.sheen)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),

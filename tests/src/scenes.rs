@@ -14,6 +14,8 @@ pub fn lambert(albedo: f32) -> Material {
         dielectric_f90: 0.0,
         coat: 0.0,
         coat_roughness: 0.0,
+        sheen_color: Vec3::ZERO,
+        sheen_roughness: 0.0,
     }
 }
 
@@ -33,6 +35,8 @@ pub fn without_textures(material: Material) -> SceneMaterial {
         coat_roughness_texture: None,
         coat_normal_texture: None,
         coat_normal_scale: 1.0,
+        sheen_color_texture: None,
+        sheen_roughness_texture: None,
         alpha_cutoff: None,
         double_sided: true,
     }

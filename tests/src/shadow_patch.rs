@@ -141,8 +141,9 @@ impl ShadowPatch {
             filled(engine, material.base_color.extend(material.metalness).to_array()),
             filled(engine, material.dielectric_f0.extend(material.dielectric_f90).to_array()),
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
+            filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
         ];
-        let [position, normal, base_color, specular, coat] = images
+        let [position, normal, base_color, specular, coat, sheen] = images
             .each_ref()
             .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
         let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
@@ -179,6 +180,7 @@ impl ShadowPatch {
                 base_color,
                 specular: Some(specular),
                 coat: Some(coat),
+                sheen: Some(sheen),
                 radiance: of(&radiance),
                 picks: Some(buffer(&picks)),
                 lobe_horizons,

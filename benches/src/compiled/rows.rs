@@ -104,7 +104,7 @@ pub fn rows() -> Vec<Row> {
     let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = Effects::all() - LOBES - COATS;
+    let every_kind = Effects::all() - LOBES - COATS - Effects::SHEEN;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
@@ -131,6 +131,7 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
         quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
+        quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),
@@ -148,7 +149,7 @@ pub fn rows() -> Vec<Row> {
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
         shade("every kind", "exact", LOBES | every_kind, true, exact),
-        shade("every kind", "exact, coat with its own normal", Effects::all(), true, exact),
+        shade("every kind", "exact, coat with its own normal", LOBES | every_kind | COATS, true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),

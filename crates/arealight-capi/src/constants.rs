@@ -26,6 +26,8 @@ pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
 /// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
+/// Some surface has sheen: ArealightResources.sheen is read.
+pub const AREALIGHT_EFFECT_SHEEN: u32 = 32768;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -223,6 +223,7 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             base_color: sampled(resources.base_color),
             specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
             coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
+            sheen: (resources.sheen.view != 0).then(|| sampled(resources.sheen)),
             radiance: stored(resources.radiance),
             glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
             lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
@@ -370,6 +371,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
             (c::AREALIGHT_EFFECT_COAT, Effects::COAT),
             (c::AREALIGHT_EFFECT_COAT_NORMAL, Effects::COAT_NORMAL),
+            (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

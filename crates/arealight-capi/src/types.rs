@@ -89,7 +89,7 @@ pub struct ArealightUpload {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT and _COAT_NORMAL. 0 is DIFFUSE and GLOSSY. What lights need is known
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL and _SHEEN. 0 is DIFFUSE and GLOSSY. What lights need is known
     /// from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
@@ -266,6 +266,8 @@ pub struct ArealightResources {
     /// Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
     /// normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     pub coat: ArealightImage,
+    /// Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
+    pub sheen: ArealightImage,
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     /// describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,

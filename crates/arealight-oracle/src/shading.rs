@@ -332,13 +332,15 @@ fn glossy_part(
     let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
+    // Below two layers there is one lobe, as in options.glsl
+    let two_layers = surface.coat.is_some() && surface.sheen.is_some();
     match quality.fresnel {
         _ if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 => DVec3::ZERO,
-        Fresnel::Split => {
+        Fresnel::Split if !two_layers => {
             let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
             parts.max(DVec3::ZERO)
         }
-        Fresnel::ByF0 => {
+        _ => {
             let mean = surface.f0.element_sum() / 3.0;
             (f0_part + schlick_part) * lobe(&sample.inverse_by_f0(mean, surface.f90))
         }

@@ -18,6 +18,7 @@ use ash::vk::Format;
 ///     base_color: Format::R8G8B8A8_SRGB,
 ///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
 ///     coat: Format::UNDEFINED, // not read without Effects::COAT
+///     sheen: Format::UNDEFINED, // not read without Effects::SHEEN
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
 /// let options = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
@@ -37,6 +38,8 @@ pub struct ShadeFormats {
     /// Of [`crate::ShadeResources::coat`], where [`ShadeOptions::reads_coat`]: two channels, or with [`Effects::COAT_NORMAL`] four,
     /// signed.
     pub coat: Format,
+    /// Of [`crate::ShadeResources::sheen`], where [`ShadeOptions::reads_sheen`]: with four channels.
+    pub sheen: Format,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
 }
@@ -131,6 +134,7 @@ impl ShadeFormats {
             ("base_color", self.base_color, COLOR, true),
             ("specular", self.specular, COLOR, options.reads_specular()),
             ("coat", self.coat, coat, options.reads_coat()),
+            ("sheen", self.sheen, COLOR, options.reads_sheen()),
             ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {

@@ -231,6 +231,7 @@ impl ShadowPass {
             shade.radiance,
             shade.shapes.unwrap_or(shade.lights),
             shade.coat.unwrap_or(shade.base_color),
+            shade.sheen.unwrap_or(shade.base_color),
             picks,
             resources.shadow,
             resources.radiance.unwrap_or(shade.radiance),

@@ -138,6 +138,14 @@ pub const G_COAT: Binding = read(
      in [-1, 1], in ba (rgba16f; rg8 unorm without normals); read only with Effects::COAT, else bind any image",
 );
 
+/// A G-buffer's sheen.
+pub const G_SHEEN: Binding = read(
+    "g_sheen",
+    BindingKind::SampledImage,
+    "linear colour of the sheen in rgb, its perceptual roughness in a (rgba8 unorm; sRGB formats decode by themselves); read only \
+     with Effects::SHEEN, else bind any image",
+);
+
 /// Lights' textures.
 pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
@@ -207,6 +215,7 @@ pub static SHADE: Kernel = Kernel {
         SHAPES,
         GLOSSY,
         G_COAT,
+        G_SHEEN,
         PICKS,
         Binding { access: Access::Read, ..TILE_LISTS },
         LOBE_HORIZONS.unused(),
@@ -228,7 +237,7 @@ pub static SHADE: Kernel = Kernel {
 };
 
 /// How many of the first bindings of [`SHADE`] whole frames use.
-pub const FRAME_BINDINGS: usize = 13;
+pub const FRAME_BINDINGS: usize = 14;
 
 /// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
 /// [`crate::gpu::ShadeConstants`].
@@ -250,6 +259,7 @@ pub static CLASSIFY: Kernel = Kernel {
         SHAPES,
         GLOSSY.unused(),
         G_COAT,
+        G_SHEEN,
         PICKS.unused(),
         TILE_LISTS,
         LOBE_HORIZONS,
@@ -318,6 +328,7 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         UNSHADOWED.unused(),
         SHAPES,
         G_COAT,
+        G_SHEEN,
         Binding { access: Access::Read, ..PICKS },
         SHADOW,
         SHADOWED.unused(),
@@ -354,6 +365,7 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
         UNSHADOWED.unused(),
         SHAPES.unused(),
         G_COAT,
+        G_SHEEN,
         PICKS.unused(),
         SHADOW,
         SHADOWED.unused(),
@@ -392,6 +404,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         UNSHADOWED,
         SHAPES.unused(),
         G_COAT,
+        G_SHEEN,
         PICKS.unused(),
         SHADOW,
         SHADOWED,

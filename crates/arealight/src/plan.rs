@@ -7,7 +7,7 @@ use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
-/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, alike in every layout. A G-buffer of any other layout is read by a
+/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat` and sheen at `g_sheen`, alike in every layout. A G-buffer of any other layout is read by a
 /// bridge function in GLSL of the host's (docs/embedding.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -107,6 +107,11 @@ impl ShadeOptions {
     /// Whether the image at the binding `g_coat` is read.
     pub fn reads_coat(self) -> bool {
         self.surfaces.contains(Effects::COAT)
+    }
+
+    /// Whether the image at the binding `g_sheen` is read.
+    pub fn reads_sheen(self) -> bool {
+        self.surfaces.contains(Effects::SHEEN)
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.

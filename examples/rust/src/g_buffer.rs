@@ -33,6 +33,7 @@ impl<'a> GBuffer<'a> {
         base_color: vk::Format::R8G8B8A8_UNORM,
         radiance: vk::Format::R32G32B32A32_SFLOAT,
         specular: vk::Format::UNDEFINED, // there is none
+        sheen: vk::Format::UNDEFINED,
         coat: vk::Format::UNDEFINED,
     };
     // doc end

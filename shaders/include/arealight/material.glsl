@@ -11,12 +11,17 @@
 const int AREALIGHT_LOBE_DIFFUSE = 0;
 const int AREALIGHT_LOBE_SPECULAR = 1;
 const int AREALIGHT_LOBE_SCHLICK = 2; // with AREALIGHT_FRESNEL_SPLIT alone
-const int AREALIGHT_LOBE_SHEEN = 3;
-const int AREALIGHT_LOBE_COAT = 4;
-const int AREALIGHT_LOBES = 5;
+const int AREALIGHT_LOBE_COAT = 3;
+const int AREALIGHT_LOBES = 4;
+// Sheen has the coat's place, below a coat Schlick's (AREALIGHT_SPLITS_FRESNEL is false then): with five lobes ArealightPoint is larger than
+// what drivers keep in registers where a loop indexes it (RADV: 256 bytes), whether a surface has them or not.
+const int AREALIGHT_LOBE_SHEEN = AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SCHLICK : AREALIGHT_LOBE_COAT;
+
+// Whether there is something at the last place.
+const bool AREALIGHT_HAS_LAYER = AREALIGHT_HAS_COAT ? true : AREALIGHT_HAS_SHEEN;
 
 // The lobes before this one may be there: what a loop over them goes through.
-const int AREALIGHT_LOBE_END = AREALIGHT_HAS_COAT ? AREALIGHT_LOBES : AREALIGHT_HAS_SHEEN ? AREALIGHT_LOBE_COAT : AREALIGHT_LOBE_SHEEN;
+const int AREALIGHT_LOBE_END = AREALIGHT_HAS_LAYER ? AREALIGHT_LOBES : AREALIGHT_LOBE_COAT;
 
 // A surface made ready for any number of lights: all that does not depend on the light.
 struct ArealightPoint {
@@ -28,19 +33,9 @@ struct ArealightPoint {
 // Whether surfaces have a lobe before AREALIGHT_LOBE_END: constant for a literal `lobe`.
 bool arealight_has_lobe(int lobe) {
     return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
-         : lobe == AREALIGHT_LOBE_SHEEN ? AREALIGHT_HAS_SHEEN
-         : AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT ? true
+         : AREALIGHT_HAS_LAYER && lobe == AREALIGHT_LOBE_COAT ? true
+         : AREALIGHT_HAS_SHEEN && lobe == AREALIGHT_LOBE_SHEEN ? true
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_SPLITS_FRESNEL);
-}
-
-// Multiplies what the lobes below `layer` reflect.
-void arealight_below(inout ArealightPoint point, int layer, float base) {
-    point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= base;
-    point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= base;
-    point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= base;
-    if (AREALIGHT_HAS_SHEEN && layer != AREALIGHT_LOBE_SHEEN) {
-        point.lobes[AREALIGHT_LOBE_SHEEN].albedo *= base;
-    }
 }
 
 // Prepares a surface: its frame, and one lookup in the table (or the formula) where it has a specular lobe.
@@ -61,12 +56,16 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     }
     if (AREALIGHT_HAS_SHEEN) {
         ArealightLayer sheen = arealight_sheen_layer(frame, surface.sheen);
-        arealight_below(point, AREALIGHT_LOBE_SHEEN, sheen.base);
+        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= sheen.base;
+        point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= sheen.base;
+        point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= sheen.base;
         point.lobes[AREALIGHT_LOBE_SHEEN] = sheen.lobe;
     }
     if (AREALIGHT_HAS_COAT) {
         ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
-        arealight_below(point, AREALIGHT_LOBE_COAT, coat.base);
+        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= coat.base;
+        point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= coat.base;
+        point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= coat.base;
         point.lobes[AREALIGHT_LOBE_COAT] = coat.lobe;
     }
     return point;
@@ -77,13 +76,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
     vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);       \
-    vec3 sheen = vec3(0.0);                                                           \
-    if (AREALIGHT_HAS_SHEEN) {                                                        \
-        sheen = arealight_lobe_weight(point, AREALIGHT_LOBE_SHEEN, local);            \
-    }                                                                                 \
-    vec3 coat = vec3(0.0);                                                            \
-    if (AREALIGHT_HAS_COAT) {                                                         \
-        coat = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
+    vec3 layer = vec3(0.0);                                                           \
+    if (AREALIGHT_HAS_LAYER) {                                                        \
+        layer = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
     }                                                                                 \
     sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
     if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
@@ -92,11 +87,8 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     if (arealight_has_lobe(AREALIGHT_LOBE_SCHLICK)) {                                 \
         sum.specular += schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;         \
     }                                                                                 \
-    if (AREALIGHT_HAS_SHEEN) {                                                        \
-        sum.specular += sheen * point.lobes[AREALIGHT_LOBE_SHEEN].albedo;             \
-    }                                                                                 \
-    if (AREALIGHT_HAS_COAT) {                                                         \
-        sum.specular += coat * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \
+    if (AREALIGHT_HAS_LAYER) {                                                        \
+        sum.specular += layer * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \
     }
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
     for (int i = 0; i < AREALIGHT_LOBE_END; i++) {                                    \

@@ -98,7 +98,10 @@ const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
-const bool AREALIGHT_SPLITS_FRESNEL = bool(AREALIGHT_FRESNEL_SPLIT);
+// Not where there may be a coat and sheen: both lobes of the Fresnel term and both layers are one lobe too many (material.glsl).
+// A choice, no logical operators: compilers would make branches of those.
+const bool AREALIGHT_HAS_TWO_LAYERS = AREALIGHT_HAS_COAT ? AREALIGHT_HAS_SHEEN : false;
+const bool AREALIGHT_SPLITS_FRESNEL = AREALIGHT_HAS_TWO_LAYERS ? false : bool(AREALIGHT_FRESNEL_SPLIT);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 

@@ -132,6 +132,8 @@ fn buffers() -> Buffers {
             coat_weight: 0.5 * glossy,
             coat_normal: surface.vector(&mut random),
             coat_roughness: surface.number(&mut random),
+            sheen_color: [glossy; 3],
+            sheen_roughness: surface.number(&mut random),
         });
     }
     buffers

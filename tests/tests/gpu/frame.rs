@@ -59,6 +59,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let (positions, normals) = (texels(&g_buffer.position), texels(&g_buffer.normal));
     let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
     let coats = texels(&g_buffer.coat);
+    let sheens = texels(&g_buffer.sheen);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
         let material = arealight_oracle::material::Material {
@@ -69,6 +70,8 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             dielectric_f90: speculars[i].w,
             coat: coats[i].x,
             coat_roughness: coats[i].y,
+            sheen_color: sheens[i].truncate(),
+            sheen_roughness: sheens[i].w,
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
         let surface = material.surface();

@@ -45,6 +45,7 @@ mod shape_lights;
 mod shape_points;
 mod shape_properties;
 mod shapes;
+mod sheen;
 mod slim_tubes;
 mod stability;
 mod surfaces;

@@ -141,6 +141,28 @@ fn coats_are_answered_by_every_method() {
 }
 
 #[test]
+fn sheen_is_answered_by_every_method() {
+    let device = device();
+    for (method, tolerance) in [("truth", "1e-6"), ("oracle", "0.15"), ("gpu", "0.15")] {
+        if method == "gpu" && !device {
+            continue;
+        }
+        let truth = reference("sheen-truth.json");
+        let arguments = ["--on", method, "--against", &truth, "--json", "--tolerance"];
+        let output = eval(&[&[reference("sheen.json").as_str()], &arguments[..], &[tolerance]].concat());
+        assert!(output.status.success(), "{method}: {}", text(&output.stderr));
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let family = &summary["families"][0];
+        assert_eq!((&family["material"], &family["answered"]), (&"sheen".into(), &6.into()), "{summary:#}");
+    }
+    // The twin: the fitted lobe is not the truth
+    let truth = reference("sheen-truth.json");
+    let output =
+        eval(&[&reference("sheen.json"), "--on", "oracle", "--against", &truth, "--tolerance", "1e-3"]);
+    assert_eq!(output.status.code(), Some(1));
+}
+
+#[test]
 fn failures_say_what_and_where_and_have_their_exit_codes() {
     let cases = reference("cases.json");
     let nan = write("nan.json", "{\"cases\": [{\"name\": \"a\", \"alpha\": NaN}]}");

@@ -17,6 +17,8 @@ pub struct GBuffer {
     pub specular: Image,
     /// Weight, roughness and normal of coats.
     pub coat: Image,
+    /// Colour and roughness of sheen.
+    pub sheen: Image,
     /// Radiance.
     pub radiance: Image,
 }
@@ -45,17 +47,18 @@ impl GBuffer {
             base_color: image("base colour", half)?,
             specular: image("specular", full)?,
             coat: image("coat", full)?,
+            sheen: image("sheen", full)?,
             radiance: image("radiance", full)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; that of coats is the last.
-    pub fn surfaces(&self) -> [&Image; 5] {
-        [&self.position, &self.normal, &self.base_color, &self.specular, &self.coat]
+    /// The images that describe surfaces, in the order of the bindings; those of coats and sheen are the last.
+    pub fn surfaces(&self) -> [&Image; 6] {
+        [&self.position, &self.normal, &self.base_color, &self.specular, &self.coat, &self.sheen]
     }
 
     /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 5] {
+    pub fn sampled(&self) -> [Resource; 6] {
         let layout = Usage::COMPUTE_READ.layout;
         self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
     }

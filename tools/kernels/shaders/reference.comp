@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick: integrates the true BRDF (Lambert + GGX, and a coat above them) over the same lights by Monte Carlo, at the
+// The yardstick: integrates the true BRDF (Lambert + GGX, sheen and a coat above them) over the same lights by Monte Carlo, at the
 // same G-buffer as the shade kernel: without visibility, as that one, or with shadows. For each light one direction drawn from its area and
 // the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995); with shadows each of them is
 // a ray, and what is blocked adds nothing.
@@ -14,9 +14,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define LIGHT_TEXTURES_BINDING 9
 #define SHAPES_BINDING 10
 #define COAT_BINDING 11
-#define SCENE_BINDING 12
+#define SHEEN_BINDING 12
+#define SCENE_BINDING 13
 #define AREALIGHT_COAT 1
 #define AREALIGHT_COAT_NORMAL 1
+#define AREALIGHT_SHEEN 1
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
@@ -79,6 +81,13 @@ struct CoatLobe {
     float probability; // of drawing from it
 };
 
+// Charlie above the base, of the view alone but for the light's direction.
+struct SheenLobe {
+    vec3 color;
+    float roughness;
+    float base; // of the light that the lobes below get
+};
+
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
     vec3 position;
@@ -91,6 +100,7 @@ struct Lobes {
     float alpha;
     float glossy_probability; // of drawing from the GGX lobe, where not from the coat's
     CoatLobe coat;
+    SheenLobe sheen;
 };
 
 // `base`: about what the lobes below the coat reflect.
@@ -125,6 +135,45 @@ bool arrives(Lobes lobes, vec3 offset) {
     return arealight_bridge_blocker(lobes.ray_origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
 }
 
+// Charlie's f cos for a colour of 1; 0 for light from below. The view's cosine is the frame's, from AREALIGHT_FORMULA_MIN_COS_VIEW on.
+float sheen_evaluate(vec3 view, vec3 light, float roughness) {
+    if (light.z <= 0.0) {
+        return 0.0;
+    }
+    vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
+    float exponent = 1.0 / (roughness * roughness);
+    float distribution = (2.0 + exponent) * pow(dot(half_vector.xy, half_vector.xy), 0.5 * exponent) / (2.0 * AREALIGHT_PI);
+    float masking = 1.0 + arealight_sheen_masking(view.z, roughness) + arealight_sheen_masking(light.z, roughness);
+    return distribution / (4.0 * view.z * masking);
+}
+
+// Charlie's albedo, by a midpoint rule of 32 x 24 nodes: to 1e-3.
+float sheen_true_albedo(vec3 view, float roughness) {
+    const int HEIGHTS = 32;
+    const int AZIMUTHS = 24;
+    float sum = 0.0;
+    for (int i = 0; i < HEIGHTS; i++) {
+        // Low light weighs most: z = t^3
+        float t = (float(i) + 0.5) / float(HEIGHTS);
+        float z = t * t * t;
+        float radius = sqrt(1.0 - z * z);
+        for (int j = 0; j < AZIMUTHS; j++) {
+            float phi = AREALIGHT_PI * (float(j) + 0.5) / float(AZIMUTHS);
+            sum += 3.0 * t * t * sheen_evaluate(view, vec3(radius * cos(phi), radius * sin(phi), z), roughness);
+        }
+    }
+    return 2.0 * AREALIGHT_PI * sum / float(HEIGHTS * AZIMUTHS);
+}
+
+SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
+    if (sheen.color == vec3(0.0)) {
+        return SheenLobe(vec3(0.0), 1.0, 1.0);
+    }
+    float roughness = max(sheen.roughness, AREALIGHT_SHEEN_MIN_ROUGHNESS);
+    float albedo = sheen_true_albedo(vec3(frame.sin_view, 0.0, max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)), roughness);
+    return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
+}
+
 Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     float alpha = max(surface.roughness * surface.roughness, AREALIGHT_MIN_ALPHA);
@@ -133,13 +182,17 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
                  surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability,
-                 load_coat_lobe(frame, surface.coat, glossy + diffuse));
+                 load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen));
 }
 
 // f cos, all lobes.
 vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
     vec3 base = diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
+    if (lobes.sheen.color != vec3(0.0)) {
+        vec3 view = vec3(lobes.view.xy, max(lobes.view.z, AREALIGHT_FORMULA_MIN_COS_VIEW));
+        base = base * lobes.sheen.base + lobes.sheen.color * sheen_evaluate(view, light, lobes.sheen.roughness);
+    }
     CoatLobe coat = lobes.coat;
     vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, coat.alpha, vec3(1.0), 1.0);
     return mix(base, above, coat.share);

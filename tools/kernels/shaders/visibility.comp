@@ -14,6 +14,7 @@ layout(set = 0, binding = 7, rgba16f) uniform writeonly image2D out_base_color;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D out_specular;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D out_radiance;
 layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
+layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D out_sheen;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
@@ -65,6 +66,7 @@ void main() {
         imageStore(out_specular, pixel, vec4(0.0));
         imageStore(out_radiance, pixel, vec4(constants.background, 0.0));
         imageStore(out_coat, pixel, vec4(0.0));
+        imageStore(out_sheen, pixel, vec4(0.0));
         return;
     }
     ScenePoint point = scene_point(hit);
@@ -75,4 +77,5 @@ void main() {
     float below_coat = 1.0 - arealight_coat_share(point.coat, dot(point.coat.normal, direction));
     imageStore(out_radiance, pixel, vec4(point.emission * below_coat, 1.0));
     imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
+    imageStore(out_sheen, pixel, vec4(point.sheen.color, point.sheen.roughness));
 }

@@ -2,7 +2,7 @@
 //! facts back out of the SPIR-V.
 
 use arealight::kernels::{
-    Access, Binding, BindingKind, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SPECULAR, Kernel,
+    Access, Binding, BindingKind, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SHEEN, G_SPECULAR, Kernel,
     LIGHT_TEXTURES, LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
 };
 
@@ -99,6 +99,7 @@ pub static REFERENCE: Kernel = Kernel {
         LIGHT_TEXTURES,
         SHAPES,
         G_COAT,
+        G_SHEEN,
         SCENE[0],
         SCENE[1],
         SCENE[2],
@@ -136,6 +137,7 @@ pub static VISIBILITY: Kernel = Kernel {
         write("out_specular", BindingKind::StorageImage, Access::Write, "g_specular (rgba32f)"),
         write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
         write("out_coat", BindingKind::StorageImage, Access::Write, "g_coat, with normals (rgba32f)"),
+        write("out_sheen", BindingKind::StorageImage, Access::Write, "g_sheen (rgba32f)"),
     ],
     constants: &[],
 };

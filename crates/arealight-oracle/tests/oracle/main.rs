@@ -10,6 +10,7 @@ mod ltsd;
 mod polygon;
 mod pyramid;
 mod shading;
+mod sheen;
 mod sphere;
 mod textured;
 mod tube;

@@ -50,6 +50,8 @@ pub struct ShadeResources {
     pub specular: Option<Resource>,
     /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
     pub coat: Option<Resource>,
+    /// Sheen: colour and roughness; none without [`ShadeOptions::reads_sheen`].
+    pub sheen: Option<Resource>,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
     pub radiance: Resource,
     /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
@@ -79,6 +81,10 @@ impl ShadeResources {
             let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
             return Err(Error::InvalidArgument { field: "coat", message });
         }
+        if self.sheen.is_none() && options.reads_sheen() {
+            let message = "is missing, but the pass reads it: see ShadeOptions::reads_sheen".into();
+            return Err(Error::InvalidArgument { field: "sheen", message });
+        }
         if self.picks.is_none() && options.shadow_rays > 0 {
             let message =
                 "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
@@ -101,6 +107,7 @@ impl ShadeResources {
             self.shapes.unwrap_or(self.lights),
             self.glossy_image(options)?,
             self.coat.unwrap_or(self.base_color),
+            self.sheen.unwrap_or(self.base_color),
             self.picks.unwrap_or(self.lights),
         ];
         if has_tiles {

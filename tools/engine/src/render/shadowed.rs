@@ -245,7 +245,7 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, _] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, ..] = self.g_buffer.sampled();
         let resources = [
             Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(self.vertex_buffer.handle()),

@@ -1,10 +1,10 @@
 //! The files of `scenes/`: what the program writes, and what a test holds them to.
 
 use crate::shadows::Floor;
-use crate::{clock, coats, demo, hundred_lamps, lamps, room, screen, shadows, sweep};
+use crate::{clock, coats, demo, hundred_lamps, lamps, room, screen, shadows, sheen, sweep};
 
 /// Each file's name and bytes.
-pub fn files() -> [(&'static str, Vec<u8>); 10] {
+pub fn files() -> [(&'static str, Vec<u8>); 11] {
     [
         ("sweep.glb", sweep::glb()),
         ("room.glb", room::glb()),
@@ -13,6 +13,7 @@ pub fn files() -> [(&'static str, Vec<u8>); 10] {
         ("shapes.glb", lamps::glb()),
         ("clock.glb", clock::glb()),
         ("coats.glb", coats::glb()),
+        ("sheen.glb", sheen::glb()),
         ("shadows.glb", shadows::glb(Floor::Matt)),
         ("shadows-glossy.glb", shadows::glb(Floor::Glossy)),
         ("hundred-lamps.glb", hundred_lamps::glb()),

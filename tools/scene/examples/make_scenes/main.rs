@@ -10,6 +10,7 @@ mod room;
 mod screen;
 mod shadows;
 mod shapes;
+mod sheen;
 mod sweep;
 mod test_card;
 mod writer;

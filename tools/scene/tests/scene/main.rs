@@ -31,6 +31,8 @@ mod screen;
 mod shadows;
 #[path = "../../examples/make_scenes/shapes.rs"]
 mod shapes;
+#[path = "../../examples/make_scenes/sheen.rs"]
+mod sheen;
 #[path = "../../examples/make_scenes/sweep.rs"]
 mod sweep;
 #[path = "../../examples/make_scenes/test_card.rs"]

@@ -194,6 +194,45 @@ fn a_coat_has_a_normal_of_its_own_where_textures_bend_it_or_what_is_below() {
     assert_eq!(effects(texture(1.0), json!({ "clearcoatFactor": 0 })), Effects::empty());
 }
 
+fn with_sheen(values: &Value) -> Value {
+    json!({ "extensions": { "KHR_materials_sheen": values } })
+}
+
+#[test]
+fn sheen_is_read_with_its_textures() {
+    let scene = load(textured(with_sheen(&json!({
+        "sheenColorFactor": [0.75, 0.5, 0.25], "sheenColorTexture": { "index": 0 },
+        "sheenRoughnessFactor": 0.25, "sheenRoughnessTexture": { "index": 0 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    assert_eq!(read.material.sheen_color.to_array(), [0.75, 0.5, 0.25]);
+    assert_eq!(read.material.sheen_roughness, 0.25);
+    // The colour is sRGB, the roughness is not
+    let textures = [read.sheen_color_texture, read.sheen_roughness_texture].map(Option::unwrap);
+    assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [true, false]);
+    assert!(scene.effects().contains(Effects::SHEEN));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!((gpu.sheen_color, gpu.sheen_roughness), ([0.75, 0.5, 0.25], 0.25));
+    assert_eq!([gpu.sheen_color_texture, gpu.sheen_roughness_texture], textures);
+    // None without the extension, and none of its textures where its colour is black, which is the default
+    for without in [json!({}), with_sheen(&json!({ "sheenColorTexture": { "index": 0 } }))] {
+        let scene = load(textured(without));
+        let read = &scene.materials[0];
+        assert_eq!((read.sheen_color_texture, scene.textures.len()), (None, 0));
+        assert!(!scene.effects().contains(Effects::SHEEN));
+    }
+}
+
+#[test]
+fn what_is_wrong_with_sheen_is_named() {
+    let text = error(textured(with_sheen(&json!({ "sheenColorFactor": [1, 1] }))));
+    assert!(text.contains("material '#0': KHR_materials_sheen"), "{text}");
+    let missing = error(textured(with_sheen(
+        &json!({ "sheenColorFactor": [1, 1, 1], "sheenColorTexture": { "index": 7 } }),
+    )));
+    assert!(missing.contains("textures[7]"), "{missing}");
+}
+
 #[test]
 fn wrap_modes_become_flags() {
     let wrapped = |sampler: Value| {

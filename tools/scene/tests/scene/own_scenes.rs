@@ -64,6 +64,21 @@ fn the_coats_lie_on_every_base_and_beside_each_is_the_same_without() {
     assert_eq!(scene.lights.len(), 4);
 }
 
+#[test]
+fn sheen_lies_on_every_cloth_and_beside_each_is_the_same_without() {
+    let scene = load("sheen.glb");
+    for (name, _, color, roughness) in sheen::CLOTHS {
+        let material = |name: &str| scene.materials.iter().find(|m| m.name == name).unwrap();
+        let (without, with) = (material(name), material(&format!("{name}, sheen")));
+        assert_eq!(without.material.sheen_color, glam::Vec3::ZERO, "{name}");
+        assert_eq!(with.material.sheen_color.to_array(), color, "{name}");
+        assert_eq!(with.material.sheen_roughness, roughness, "{name}");
+        let textures = (with.sheen_color_texture.is_some(), with.sheen_roughness_texture.is_some());
+        assert_eq!(textures, (name == "striped", name == "brushed"));
+    }
+    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | Effects::SHEEN);
+}
+
 /// Whether an outline turns both ways.
 fn is_concave(light: &arealight::Light) -> bool {
     let normal = light.shape.area_vector();
@@ -95,7 +110,12 @@ fn the_room_has_outlines_of_many_kinds() {
 fn the_demo_shows_what_there_is() {
     let scene = load("demo.glb");
     let elsewhere = Effects::IMAGES | Effects::SHAPES | Effects::MESH | Effects::COAT | Effects::COAT_NORMAL;
-    assert_eq!(scene.effects(), Effects::all() - elsewhere, "screen.glb has textures, coats.glb coats");
+    let elsewhere = elsewhere | Effects::SHEEN;
+    assert_eq!(
+        scene.effects(),
+        Effects::all() - elsewhere,
+        "screen.glb has textures, coats.glb coats, sheen.glb sheen"
+    );
     let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
     assert_eq!(letters.len(), 3);
     assert!(letters.iter().all(|letter| is_concave(letter)));

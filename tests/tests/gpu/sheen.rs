@@ -1,0 +1,302 @@
+//! Sheen on the GPU: against the float64 twin, against none, in its image of a G-buffer, and under tiles.
+
+use arealight::plan::{GBufferLayout, ShadeOptions, TileOptions};
+use arealight::{Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight_engine::EvalPoint;
+use arealight_oracle::material::{Coat, Material, Sheen, Surface};
+use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
+use arealight_tests::frame::{scene, with_renderer};
+use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
+use arealight_tests::{Comparison, Random, TestEngine, point, rounding};
+use arealight_vk::ash::vk::Format;
+use glam::{DVec3, Vec3, Vec4};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::LazyLock;
+
+const COUNT: usize = 2000;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+/// A base below sheen, and every third below a coat above that.
+fn with_sheen(random: &mut Random, index: usize) -> Surface {
+    let coat = Coat { weight: 0.7, alpha: random.between(0.05, 1.0), normal: None };
+    Surface {
+        diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
+        f0: DVec3::new(0.04, 0.5, 0.9),
+        f90: 1.0,
+        alpha: random.between(0.2, 1.0),
+        coat: (index % 3 == 0).then_some(coat),
+        sheen: Some(Sheen {
+            color: DVec3::new(random.unit(), random.unit(), random.unit()),
+            // Below the smallest and beyond the largest, too
+            roughness: random.between(0.0, 1.1),
+        }),
+    }
+}
+
+/// Points under polygons of 3 to 8 vertices anywhere: views at the normal, near it, anywhere, and grazing to 89.9 degrees and beyond.
+fn points(seed: u64) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    let one = |i: usize| {
+        let surface = with_sheen(&mut random, i);
+        let theta = match i % 8 {
+            0 => 0.0,
+            1 => random.between(0.0, 1e-3),
+            2 => 89.9_f64.to_radians(),
+            3 => FRAC_PI_2 - random.between(0.0, 0.05),
+            _ => random.between(0.0, FRAC_PI_2),
+        };
+        let view = DVec3::new(theta.sin(), 0.0, theta.cos());
+        let center = random.direction();
+        let size = random.between(0.1, 1.5);
+        let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
+        point(surface, view, vertices, i % 3 == 0)
+    };
+    (0..COUNT).map(one).collect()
+}
+
+fn qualities() -> [Quality; 4] {
+    let exact = Quality::default();
+    [
+        exact,
+        Quality { horizon: Horizon::Both, ..exact },
+        Quality { fresnel: Fresnel::Split, horizon: Horizon::Cosine, ..exact },
+        Quality { lobes: Lobes::Formula, horizon: Horizon::Cosine, ..exact },
+    ]
+}
+
+/// What float32 may lose of the lobes: of the base, of a coat, and of sheen. Its exponential multiplies an exponent's rounding, which is
+/// that of sums of terms up to 120, and where the view grazes the albedo follows its cosine.
+fn bound(surface: &Surface) -> f64 {
+    let coat = surface.coat.map_or(0.0, |coat| rounding(coat.alpha));
+    (2.0 * rounding(surface.alpha) + coat + 1e-5) / 0.6
+}
+
+#[test]
+fn sheen_follows_its_float64_twin() {
+    let Some(engine) = TestEngine::new() else { return };
+    let points = points(1);
+    for quality in qualities() {
+        let answers = engine.eval(&points, quality).unwrap();
+        let mut comparison = Comparison::new(format!("sheen, {quality:?}"));
+        let mut other = 0;
+        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+            let light = RelativeLight::new(&given.light, given.position);
+            let twin = |surface: &Surface| ltc_on(quality, &TABLE, surface, given.normal, given.view, &light);
+            let (expected, bound) = (twin(&given.surface), bound(&given.surface));
+            for channel in 0..3 {
+                let place = || format!("point {index}, channel {channel}: {given:?}");
+                comparison.add(answer[channel].into(), expected[channel], bound, place);
+            }
+            // The twin's twin: sheen that is a little rougher is another
+            let rougher =
+                given.surface.sheen.map(|sheen| Sheen { roughness: sheen.roughness * 1.1, ..sheen });
+            let rougher = twin(&Surface { sheen: rougher, ..given.surface });
+            other += usize::from((rougher - answer.as_dvec3()).abs().max_element() > bound);
+        }
+        comparison.assert_all();
+        assert!(other > COUNT / 10, "{other} points notice another roughness");
+    }
+}
+
+/// Lights of each shape about as large as they are far.
+fn shapes(random: &mut Random) -> [Light; 3] {
+    let center = random.direction() * 2.0;
+    let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
+    let light = |shape| Light {
+        name: "test".into(),
+        shape,
+        radiance: Vec3::ONE,
+        two_sided: true,
+        ..Light::default()
+    };
+    let ends = TubeEnds::Round;
+    [
+        light(LightShape::Disk { center, axis_u: axis_u * 0.7, axis_v }),
+        light(LightShape::Sphere { center, radius: 0.6 }),
+        light(LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius: 0.2, ends }),
+    ]
+}
+
+#[test]
+fn disks_spheres_and_tubes_light_sheen_as_their_float64_twins() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(2);
+    let points: Vec<EvalPoint> = points(3)
+        .into_iter()
+        .take(300)
+        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
+            // One kind of pipeline: no coats
+            let surface = Surface { coat: None, ..surface };
+            shapes(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
+        })
+        .collect();
+    let quality = Quality::default();
+    let answers = engine.eval_shapes(&points, quality).unwrap();
+    let mut comparison = Comparison::new("sheen under shapes");
+    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+        let EvalPoint { surface, normal, view, light, .. } = given;
+        let expected = shape_ltc_on(quality, &TABLE, surface, *normal, *view, light).unwrap();
+        for channel in 0..3 {
+            // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to 2.9 multiply
+            let bound = bound(surface) + 3e-5;
+            let place = || format!("point {index}, channel {channel}: {given:?}");
+            comparison.add(answer[channel].into(), expected[channel], bound, place);
+        }
+    }
+    comparison.assert_all();
+}
+
+#[test]
+fn black_sheen_is_none_to_the_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let uncoated = |sheen: fn(Sheen) -> Option<Sheen>| -> Vec<EvalPoint> {
+        let change = |point: &EvalPoint| {
+            let sheen = point.surface.sheen.and_then(sheen);
+            EvalPoint { surface: Surface { sheen, coat: None, ..point.surface }, ..point.clone() }
+        };
+        points(4).iter().map(change).collect()
+    };
+    let bits = |points: &[EvalPoint], quality| -> Vec<[u32; 3]> {
+        let answers = engine.eval(points, quality).unwrap();
+        answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
+    };
+    let black = uncoated(|sheen| Some(Sheen { color: DVec3::ZERO, ..sheen }));
+    for quality in qualities() {
+        let without = bits(&uncoated(|_| None), quality);
+        assert_eq!(bits(&black, quality), without, "{quality:?}");
+        // The twin: of any colour it is seen
+        let with = bits(&uncoated(Some), quality);
+        let same = with.iter().zip(&without).filter(|(with, without)| with == without).count();
+        assert!(same < COUNT / 2, "{same} points are the same");
+    }
+}
+
+#[test]
+fn at_the_normal_sheen_does_not_jump() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(5);
+    let quality = Quality::default();
+    for roughness in [0.0, 0.1, 0.3, 0.6, 1.0] {
+        let sheen = Some(Sheen { color: DVec3::ONE, roughness });
+        let surface = Surface { sheen, coat: None, ..with_sheen(&mut random, 1) };
+        let vertices = random.polygon(DVec3::new(0.5, 0.2, 1.0), 5, 0.3, 0.8);
+        // Views a hundred-thousandth away on all sides, and far away
+        let at = |theta: f64| -> Vec<Vec3> {
+            let points: Vec<EvalPoint> = (0..12)
+                .map(|i| {
+                    let (y, x) = (f64::from(i) / 12.0 * std::f64::consts::TAU).sin_cos();
+                    let view = DVec3::new(theta.sin() * x, theta.sin() * y, theta.cos());
+                    point(surface, view, vertices.clone(), true)
+                })
+                .collect();
+            engine.eval(&points, quality).unwrap()
+        };
+        let spread = |answers: &[Vec3]| {
+            let differences = answers.iter().map(|answer| (*answer - answers[0]).abs().max_element());
+            differences.fold(0.0_f32, f32::max)
+        };
+        assert!(spread(&at(1e-5)) < 1e-4, "{roughness}: {}", spread(&at(1e-5)));
+        assert!(spread(&at(0.5)) > 1e-3, "{roughness}: {}", spread(&at(0.5)));
+    }
+}
+
+#[test]
+fn every_layout_has_its_sheen_in_an_image_of_its_own() {
+    let Some(engine) = TestEngine::new() else { return };
+    let camera = Vec3::new(1.0, 0.5, 2.0);
+    let texel = [0.9_f32, 0.5, 0.2, 0.4];
+    let shade = |layout, effects, sheen: [f32; 4]| {
+        let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
+        pixel.sheen = sampled(&engine, Format::R32G32B32A32_SFLOAT, sheen);
+        let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
+        let options = ShadeOptions { surfaces, g_buffer: layout, ..ShadeOptions::default() };
+        pixel.shade(options, &[lamp()], camera, None).truncate()
+    };
+    for layout in
+        [GBufferLayout::Arealight, GBufferLayout::Unreal, GBufferLayout::Unity, GBufferLayout::Octahedral]
+    {
+        let without = shade(layout, Effects::empty(), texel);
+        assert_eq!(shade(layout, Effects::SHEEN, [0.0, 0.0, 0.0, 0.4]), without, "{layout:?}: black is none");
+        assert_ne!(shade(layout, Effects::SHEEN, texel), without, "{layout:?}");
+    }
+    // Against a point without a G-buffer
+    let material = Material {
+        base_color: Vec3::new(0.8, 0.6, 0.4),
+        metalness: 0.25,
+        roughness: 0.5,
+        dielectric_f0: Vec3::new(0.8, 0.6, 0.4),
+        dielectric_f90: 0.25,
+        sheen_color: Vec3::new(0.9, 0.5, 0.2),
+        sheen_roughness: 0.4,
+        ..Material::default()
+    };
+    let given = EvalPoint {
+        surface: material.surface(),
+        position: DVec3::ZERO,
+        normal: DVec3::Z,
+        view: camera.as_dvec3(),
+        light: lamp(),
+    };
+    let expected = engine.eval(&[given], Quality::default()).unwrap()[0];
+    let found = shade(GBufferLayout::Arealight, Effects::SHEEN, texel);
+    // Radiance of 3 and three lobes
+    assert!((found - expected).abs().max_element() < 2e-5, "{found} and {expected}");
+}
+
+#[test]
+fn a_frame_of_sheen_is_the_same_with_tiles() {
+    const SIZE: [u32; 2] = [61, 37];
+    let Some(engine) = TestEngine::new() else { return };
+    let mut scene = scene("sheen.glb");
+    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
+    let center = scene.bounds.center();
+    let mut lights = scene.lights.clone();
+    // Low lights that stand on the floor and across it, which lobes that lean below the surface see
+    for (index, height) in [-0.5, 0.0, 0.3, 1.0].into_iter().enumerate() {
+        let at = center.with_y(height) + DVec3::X * (3.0 * index as f64 - 4.5);
+        let corner = |(x, y): (f64, f64)| at + DVec3::X * x + DVec3::Y * y;
+        lights.push(Light {
+            name: format!("low {index}"),
+            shape: LightShape::Polygon(
+                [(-0.4, -0.4), (0.4, -0.4), (0.4, 0.4), (-0.4, 0.4)].map(corner).to_vec(),
+            ),
+            radiance: Vec3::ONE,
+            two_sided: true,
+            ..Light::default()
+        });
+    }
+    for (horizon, cull_threshold) in [(Horizon::Cosine, 0.0), (Horizon::Both, 0.0), (Horizon::Cosine, 0.01)] {
+        // With and without a glossy lobe, whose horizon tiles know of
+        for surfaces in [scene.effects(), scene.effects() - Effects::GLOSSY] {
+            let quality = Quality { horizon, ..Quality::default() };
+            let plain = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
+                renderer.shade(surfaces, quality).unwrap();
+                renderer.radiance().unwrap()
+            });
+            let (tiled, listed) = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
+                let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
+                let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
+                let view = renderer.tiled(options, tiles).unwrap();
+                renderer.shade_tiled(&view).unwrap();
+                let counts = view.counts(lights.len()).unwrap();
+                (renderer.radiance().unwrap(), counts.lights)
+            });
+            let different = |a: &[Vec4], b: &[Vec4]| {
+                // A rounding of each light's form factor, of radiances of 6 and 1
+                let apart = |(a, b): &(&Vec4, &Vec4)| {
+                    (**a - **b).abs().max_element()
+                        > f32::EPSILON * a.max_element() + 2e-5 + cull_threshold * a.max_element()
+                };
+                a.iter().zip(b).filter(apart).count()
+            };
+            assert_eq!(different(&plain, &tiled), 0, "{horizon:?}, {cull_threshold}, {surfaces}");
+            // The twin: tiles that take sheen's pixels for their base's would leave out what those without lights do
+            let fewer = with_renderer(&engine, &scene, &lights[..2], SIZE, |renderer| {
+                renderer.shade(surfaces, quality).unwrap();
+                renderer.radiance().unwrap()
+            });
+            assert!(listed > 0 && different(&plain, &fewer) > 100, "{horizon:?}");
+        }
+    }
+}
