@@ -62,6 +62,9 @@
 // Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_NORMAL 16384
 
+// Some surface has sheen: ArealightResources.sheen is read.
+#define AREALIGHT_EFFECT_SHEEN 32768
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -353,7 +356,7 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT and _COAT_NORMAL. 0 is DIFFUSE and GLOSSY. What lights need is known
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL and _SHEEN. 0 is DIFFUSE and GLOSSY. What lights need is known
     // from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
@@ -441,6 +444,8 @@ typedef struct ArealightResources {
     // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
     // normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     struct ArealightImage coat;
+    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
+    struct ArealightImage sheen;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;

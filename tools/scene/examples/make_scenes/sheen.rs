@@ -35,7 +35,7 @@ pub fn glb() -> Vec<u8> {
         }
     }
     // One lamp above and behind the camera, one behind the spheres, whose light grazes them
-    let lamp = writer.emitter("lamp", [6.0, 6.0, 6.0], false);
+    let lamp = writer.emitter("lamp", [24.0, 24.0, 24.0], false);
     for (name, at) in [("key", [-3.0, 5.5, 5.0]), ("rim", [2.0, 3.0, -5.0])] {
         let mut node = look_at(at, [0.0, 0.8, 0.0]);
         turn_around(&mut node);
