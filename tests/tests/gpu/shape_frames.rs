@@ -43,6 +43,7 @@ fn pixels() -> Vec<Pixel> {
             dielectric_f90: 1.0,
             coat: 0.0,
             coat_roughness: 0.0,
+            ..Material::default()
         },
     };
     (0..PIXELS).map(pixel).collect()

@@ -197,7 +197,7 @@ fn at_the_normal_sheen_does_not_jump() {
             differences.fold(0.0_f32, f32::max)
         };
         assert!(spread(&at(1e-5)) < 1e-4, "{roughness}: {}", spread(&at(1e-5)));
-        assert!(spread(&at(0.5)) > 1e-3, "{roughness}: {}", spread(&at(0.5)));
+        assert!(spread(&at(0.5)) > 3e-4, "{roughness}: {}", spread(&at(0.5)));
     }
 }
 
@@ -291,8 +291,8 @@ fn a_frame_of_sheen_is_the_same_with_tiles() {
                 a.iter().zip(b).filter(apart).count()
             };
             assert_eq!(different(&plain, &tiled), 0, "{horizon:?}, {cull_threshold}, {surfaces}");
-            // The twin: tiles that take sheen's pixels for their base's would leave out what those without lights do
-            let fewer = with_renderer(&engine, &scene, &lights[..2], SIZE, |renderer| {
+            // The twin: without the first light pictures differ
+            let fewer = with_renderer(&engine, &scene, &lights[1..], SIZE, |renderer| {
                 renderer.shade(surfaces, quality).unwrap();
                 renderer.radiance().unwrap()
             });

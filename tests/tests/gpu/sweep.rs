@@ -41,6 +41,7 @@ fn material(roughness: f32) -> Material {
         dielectric_f90: 1.0,
         coat: 0.0,
         coat_roughness: 0.0,
+        ..Material::default()
     }
 }
 
@@ -107,6 +108,8 @@ impl<'a> Sweep<'a> {
                 coat_weight: 0.0,
                 coat_normal: [0.0; 3],
                 coat_roughness: 0.0,
+                sheen_color: [0.0; 3],
+                sheen_roughness: 0.0,
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();

@@ -78,7 +78,9 @@ fn every_structure_has_the_same_offsets() {
                 f0,
                 coat_weight,
                 coat_normal,
-                coat_roughness
+                coat_roughness,
+                sheen_color,
+                sheen_roughness
             ),
         ),
         (
@@ -118,7 +120,10 @@ fn every_structure_has_the_same_offsets() {
                 coat_roughness_texture,
                 coat_normal_texture,
                 coat_normal_scale,
-                reserved as "reserved0"
+                sheen_color_texture,
+                sheen_roughness_texture,
+                sheen_color,
+                sheen_roughness
             ),
         ),
         (
