@@ -20,7 +20,7 @@ pub(super) fn sheen_truth(
     base: Truth,
 ) -> Truth {
     let charlie = Charlie { roughness: sheen.roughness.max(MIN_ROUGHNESS) };
-    let view = view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
+    let view = view.with_z(view.z.max(MIN_COS_VIEW)).normalize_or(DVec3::Z);
     let lobe =
         region.integrate(settings, angles, |light| (shown(light) * charlie.evaluate(view, light)).to_array());
     let left = sheen.left_below(charlie.albedo(view.z));
