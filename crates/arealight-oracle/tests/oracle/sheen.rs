@@ -10,7 +10,7 @@ use std::sync::LazyLock;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
-/// Degrees from the normal, to where formulas end (MIN_COS_VIEW).
+/// Degrees from the normal, to where formulas end (`MIN_COS_VIEW`).
 const ANGLES: [f64; 10] = [0.0, 1e-5, 1.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9];
 
 fn roughnesses() -> impl Iterator<Item = f64> {
