@@ -26,6 +26,12 @@ const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
 const uint EFFECT_COAT = 8192u;
 // Some coat has a normal of its own; EFFECT_COAT is set then, too.
 const uint EFFECT_COAT_NORMAL = 16384u;
+// Diffuse lobes are coupled with the Fresnel term above them.
+const uint EFFECT_COUPLED = 32768u;
+// They are by the specular lobe's albedo; EFFECT_COUPLED is set then, too.
+const uint EFFECT_COUPLED_BY_ALBEDO = 65536u;
+// Coats are layered by their albedo; EFFECT_COAT is set then, too.
+const uint EFFECT_COAT_BY_ALBEDO = 131072u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -40,8 +46,11 @@ const int LOBES_FORMULA = 1;
 
 #define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
+#define AREALIGHT_COUPLED ((EFFECTS & EFFECT_COUPLED) != 0u)
+#define AREALIGHT_COUPLED_BY_ALBEDO ((EFFECTS & EFFECT_COUPLED_BY_ALBEDO) != 0u)
 #define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
+#define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS ((EFFECTS & EFFECT_TEXTURED) != 0u)

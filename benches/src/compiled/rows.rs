@@ -104,7 +104,7 @@ pub fn rows() -> Vec<Row> {
     let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = Effects::all() - LOBES - COATS;
+    let every_kind = Effects::all() - LOBES - COATS - Effects::MODEL;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
@@ -127,6 +127,16 @@ pub fn rows() -> Vec<Row> {
         // Quads and nothing else, with more asked of them or of the surface
         quads("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, exact),
         quads("quads", "exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
+        // Quads on surfaces whose layers share light
+        quads("quads", "exact, coupled", LOBES | Effects::COUPLED, exact),
+        quads("quads", "both horizons, coupled", LOBES | Effects::COUPLED, both),
+        quads(
+            "quads",
+            "exact, coupled by albedo",
+            LOBES | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO,
+            exact,
+        ),
+        quads("quads", "exact, all layers by albedo", LOBES | Effects::COAT | Effects::MODEL, exact),
         // Quads on coated surfaces
         quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
@@ -148,7 +158,7 @@ pub fn rows() -> Vec<Row> {
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
         shade("every kind", "exact", LOBES | every_kind, true, exact),
-        shade("every kind", "exact, coat with its own normal", Effects::all(), true, exact),
+        shade("every kind", "exact, coat with its own normal", Effects::all() - Effects::MODEL, true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),

@@ -62,6 +62,15 @@
 // Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_NORMAL 16384
 
+// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+#define AREALIGHT_EFFECT_COUPLED 32768
+
+// They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
+#define AREALIGHT_EFFECT_COUPLED_BY_ALBEDO 65536
+
+// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+#define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -353,8 +362,8 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT and _COAT_NORMAL. 0 is DIFFUSE and GLOSSY. What lights need is known
-    // from ArealightFrame.lights.
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _COUPLED and
+    // _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;

@@ -26,6 +26,12 @@ pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
 /// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
+/// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+pub const AREALIGHT_EFFECT_COUPLED: u32 = 32768;
+/// They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
+pub const AREALIGHT_EFFECT_COUPLED_BY_ALBEDO: u32 = 65536;
+/// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+pub const AREALIGHT_EFFECT_COAT_BY_ALBEDO: u32 = 131072;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

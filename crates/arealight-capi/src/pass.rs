@@ -370,6 +370,9 @@ mod tests {
             (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
             (c::AREALIGHT_EFFECT_COAT, Effects::COAT),
             (c::AREALIGHT_EFFECT_COAT_NORMAL, Effects::COAT_NORMAL),
+            (c::AREALIGHT_EFFECT_COUPLED, Effects::COUPLED),
+            (c::AREALIGHT_EFFECT_COUPLED_BY_ALBEDO, Effects::COUPLED_BY_ALBEDO),
+            (c::AREALIGHT_EFFECT_COAT_BY_ALBEDO, Effects::COAT_BY_ALBEDO),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -89,8 +89,8 @@ pub struct ArealightUpload {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT and _COAT_NORMAL. 0 is DIFFUSE and GLOSSY. What lights need is known
-    /// from ArealightFrame.lights.
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _COUPLED and
+    /// _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,

@@ -37,7 +37,7 @@ impl Default for Material {
     }
 }
 
-/// What the lobes need to know of a surface: a Lambert lobe and a GGX lobe, added, and a coat above both.
+/// What the lobes need to know of a surface: a Lambert lobe and a GGX lobe, added or coupled, and a coat above both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Lambert albedo in [0, 1]; the lobe is `albedo / pi`.
@@ -48,12 +48,41 @@ pub struct Surface {
     pub f90: f64,
     /// GGX alpha, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
+    /// What lies above the Lambert lobe; `None` where the two lobes are added.
+    pub interface: Option<Interface>,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
 }
 
+impl Default for Surface {
+    /// Black, with an alpha of 1.
+    fn default() -> Self {
+        Self {
+            diffuse_albedo: DVec3::ZERO,
+            f0: DVec3::ZERO,
+            f90: 0.0,
+            alpha: 1.0,
+            interface: None,
+            coat: None,
+        }
+    }
+}
+
+/// The interface that light crosses on its way to a Lambert lobe, which gets what Schlick's Fresnel term leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interface {
+    /// Reflectance at normal incidence, in [0, 1].
+    pub f0: f64,
+    /// Reflectance at grazing incidence, in [0, 1].
+    pub f90: f64,
+    /// Whether the lobe gets what the albedo of the GGX lobe leaves at the view, as in OpenPBR
+    /// ([`Effects::COUPLED_BY_ALBEDO`](arealight::Effects::COUPLED_BY_ALBEDO)); else what the Fresnel term of the half vector leaves, as in
+    /// glTF.
+    pub by_albedo: bool,
+}
+
 /// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel term. It reflects the part
-/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest.
+/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest. Or as OpenPBR has it, by its albedo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coat {
     /// How much of the surface it covers, in (0, 1].
@@ -62,6 +91,9 @@ pub struct Coat {
     pub alpha: f64,
     /// Its normal, of any length above zero; `None` where it is the surface's.
     pub normal: Option<DVec3>,
+    /// Whether it has Schlick's Fresnel term of the half vector, and what is below gets what its albedo at the view leaves
+    /// ([`Effects::COAT_BY_ALBEDO`](arealight::Effects::COAT_BY_ALBEDO)).
+    pub by_albedo: bool,
 }
 
 impl Coat {
@@ -79,7 +111,7 @@ impl Material {
     /// The surface of this material: what `arealight_surface_from_metalness` does in GLSL.
     ///
     /// The Lambert albedo is `base_color (1 - metalness)`; the lobes are added without Fresnel coupling, as
-    /// in most real-time engines. The coat has the surface's normal.
+    /// in many real-time engines. The coat has the surface's normal.
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
         let base = self.base_color.as_dvec3();
@@ -90,8 +122,21 @@ impl Material {
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
-            coat: (weight > 0.0).then(|| Coat { weight, alpha: alpha(self.coat_roughness), normal: None }),
+            interface: None,
+            coat: (weight > 0.0).then(|| Coat {
+                weight,
+                alpha: alpha(self.coat_roughness),
+                normal: None,
+                by_albedo: false,
+            }),
         }
+    }
+
+    /// The same with the Lambert lobe coupled, as glTF has it.
+    pub fn coupled_surface(&self) -> Surface {
+        let f0 = f64::from(self.dielectric_f0.max_element());
+        let interface = Interface { f0, f90: f64::from(self.dielectric_f90), by_albedo: false };
+        Surface { interface: Some(interface), ..self.surface() }
     }
 }
 

@@ -2,6 +2,7 @@
 //! in float64, the twin of the GLSL.
 
 mod coat;
+mod diffuse;
 pub mod footprint;
 pub mod poses;
 mod shapes;
@@ -92,7 +93,7 @@ pub fn truth(
     light: &RelativeLight,
     settings: &Settings,
 ) -> Truth {
-    let Ok(truth) = coat::layered::<Infallible>(surface, normal, view, |surface, normal, view| {
+    let Ok(truth) = coat::layered::<Infallible>(surface, normal, view, settings, |surface, normal, view| {
         Ok(uncoated_truth(surface, normal, view, light, settings))
     });
     truth
@@ -143,8 +144,10 @@ fn reflected(
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
         Estimate::default()
     } else {
+        let by_albedo = diffuse::albedo_part(surface, view, settings);
         region.integrate(settings, angles, |direction| {
-            (shown(direction) * (direction.z.max(0.0) / PI)).to_array()
+            let part = diffuse::part(surface.interface, by_albedo, view, direction);
+            (shown(direction) * (part * direction.z.max(0.0) / PI)).to_array()
         })
     };
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
@@ -188,6 +191,13 @@ pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settin
     integrate_lobe(lobe, view, region, settings, |direction, value| {
         [value, value * Ggx::schlick_weight(view, direction)]
     })
+}
+
+/// What a GGX lobe with Schlick's Fresnel term reflects of light from everywhere.
+fn hemisphere_albedo(alpha: f64, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
+    let hemisphere = Region::sphere().clipped(DVec3::Z);
+    let [lobe, schlick] = lobe_integrals(Ggx { alpha }, view, &hemisphere, settings).value;
+    f0 * lobe + (f90 - f0) * schlick
 }
 
 /// Integrates what `weigh` makes of a direction and of `f cos` there.
@@ -274,16 +284,18 @@ pub fn ltc_on(
         }
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    // Integrate the cosine
+    // Integrate the cosine, sheared below an interface
+    let (inverse, part) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
         _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
-        None => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        None if surface.interface.is_none() => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        None => lobe(&inverse, 1.0),
         Some(image) => {
-            let signed = transformed_image_integral(&DMat3::IDENTITY, &vertices, image, false);
+            let signed = transformed_image_integral(&inverse, &vertices, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
         }
     };
-    let diffuse = surface.diffuse_albedo * shown;
+    let diffuse = surface.diffuse_albedo * part * shown;
     light.radiance * coated(quality, table, surface, &frame, diffuse + glossy, lobe)
 }
 
@@ -298,7 +310,7 @@ fn coated(
 ) -> DVec3 {
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
-    below.lerp(coat.albedo * lobe(&coat.inverse, coat.above_surface), coat.share)
+    below * (1.0 - coat.share) + coat.albedo * lobe(&coat.inverse, coat.above_surface)
 }
 
 /// What the table or the formula holds for a lobe.

@@ -36,9 +36,15 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     ArealightPoint point;
     point.position = surface.position;
     point.to_frame = arealight_frame_matrix(frame);
-    point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_diffuse_lobe(surface.diffuse_albedo);
+    point.lobes[AREALIGHT_LOBE_DIFFUSE] = AREALIGHT_COUPLES_DIFFUSE && !AREALIGHT_COUPLES_BY_ALBEDO
+        ? arealight_coupled_diffuse_lobe(frame, surface.diffuse_albedo, surface.interface_f0, surface.interface_f90)
+        : arealight_diffuse_lobe(surface.diffuse_albedo);
     if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
+        if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
+            vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
+            point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
+        }
         if (AREALIGHT_SPLITS_FRESNEL) {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
             point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);

@@ -10,7 +10,8 @@ struct ArealightCoat {
     float roughness; // perceptual, in [0, 1]
 };
 
-// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added; and what lies on them.
+// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added or with AREALIGHT_COUPLED coupled; and what lies
+// on them.
 struct ArealightSurface {
     vec3 position;       // relative to the host's origin, in the lights' unit of length
     vec3 normal;         // shading normal, of any length
@@ -19,6 +20,10 @@ struct ArealightSurface {
     vec3 f0;             // reflectance at normal incidence, in [0, 1]
     float f90;           // reflectance at grazing incidence, in [0, 1]
     float roughness;     // perceptual, in [0, 1]
+    // Of the interface that light crosses on its way to the diffuse lobe, whose channels are coupled by the largest; both 0 where there
+    // is none. Read with AREALIGHT_COUPLED alone
+    float interface_f0;  // reflectance at normal incidence, in [0, 1]
+    float interface_f90; // at grazing incidence, in [0, 1]
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
 };
 
@@ -38,6 +43,8 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.diffuse_albedo = base_color * (1.0 - metalness);
     surface.f0 = mix(dielectric_f0, base_color, metalness);
     surface.f90 = mix(dielectric_f90, 1.0, metalness);
+    surface.interface_f0 = max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b));
+    surface.interface_f90 = dielectric_f90;
 }
 
 // What a coat reflects at normal incidence: that of an index of refraction of 1.5.

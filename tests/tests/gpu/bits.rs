@@ -132,6 +132,9 @@ fn buffers() -> Buffers {
             coat_weight: 0.5 * glossy,
             coat_normal: surface.vector(&mut random),
             coat_roughness: surface.number(&mut random),
+            interface_f0: 0.0,
+            interface_f90: glossy,
+            reserved: [0.0; 2],
         });
     }
     buffers

@@ -10,6 +10,7 @@ mod c_pictures;
 mod coat;
 mod coat_tiles;
 mod constants;
+mod coupled;
 mod cpp_host;
 mod effects;
 mod footprints;

@@ -107,6 +107,9 @@ impl<'a> Sweep<'a> {
                 coat_weight: 0.0,
                 coat_normal: [0.0; 3],
                 coat_roughness: 0.0,
+                interface_f0: 0.0,
+                interface_f90: 0.0,
+                reserved: [0.0; 2],
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();

@@ -8,7 +8,7 @@ mod coat;
 mod fields;
 
 use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
-use arealight_oracle::material::Surface;
+use arealight_oracle::material::{Interface, Surface};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
@@ -463,27 +463,28 @@ impl Case {
     fn surface(&self) -> Result<Surface, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         match &self.material {
-            CaseMaterial::Diffuse { albedo } => {
-                Ok(Surface { diffuse_albedo: *albedo, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: None })
-            }
+            CaseMaterial::Diffuse { albedo } => Ok(Surface { diffuse_albedo: *albedo, ..Surface::default() }),
             CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
                 unsupported("anisotropic GGX is not supported yet".into())
             }
             CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
                 unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
             }
-            CaseMaterial::Ggx { albedo: Some(albedo), coupled: true, .. } if *albedo != DVec3::ZERO => {
-                unsupported("coupling of the Lambert lobe to the Fresnel term is not supported yet".into())
-            }
-            CaseMaterial::Ggx { alpha, f0, albedo, coat, .. } => Ok(Surface {
+            CaseMaterial::Ggx { alpha, f0, albedo, coat, coupled } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
                 alpha: alpha.x,
+                interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
             }),
         }
     }
+}
+
+/// The interface of a surface whose Lambert lobe is coupled as glTF has it.
+fn interface(f0: DVec3) -> Interface {
+    Interface { f0: f0.max_element(), f90: 1.0, by_albedo: false }
 }
 
 impl CaseTexture {

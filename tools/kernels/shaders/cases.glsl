@@ -17,6 +17,9 @@ struct ArealightGpuCase {
     float coat_weight;
     vec3 coat_normal;
     float coat_roughness;
+    float interface_f0;
+    float interface_f90;
+    vec2 reserved;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -32,7 +35,8 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness, ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness));
+                            given.roughness, given.interface_f0, given.interface_f90,
+                            ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness));
 }
 
 #endif

@@ -74,6 +74,12 @@ pub struct GpuCase {
     pub coat_normal: [f32; 3],
     /// The coat's perceptual roughness.
     pub coat_roughness: f32,
+    /// Reflectance of the interface above the Lambert lobe, at normal incidence; with both 0 there is none.
+    pub interface_f0: f32,
+    /// At grazing incidence.
+    pub interface_f90: f32,
+    /// Zero.
+    pub reserved: [f32; 2],
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.

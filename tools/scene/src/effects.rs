@@ -2,6 +2,7 @@
 
 use crate::{Scene, SceneMaterial};
 use arealight::Effects;
+use arealight_oracle::material::Material;
 use glam::Vec3;
 
 /// An effect, and who in the scene needs it.
@@ -45,6 +46,7 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::TEXTURED_ELLIPSE),
         material(Effects::COAT, has_coat),
         material(Effects::COAT_NORMAL, has_coat_normal),
+        material(Effects::COUPLED, is_coupled),
     ];
     calls.into_iter().flatten().collect()
 }
@@ -80,6 +82,12 @@ fn has_specular_input(material: &SceneMaterial) -> bool {
 
 fn has_coat(material: &SceneMaterial) -> bool {
     material.material.coat > 0.0
+}
+
+/// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.
+fn is_coupled(material: &SceneMaterial) -> bool {
+    let Material { dielectric_f0, dielectric_f90, .. } = material.material;
+    has_diffuse_lobe(material) && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0)
 }
 
 /// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.

@@ -1,7 +1,7 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
 use super::coat::layered;
-use super::{RelativeLight, ShownImage, Truth, coated, glossy_part, reflected};
+use super::{RelativeLight, ShownImage, Truth, coated, diffuse, glossy_part, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
 use crate::frame::SurfaceFrame;
@@ -43,7 +43,12 @@ pub fn shape_ltc_on(
         DVec3::splat(form_factor.min(1.0))
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    let base = surface.diffuse_albedo * seen.lambert_form_factor() + glossy;
+    let (inverse, part) = diffuse::lobe(quality, table, surface, &frame);
+    let diffuse = match surface.interface {
+        None => DVec3::splat(seen.lambert_form_factor()),
+        Some(_) => lobe(&inverse, 1.0),
+    };
+    let base = surface.diffuse_albedo * part * diffuse + glossy;
     Some(light.radiance.as_dvec3() * coated(quality, table, surface, &frame, base, lobe))
 }
 
@@ -61,7 +66,7 @@ pub fn shape_truth(
     light: &Light,
     settings: &Settings,
 ) -> Option<Truth> {
-    let truth = layered(surface, normal, view, |surface, normal, view| {
+    let truth = layered(surface, normal, view, settings, |surface, normal, view| {
         uncoated_truth(surface, normal, view, light, settings).ok_or(())
     });
     truth.ok()

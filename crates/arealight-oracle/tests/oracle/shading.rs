@@ -13,11 +13,17 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 fn glossy(alpha: f64, f0: f64) -> Surface {
-    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::splat(f0), f90: 1.0, alpha, coat: None }
+    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::splat(f0), f90: 1.0, alpha, ..Surface::default() }
 }
 
 fn diffuse() -> Surface {
-    Surface { diffuse_albedo: DVec3::new(0.9, 0.5, 0.1), f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: None }
+    Surface {
+        diffuse_albedo: DVec3::new(0.9, 0.5, 0.1),
+        f0: DVec3::ZERO,
+        f90: 0.0,
+        alpha: 1.0,
+        ..Surface::default()
+    }
 }
 
 fn light(vertices: Vec<DVec3>, two_sided: bool) -> RelativeLight {

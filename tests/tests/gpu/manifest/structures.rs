@@ -78,7 +78,10 @@ fn every_structure_has_the_same_offsets() {
                 f0,
                 coat_weight,
                 coat_normal,
-                coat_roughness
+                coat_roughness,
+                interface_f0,
+                interface_f90,
+                reserved
             ),
         ),
         (

@@ -269,7 +269,8 @@ fn render(
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
             let shadows = arguments.shadows.unwrap_or_default() != Shadows::Off;
-            let reference = Reference { samples, shadows, ..Reference::default() };
+            let coupled = surfaces.contains(Effects::COUPLED);
+            let reference = Reference { samples, shadows, coupled, ..Reference::default() };
             let took = renderer.reference(reference, |done| bar.set_position(u64::from(done)))?;
             bar.finish_and_clear();
             took
