@@ -32,6 +32,8 @@ const uint EFFECT_COUPLED = 32768u;
 const uint EFFECT_COUPLED_BY_ALBEDO = 65536u;
 // Coats are layered by their albedo; EFFECT_COAT is set then, too.
 const uint EFFECT_COAT_BY_ALBEDO = 131072u;
+// Some diffuse lobe is rough.
+const uint EFFECT_DIFFUSE_ROUGHNESS = 262144u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -48,6 +50,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
 #define AREALIGHT_COUPLED ((EFFECTS & EFFECT_COUPLED) != 0u)
 #define AREALIGHT_COUPLED_BY_ALBEDO ((EFFECTS & EFFECT_COUPLED_BY_ALBEDO) != 0u)
+#define AREALIGHT_DIFFUSE_ROUGHNESS ((EFFECTS & EFFECT_DIFFUSE_ROUGHNESS) != 0u)
 #define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
 #define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)

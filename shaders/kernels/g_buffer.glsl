@@ -81,6 +81,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.position = position;
     surface.view = camera - position;
     surface.coat = load_coat(pixel);
+    surface.diffuse_roughness = 0.0;
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
         surface.roughness = specular.b;

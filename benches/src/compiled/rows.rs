@@ -104,7 +104,7 @@ pub fn rows() -> Vec<Row> {
     let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = Effects::all() - LOBES - COATS - Effects::MODEL;
+    let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
@@ -158,7 +158,7 @@ pub fn rows() -> Vec<Row> {
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
         shade("every kind", "exact", LOBES | every_kind, true, exact),
-        shade("every kind", "exact, coat with its own normal", Effects::all() - Effects::MODEL, true, exact),
+        shade("every kind", "exact, coat with its own normal", LOBES | COATS | every_kind, true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),

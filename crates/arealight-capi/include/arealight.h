@@ -71,6 +71,9 @@
 // What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
 
+// Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
+#define AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS 262144
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 

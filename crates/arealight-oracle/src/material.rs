@@ -37,7 +37,7 @@ impl Default for Material {
     }
 }
 
-/// What the lobes need to know of a surface: a Lambert lobe and a GGX lobe, added or coupled, and a coat above both.
+/// What the lobes need to know of a surface: a diffuse lobe and a GGX lobe, added or coupled, and a coat above both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Lambert albedo in [0, 1]; the lobe is `albedo / pi`.
@@ -48,7 +48,9 @@ pub struct Surface {
     pub f90: f64,
     /// GGX alpha, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
-    /// What lies above the Lambert lobe; `None` where the two lobes are added.
+    /// Roughness of the diffuse lobe in [0, 1]: 0 is Lambert's, else EON of Portsmouth, Kutz and Hill 2025.
+    pub diffuse_roughness: f64,
+    /// What lies above the diffuse lobe; `None` where the two lobes are added.
     pub interface: Option<Interface>,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
@@ -62,6 +64,7 @@ impl Default for Surface {
             f0: DVec3::ZERO,
             f90: 0.0,
             alpha: 1.0,
+            diffuse_roughness: 0.0,
             interface: None,
             coat: None,
         }
@@ -122,6 +125,7 @@ impl Material {
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
+            diffuse_roughness: 0.0,
             interface: None,
             coat: (weight > 0.0).then(|| Coat {
                 weight,

@@ -147,7 +147,8 @@ fn reflected(
         let by_albedo = diffuse::albedo_part(surface, view, settings);
         region.integrate(settings, angles, |direction| {
             let part = diffuse::part(surface.interface, by_albedo, view, direction);
-            (shown(direction) * (part * direction.z.max(0.0) / PI)).to_array()
+            let albedo = diffuse::rough(surface.diffuse_albedo, surface.diffuse_roughness, view, direction);
+            (albedo * shown(direction) * (part * direction.z.max(0.0) / PI)).to_array()
         })
     };
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
@@ -160,9 +161,7 @@ fn reflected(
         })
     };
     // Add them
-    let sum = |diffuse: [f64; 3], glossy: [f64; 3]| {
-        surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)
-    };
+    let sum = |diffuse: [f64; 3], glossy: [f64; 3]| DVec3::from_array(diffuse) + DVec3::from_array(glossy);
     Truth {
         radiance: sum(diffuse.value, glossy.value),
         error: sum(diffuse.error, glossy.error),
@@ -284,18 +283,18 @@ pub fn ltc_on(
         }
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    // Integrate the cosine, sheared below an interface
-    let (inverse, part) = diffuse::lobe(quality, table, surface, &frame);
+    // Integrate the cosine, or the diffuse lobe's transformed one
+    let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
         _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
-        None if surface.interface.is_none() => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
-        None => lobe(&inverse, 1.0),
-        Some(image) => {
+        None if inverse == DMat3::IDENTITY => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        Some(image) if inverse == DMat3::IDENTITY => {
             let signed = transformed_image_integral(&inverse, &vertices, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
         }
+        _ => lobe(&inverse, share_above_surface(&inverse)),
     };
-    let diffuse = surface.diffuse_albedo * part * shown;
+    let diffuse = albedo * shown;
     light.radiance * coated(quality, table, surface, &frame, diffuse + glossy, lobe)
 }
 

@@ -46,6 +46,8 @@ bitflags::bitflags! {
         /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR; else what a Fresnel term of the view does, as in glTF.
         /// With [`Effects::COAT`].
         const COAT_BY_ALBEDO = 1 << 17;
+        /// Some diffuse lobe is rough, EON instead of Lambert's. No layout of ours has its roughness: a G-buffer of the host's own does.
+        const DIFFUSE_ROUGHNESS = 1 << 18;
     }
 }
 
@@ -66,7 +68,8 @@ impl Effects {
         .union(Self::SPECULAR_INPUT)
         .union(Self::COAT)
         .union(Self::COAT_NORMAL)
-        .union(Self::MODEL);
+        .union(Self::MODEL)
+        .union(Self::DIFFUSE_ROUGHNESS);
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -87,6 +90,7 @@ impl Effects {
             (Self::COUPLED, "coupled"),
             (Self::COUPLED_BY_ALBEDO, "coupled_by_albedo"),
             (Self::COAT_BY_ALBEDO, "coat_by_albedo"),
+            (Self::DIFFUSE_ROUGHNESS, "diffuse_roughness"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

@@ -36,9 +36,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     ArealightPoint point;
     point.position = surface.position;
     point.to_frame = arealight_frame_matrix(frame);
-    point.lobes[AREALIGHT_LOBE_DIFFUSE] = AREALIGHT_COUPLES_DIFFUSE && !AREALIGHT_COUPLES_BY_ALBEDO
-        ? arealight_coupled_diffuse_lobe(frame, surface.diffuse_albedo, surface.interface_f0, surface.interface_f90)
-        : arealight_diffuse_lobe(surface.diffuse_albedo);
+    point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
     if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {

@@ -19,6 +19,10 @@
 #ifndef AREALIGHT_COUPLED_BY_ALBEDO
 #define AREALIGHT_COUPLED_BY_ALBEDO 0
 #endif
+// The diffuse lobe is EON, ArealightSurface.diffuse_roughness.
+#ifndef AREALIGHT_DIFFUSE_ROUGHNESS
+#define AREALIGHT_DIFFUSE_ROUGHNESS 0
+#endif
 // A clear coat above both, ArealightSurface.coat; with a normal of its own; and with what is below getting what the coat does not reflect
 // of the view, as in OpenPBR, instead of what a Fresnel term of the view leaves, as in glTF.
 #ifndef AREALIGHT_COAT
@@ -101,6 +105,7 @@ const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
 const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
 const bool AREALIGHT_COUPLES_DIFFUSE = bool(AREALIGHT_COUPLED);
 const bool AREALIGHT_COUPLES_BY_ALBEDO = bool(AREALIGHT_COUPLED_BY_ALBEDO);
+const bool AREALIGHT_HAS_ROUGH_DIFFUSE = bool(AREALIGHT_DIFFUSE_ROUGHNESS);
 const bool AREALIGHT_HAS_COAT = bool(AREALIGHT_COAT);
 const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
 const bool AREALIGHT_COATS_BY_ALBEDO = bool(AREALIGHT_COAT_BY_ALBEDO);

@@ -24,6 +24,7 @@ struct ArealightSurface {
     // is none. Read with AREALIGHT_COUPLED alone
     float interface_f0;  // reflectance at normal incidence, in [0, 1]
     float interface_f90; // at grazing incidence, in [0, 1]
+    float diffuse_roughness; // of EON, in [0, 1]; 0: Lambert's lobe. Read with AREALIGHT_DIFFUSE_ROUGHNESS alone
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
 };
 

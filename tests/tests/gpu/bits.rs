@@ -134,7 +134,8 @@ fn buffers() -> Buffers {
             coat_roughness: surface.number(&mut random),
             interface_f0: 0.0,
             interface_f90: glossy,
-            reserved: [0.0; 2],
+            diffuse_roughness: surface.number(&mut random),
+            reserved: 0.0,
         });
     }
     buffers

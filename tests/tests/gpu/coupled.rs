@@ -1,4 +1,4 @@
-//! Diffuse lobes below a Fresnel term on the GPU, and layers by albedo: against the float64 twin, and where they are hard.
+//! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin, and where they are hard.
 
 use arealight::{Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
 use arealight_engine::EvalPoint;
@@ -12,14 +12,28 @@ const COUNT: usize = 2000;
 
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
-/// A dielectric, coupled by the Fresnel term; or with a coat, all layers by albedo.
-fn layered(random: &mut Random, by_albedo: bool) -> Surface {
+/// How layers share light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// A dielectric, coupled by the Fresnel term.
+    Coupled,
+    /// The same with a rough diffuse lobe.
+    Rough,
+    /// With a coat, all layers by albedo.
+    ByAlbedo,
+}
+
+const KINDS: [Kind; 3] = [Kind::Coupled, Kind::Rough, Kind::ByAlbedo];
+
+fn layered(random: &mut Random, kind: Kind) -> Surface {
+    let by_albedo = kind == Kind::ByAlbedo;
     let f0 = random.between(0.0, 0.5);
     Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
         f0: DVec3::splat(f0),
         f90: 1.0,
         alpha: random.between(0.05, 1.0),
+        diffuse_roughness: if kind == Kind::Rough { random.between(0.0, 1.0) } else { 0.0 },
         interface: Some(Interface { f0, f90: random.between(0.0, 1.0), by_albedo }),
         coat: by_albedo.then(|| Coat {
             weight: random.between(0.2, 1.0),
@@ -31,10 +45,10 @@ fn layered(random: &mut Random, by_albedo: bool) -> Surface {
 }
 
 /// Points under polygons of 3 to 8 vertices anywhere, above, across and below their horizons.
-fn points(seed: u64, by_albedo: bool) -> Vec<EvalPoint> {
+fn points(seed: u64, kind: Kind) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     let one = |i| {
-        let surface = layered(&mut random, by_albedo);
+        let surface = layered(&mut random, kind);
         let cos_view = random.between(0.0, 1.0);
         let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
         let center = random.direction();
@@ -65,11 +79,11 @@ fn qualities() -> [Quality; 4] {
 #[test]
 fn layers_follow_their_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
-    for by_albedo in [false, true] {
-        let points = points(1, by_albedo);
+    for kind in KINDS {
+        let points = points(1, kind);
         for quality in qualities() {
             let answers = engine.eval(&points, quality).unwrap();
-            let mut comparison = Comparison::new(format!("by albedo: {by_albedo}, {quality:?}"));
+            let mut comparison = Comparison::new(format!("{kind:?}, {quality:?}"));
             let mut other = 0;
             for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
                 let light = RelativeLight::new(&given.light, given.position);
@@ -107,7 +121,7 @@ fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
         ]
     };
     // Surfaces of both kinds in one list, each by what it asks for
-    let surfaces = points(5, false).into_iter().take(100).chain(points(6, true).into_iter().take(100));
+    let surfaces = KINDS.into_iter().flat_map(|kind| points(5, kind).into_iter().take(70));
     let points: Vec<EvalPoint> = surfaces
         .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
             shapes().map(|light| EvalPoint { surface, position, normal, view, light })
@@ -131,7 +145,7 @@ fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
 #[test]
 fn an_interface_that_reflects_nothing_is_none_to_the_bit() {
     let Some(engine) = TestEngine::new() else { return };
-    let with = points(7, false);
+    let with = points(7, Kind::Coupled);
     let bits = |interface: fn(Interface) -> Option<Interface>| -> Vec<[u32; 3]> {
         let changed: Vec<EvalPoint> = with
             .iter()
@@ -154,8 +168,8 @@ fn radiance_is_continuous_where_the_view_passes_the_normal() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(8);
     let vertices = random.polygon(DVec3::new(0.5, 0.2, 0.8), 5, 0.2, 0.6);
-    for by_albedo in [false, true] {
-        let surface = layered(&mut random, by_albedo);
+    for kind in KINDS {
+        let surface = layered(&mut random, kind);
         // Views on a circle about the normal, and the normal itself
         let at = |tilt: f64| -> Vec<f32> {
             let points: Vec<EvalPoint> = (0..64)
@@ -180,8 +194,7 @@ fn radiance_is_continuous_where_the_view_passes_the_normal() {
 #[test]
 fn hard_surfaces_give_finite_radiance_and_no_more_than_they_get() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut points = points(9, true);
-    points.extend(self::points(10, false));
+    let mut points: Vec<EvalPoint> = KINDS.into_iter().flat_map(|kind| points(9, kind)).collect();
     let hard = [0.0, 1.0, -1.0, 2.0, f64::NAN, f64::INFINITY];
     let mut random = Random::new(11);
     let mut choose = || hard[(random.unit() * hard.len() as f64) as usize % hard.len()];
@@ -189,6 +202,9 @@ fn hard_surfaces_give_finite_radiance_and_no_more_than_they_get() {
         let interface = given.surface.interface.as_mut().unwrap();
         (interface.f0, interface.f90) = (choose(), choose());
         given.surface.f0 = DVec3::splat(0.04);
+        if given.surface.diffuse_roughness > 0.0 {
+            given.surface.diffuse_roughness = choose();
+        }
     }
     // What is within its range is bounded by the light, of radiance 1: two lobes and a coat
     for (given, answer) in points.iter().zip(engine.eval(&points, Quality::default()).unwrap()) {
@@ -204,6 +220,5 @@ fn hard_surfaces_give_finite_radiance_and_no_more_than_they_get() {
 
 #[test]
 fn effects_of_layers_are_of_surfaces() {
-    let layers = Effects::COUPLED | Effects::COUPLED_BY_ALBEDO | Effects::COAT_BY_ALBEDO;
-    assert!(Effects::SURFACES.contains(layers));
+    assert!(Effects::SURFACES.contains(Effects::MODEL | Effects::DIFFUSE_ROUGHNESS));
 }

@@ -109,7 +109,8 @@ impl<'a> Sweep<'a> {
                 coat_roughness: 0.0,
                 interface_f0: 0.0,
                 interface_f90: 0.0,
-                reserved: [0.0; 2],
+                diffuse_roughness: 0.0,
+                reserved: 0.0,
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();

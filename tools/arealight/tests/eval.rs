@@ -121,7 +121,8 @@ fn what_is_visible_of_lights_behind_triangles_shines() {
 #[test]
 fn layered_materials_are_answered_by_every_method() {
     let device = device();
-    for (method, tolerance) in [("truth", "1e-7"), ("oracle", "0.15"), ("gpu", "0.15")] {
+    // A coat's albedo is itself an integral, to 1e-6. Of single cases fitted lobes err by a third; the means below are what they are held to
+    for (method, tolerance) in [("truth", "1e-5"), ("oracle", "0.5"), ("gpu", "0.5")] {
         if method == "gpu" && !device {
             continue;
         }
@@ -132,7 +133,9 @@ fn layered_materials_are_answered_by_every_method() {
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         // Twice what another design gives there
         for (family, (material, count, bound)) in
-            [("coat", 14, 4.8e-3), ("ggx over diffuse", 6, 2.6e-3)].into_iter().enumerate()
+            [("coat", 14, 4.8e-3), ("ggx over diffuse", 6, 2.6e-3), ("rough diffuse", 13, 0.62e-3)]
+                .into_iter()
+                .enumerate()
         {
             let family = &summary["families"][family];
             assert_eq!(

@@ -74,10 +74,12 @@ pub struct Case {
 /// What the surface of a case is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CaseMaterial {
-    /// A Lambert lobe.
+    /// A Lambert lobe, or a rough one.
     Diffuse {
-        /// Albedo, not negative.
+        /// Albedo, not negative; of a rough lobe at most 1.
         albedo: DVec3,
+        /// Roughness of EON in [0, 1]; 0 is Lambert's lobe.
+        roughness: f64,
     },
     /// A GGX lobe, and perhaps a Lambert lobe added to it.
     Ggx {
@@ -254,7 +256,13 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
 
 fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
     match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
-        "diffuse" => Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)? }),
+        "diffuse" => {
+            Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)?, roughness: 0.0 })
+        }
+        "eon" => Ok(CaseMaterial::Diffuse {
+            albedo: fields.color("albedo", 1.0)?,
+            roughness: fields.share("diffuse_roughness")?,
+        }),
         bsdf @ ("ggx" | "coat") => {
             let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
                 if fields.has("alpha") {
@@ -281,10 +289,10 @@ fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
             let coat = if bsdf == "coat" { Some(CaseCoat::read(fields)?) } else { None };
             Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat })
         }
-        other => {
-            Err(fields
-                .error("bsdf", &format!("\"{other}\" is not known; \"ggx\", \"coat\" and \"diffuse\" are")))
-        }
+        other => Err(fields.error(
+            "bsdf",
+            &format!("\"{other}\" is not known; \"ggx\", \"coat\", \"diffuse\" and \"eon\" are"),
+        )),
     }
 }
 
@@ -463,7 +471,9 @@ impl Case {
     fn surface(&self) -> Result<Surface, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         match &self.material {
-            CaseMaterial::Diffuse { albedo } => Ok(Surface { diffuse_albedo: *albedo, ..Surface::default() }),
+            &CaseMaterial::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
+                Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })
+            }
             CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
                 unsupported("anisotropic GGX is not supported yet".into())
             }
@@ -475,6 +485,7 @@ impl Case {
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
                 alpha: alpha.x,
+                diffuse_roughness: 0.0,
                 interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
             }),

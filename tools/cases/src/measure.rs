@@ -12,7 +12,7 @@ pub struct Family {
     pub shape: &'static str,
     /// Whether the light has a texture.
     pub textured: bool,
-    /// `diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
+    /// `diffuse`, `rough diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
     pub material: &'static str,
 }
 
@@ -25,7 +25,8 @@ impl Family {
             CaseShape::Polygon { texture: Some(_), .. } | CaseShape::Disk { texture: Some(_), .. }
         );
         let material = match &case.material {
-            CaseMaterial::Diffuse { .. } => "diffuse",
+            CaseMaterial::Diffuse { roughness: 0.0, .. } => "diffuse",
+            CaseMaterial::Diffuse { .. } => "rough diffuse",
             CaseMaterial::Ggx { coat: Some(_), .. } => "coat",
             CaseMaterial::Ggx { albedo: Some(_), coupled: true, .. } => "ggx over diffuse",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {

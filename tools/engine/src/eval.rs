@@ -130,11 +130,13 @@ pub(crate) fn subsets(
 }
 
 /// What layers of surfaces may need.
-pub(crate) const LAYERS: Effects = Effects::COAT.union(Effects::COAT_NORMAL).union(Effects::MODEL);
+pub(crate) const LAYERS: Effects =
+    Effects::COAT.union(Effects::COAT_NORMAL).union(Effects::DIFFUSE_ROUGHNESS).union(Effects::MODEL);
 
 /// What a surface's layers need.
 pub(crate) fn layer_effects(surface: &Surface) -> Effects {
     let mut effects = Effects::empty();
+    effects.set(Effects::DIFFUSE_ROUGHNESS, surface.diffuse_roughness > 0.0);
     if let Some(interface) = surface.interface {
         effects |= Effects::COUPLED;
         effects.set(Effects::COUPLED_BY_ALBEDO, interface.by_albedo);
@@ -165,7 +167,8 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         coat_roughness: coat.alpha.sqrt() as f32,
         interface_f0,
         interface_f90,
-        reserved: [0.0; 2],
+        diffuse_roughness: surface.diffuse_roughness as f32,
+        reserved: 0.0,
     }
 }
 

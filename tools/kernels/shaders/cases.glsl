@@ -19,7 +19,8 @@ struct ArealightGpuCase {
     float coat_roughness;
     float interface_f0;
     float interface_f90;
-    vec2 reserved;
+    float diffuse_roughness;
+    float reserved;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -35,7 +36,7 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness, given.interface_f0, given.interface_f90,
+                            given.roughness, given.interface_f0, given.interface_f90, given.diffuse_roughness,
                             ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness));
 }
 

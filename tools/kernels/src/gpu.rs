@@ -78,8 +78,10 @@ pub struct GpuCase {
     pub interface_f0: f32,
     /// At grazing incidence.
     pub interface_f90: f32,
+    /// Roughness of the diffuse lobe; 0 is Lambert's.
+    pub diffuse_roughness: f32,
     /// Zero.
-    pub reserved: [f32; 2],
+    pub reserved: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.

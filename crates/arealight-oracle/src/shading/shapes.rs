@@ -11,6 +11,7 @@ use crate::polygon::{above_horizon, emitted};
 use crate::sphere::{self, Sphere};
 use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
+use arealight::table::share_above_surface;
 use arealight::{Horizon, Light, LightShape, LightTable, LightTexture, Quality, TubeEnds};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
@@ -43,12 +44,13 @@ pub fn shape_ltc_on(
         DVec3::splat(form_factor.min(1.0))
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    let (inverse, part) = diffuse::lobe(quality, table, surface, &frame);
-    let diffuse = match surface.interface {
-        None => DVec3::splat(seen.lambert_form_factor()),
-        Some(_) => lobe(&inverse, 1.0),
+    let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
+    let diffuse = if inverse == DMat3::IDENTITY {
+        DVec3::splat(seen.lambert_form_factor())
+    } else {
+        lobe(&inverse, share_above_surface(&inverse))
     };
-    let base = surface.diffuse_albedo * part * diffuse + glossy;
+    let base = albedo * diffuse + glossy;
     Some(light.radiance.as_dvec3() * coated(quality, table, surface, &frame, base, lobe))
 }
 

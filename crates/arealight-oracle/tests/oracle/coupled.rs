@@ -1,4 +1,4 @@
-//! A Lambert lobe below an interface: its albedo, its error, and its limits.
+//! A diffuse lobe below an interface, and a rough one: albedos, errors, and limits.
 
 use crate::common::{box_around, view_at};
 use arealight::LightTable;
@@ -36,7 +36,7 @@ fn its_albedo_is_what_the_fresnel_term_leaves() {
             }
             // The polynomial's own error, 1.2e-5, times f90 - f0
             assert!((fitted - exact).abs() < 2e-5, "{theta}, {f0}, {f90}: {fitted} {exact}");
-            assert!(fitted <= 1.0 + 1e-9 && fitted >= -1e-9);
+            assert!((-1e-9..=1.0 + 1e-9).contains(&fitted));
         }
     }
 }
@@ -123,5 +123,54 @@ fn without_reflectance_it_is_lambert_s_to_the_bit_and_by_albedo_it_is_scaled() {
         };
         let taken = exact(None) - exact(by_albedo);
         assert!((taken - (1.0 - part) * of_lobe(None)).abs() < 2.1e-3 * of_lobe(None) + 1e-6, "{view}");
+    }
+}
+
+fn rough(albedo: f64, diffuse_roughness: f64) -> Surface {
+    Surface { diffuse_albedo: DVec3::splat(albedo), diffuse_roughness, ..Surface::default() }
+}
+
+#[test]
+fn a_rough_lobe_of_white_reflects_all_and_its_albedo_is_the_truth_s() {
+    for theta in [0.0, 0.3, 0.9, 1.3, 1.5] {
+        for (albedo, roughness) in [(1.0, 1.0), (1.0, 0.3), (0.8, 0.5), (0.2, 1.0), (0.2, 0.05), (0.0, 1.0)] {
+            let surface = rough(albedo, roughness);
+            let (mut fitted, mut exact) = (0.0, 0.0);
+            for face in box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5)) {
+                let light = RelativeLight { two_sided: false, ..light(face.to_vec()) };
+                fitted += ltc(&TABLE, &surface, DVec3::Z, view_at(theta), &light).x;
+                exact += truth(&surface, DVec3::Z, view_at(theta), &light, &Settings::default()).radiance.x;
+            }
+            // The single bounce's polynomial: 4e-4
+            assert!((fitted - exact).abs() < 5e-4, "{theta}, {albedo}, {roughness}: {fitted} {exact}");
+            if albedo == 1.0 {
+                assert!((exact - 1.0).abs() < 1e-6, "{theta}, {roughness}: {exact}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_error_of_a_rough_lobe_is_the_stated_one() {
+    // The last below an interface, whose shear and lean are one after the other
+    for (albedo, f0, bound, lambert_errs) in
+        [(0.8, None, 1.2e-3, 5e-3), (0.18, None, 0.25e-3, 1.5e-3), (0.8, Some(0.04), 1.4e-3, 5e-3)]
+    {
+        let interface = f0.map(|f0| Interface { f0, f90: 1.0, by_albedo: false });
+        let mut roughness = Stream::from_seed(5);
+        let (mut fitted, mut lambert) = (0.0, 0.0);
+        for (view, light) in quads(500) {
+            let surface = Surface { interface, ..rough(albedo, roughness.unit()) };
+            let settings = Settings { relative_tolerance: 1e-6, ..Settings::default() };
+            let exact = truth(&surface, DVec3::Z, view, &light, &settings).radiance.x;
+            fitted += (ltc(&TABLE, &surface, DVec3::Z, view, &light).x - exact).abs() / 500.0;
+            lambert += (ltc(&TABLE, &Surface { diffuse_roughness: 0.0, ..surface }, DVec3::Z, view, &light)
+                .x
+                - exact)
+                .abs()
+                / 500.0;
+        }
+        println!("rough diffuse, albedo {albedo}, {f0:?}: mean {fitted:.2e}, Lambert's lobe {lambert:.2e}");
+        assert!(fitted < bound && lambert > lambert_errs, "{albedo}: {fitted:e}, {lambert:e}");
     }
 }

@@ -81,6 +81,7 @@ fn every_structure_has_the_same_offsets() {
                 coat_roughness,
                 interface_f0,
                 interface_f90,
+                diffuse_roughness,
                 reserved
             ),
         ),
