@@ -155,10 +155,10 @@ impl<'a> Builder<'a> {
     /// Nodes, and the order of the leaves' boxes.
     fn build(mut self) -> (Vec<GpuBvhNode>, Vec<u32>) {
         let mut tasks = vec![];
-        if !self.boxes.is_empty() {
-            tasks.push(Task { range: 0..self.order.len(), depth: 1 });
-        } else {
+        if self.boxes.is_empty() {
             self.nodes.push(EMPTY_NODE);
+        } else {
+            tasks.push(Task { range: 0..self.order.len(), depth: 1 });
         }
         // A node's descendants are made right after it
         let mut inner = vec![];
