@@ -40,6 +40,14 @@ const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 
+// Which kinds of lights there may be beside convex quads without an image.
+const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
+const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
+const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
+const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
+const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
+const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
+
 // Values of the constants of the quality, which are 0 else.
 const int FORM_FACTOR_DIFFERENCE = 1;
 const int HORIZON_BOTH = 1;

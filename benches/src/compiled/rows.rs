@@ -170,9 +170,14 @@ pub fn rows() -> Vec<Row> {
         picks("quads", "exact, picks of 1 ray", none, 1),
         picks("quads", "exact, picks of 4 rays", none, 4),
         picks("every kind", "exact, picks of 1 ray", every_kind, 1),
-        shadow_rays("every kind", "1 ray", LOBES, 1),
-        shadow_rays("every kind", "4 rays", LOBES, 4),
-        shadow_rays("every kind", "1 ray, coat with its own normal", LOBES | COATS, 1),
+        shadow_rays("quads", "1 ray", none, LOBES, 1),
+        shadow_rays("quads", "4 rays", none, LOBES, 4),
+        shadow_rays("quads", "1 ray, coat with its own normal", none, LOBES | COATS, 1),
+        shadow_rays("quads and polygons", "1 ray", polygon, LOBES, 1),
+        shadow_rays("quads and disks", "1 ray", disk, LOBES, 1),
+        shadow_rays("every kind", "1 ray", every_kind, LOBES, 1),
+        shadow_rays("every kind", "4 rays", every_kind, LOBES, 4),
+        shadow_rays("every kind", "1 ray, coat with its own normal", every_kind, LOBES | COATS, 1),
         shadow_history("by the camera", ShadowHistory::Camera),
         shadow_history("by motion vectors", ShadowHistory::MotionVectors),
         shadow_filter("off", ShadowFilter::Off, ShadowHistory::Off),
@@ -233,9 +238,16 @@ fn picks(lights: &'static str, level: &'static str, kinds: Effects, rays: u32) -
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
 }
 
-/// Rays through [`arealight::Blockers`].
-fn shadow_rays(lights: &'static str, level: &'static str, surfaces: Effects, rays: u32) -> Row {
-    let specialization = plan::shadow_rays_specialization(shadowed(surfaces, rays));
+/// Rays through [`arealight::Blockers`]; `kinds` of lights beside quads.
+fn shadow_rays(
+    lights: &'static str,
+    level: &'static str,
+    kinds: Effects,
+    surfaces: Effects,
+    rays: u32,
+) -> Row {
+    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
+    let specialization = plan::shadow_rays_specialization(shadowed(surfaces, rays), frame);
     row(&kernels::SHADOW_RAYS, lights, level, None, specialization)
 }
 

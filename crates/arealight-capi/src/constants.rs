@@ -91,6 +91,18 @@ pub const AREALIGHT_RADIANCE_RGBA32F: u32 = 0;
 /// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
 pub const AREALIGHT_RADIANCE_RGBA16F: u32 = 1;
 
+/// The mean of a pixel's shadow rays as it is: unbiased, with noise in penumbras.
+pub const AREALIGHT_SHADOW_FILTER_OFF: u32 = 0;
+/// A mean over neighbours in the same plane, as wide as a part of the penumbra.
+pub const AREALIGHT_SHADOW_FILTER_GATHER: u32 = 1;
+
+/// One frame's rays.
+pub const AREALIGHT_SHADOW_HISTORY_OFF: u32 = 0;
+/// Those of up to sixteen frames, found again by the camera's motion alone.
+pub const AREALIGHT_SHADOW_HISTORY_CAMERA: u32 = 1;
+/// Likewise, by motion vectors of the host's.
+pub const AREALIGHT_SHADOW_HISTORY_MOTION: u32 = 2;
+
 /// The table is kept in 32-bit floats, 16 bytes a texel.
 pub const AREALIGHT_TABLE_RGBA32F: u32 = 0;
 /// In 16-bit floats, 8 bytes a texel, at 5e-4 of a light more error.

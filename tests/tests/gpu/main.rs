@@ -7,6 +7,7 @@ mod bits;
 mod blockers;
 mod c_api;
 mod c_pictures;
+mod c_shadows;
 mod coat;
 mod coat_tiles;
 mod constants;

@@ -71,7 +71,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 17] {
+fn layouts() -> [Layout; 21] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
@@ -84,7 +84,7 @@ fn layouts() -> [Layout; 17] {
         }
         ArealightPassOptions {
             surfaces, form_factor, horizon, fresnel, lobes, footprint, position, output,
-            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
+            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads, shadow_rays,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
@@ -97,12 +97,16 @@ fn layouts() -> [Layout; 17] {
         ArealightImage { view, layout, reserved }
         ArealightResources {
             lights, light_vertices, shapes, position, normal, base_color, specular, coat, light_textures, radiance,
-            glossy, lobe_horizons, tile_lists,
+            glossy, lobe_horizons, tile_lists, shadow_picks,
         }
         ArealightFrame {
-            width, height, camera, lights, reserved, position_from_clip, tile_lists,
+            width, height, camera, lights, seed, position_from_clip, tile_lists,
         }
         ArealightTileMemory { size, usage, reserved }
+        ArealightShadowOptions { filter, history, output }
+        ArealightShadowResources { shadow, radiance, history, motion, blocker_nodes, blocker_triangles }
+        ArealightShadowFrame { frame, host_set, origin_shift, reserved }
+        ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
         ArealightTextureOptions { width, height, layers, reserved }
         ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
         ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }

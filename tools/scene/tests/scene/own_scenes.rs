@@ -1,5 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
+use crate::hundred_lamps::Surface;
 use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
@@ -189,12 +190,22 @@ fn the_shadows_are_of_one_rectangle_on_two_floors() {
 
 #[test]
 fn the_hundred_lamps_are_quads_above_boxes() {
-    let scene = load("hundred-lamps.glb");
+    for (name, surface) in
+        [("hundred-lamps.glb", Surface::Satin), ("hundred-lamps-metal.glb", Surface::Metal)]
+    {
+        let scene = load(name);
+        let floor = &scene.materials[scene.triangles[0].material as usize].material;
+        let is_metal = surface == Surface::Metal;
+        assert_eq!((floor.roughness, floor.metalness), (surface.roughness(), f32::from(u8::from(is_metal))));
+        check_hundred_lamps(&scene);
+    }
+}
+
+fn check_hundred_lamps(scene: &Scene) {
     assert_eq!(scene.lights.len() as u32, hundred_lamps::ROWS * hundred_lamps::ROWS);
     assert!(scene.lights.iter().all(|light| light.shape.is_convex_quad() && !light.two_sided));
     let (boxes, floor) = (12 * hundred_lamps::BOXES as usize, 2);
     assert_eq!(scene.triangles.iter().filter(|triangle| !triangle.lamp).count(), boxes + floor);
-    assert!(scene.materials.iter().any(|m| m.material.roughness == hundred_lamps::ROUGHNESS));
     // No lamp is in a box: all hang above them
     let heights =
         scene.triangles.iter().filter(|triangle| !triangle.lamp).flat_map(|t| t.positions.map(|p| p.y));
