@@ -34,6 +34,8 @@ const uint EFFECT_COUPLED_BY_ALBEDO = 65536u;
 const uint EFFECT_COAT_BY_ALBEDO = 131072u;
 // Some diffuse lobe is rough.
 const uint EFFECT_DIFFUSE_ROUGHNESS = 262144u;
+// Some surface's specular lobe is stretched along a tangent.
+const uint EFFECT_ANISOTROPY = 1048576u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -62,6 +64,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
 #define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)
+#define AREALIGHT_ANISOTROPY ((EFFECTS & EFFECT_ANISOTROPY) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS
 #define AREALIGHT_TEXTURED_POLYGONS ((EFFECTS & EFFECT_TEXTURED) != 0u)

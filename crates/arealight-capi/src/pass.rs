@@ -394,6 +394,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_COUPLED_BY_ALBEDO, Effects::COUPLED_BY_ALBEDO),
             (c::AREALIGHT_EFFECT_COAT_BY_ALBEDO, Effects::COAT_BY_ALBEDO),
             (c::AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS, Effects::DIFFUSE_ROUGHNESS),
+            (c::AREALIGHT_EFFECT_ANISOTROPY, Effects::ANISOTROPY),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -54,6 +54,27 @@ pub struct Surface {
     pub interface: Option<Interface>,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
+    /// Where the GGX lobe is stretched along a tangent; [`Surface::alpha`] is that across it then.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// A GGX distribution of two alphas, of which this is one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anisotropy {
+    /// Any length and any angle to the surface, onto which it is projected; zero and one along the normal count as some direction of
+    /// the surface.
+    pub tangent: DVec3,
+    /// GGX alpha along it, not below [`arealight::MIN_ALPHA`].
+    pub alpha: f64,
+}
+
+impl Anisotropy {
+    /// Alphas along the tangent and across it of a roughness and an `anisotropyStrength`, both in [0, 1], of
+    /// `KHR_materials_anisotropy`.
+    pub fn gltf_alphas(roughness: f64, strength: f64) -> [f64; 2] {
+        let alpha = roughness * roughness;
+        [alpha + (1.0 - alpha) * strength * strength, alpha].map(|alpha| alpha.max(arealight::MIN_ALPHA))
+    }
 }
 
 impl Default for Surface {
@@ -67,6 +88,7 @@ impl Default for Surface {
             diffuse_roughness: 0.0,
             interface: None,
             coat: None,
+            anisotropy: None,
         }
     }
 }
@@ -133,6 +155,7 @@ impl Material {
                 normal: None,
                 by_albedo: false,
             }),
+            anisotropy: None,
         }
     }
 

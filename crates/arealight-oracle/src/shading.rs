@@ -1,6 +1,7 @@
 //! A polygon light on a surface: the truth by cubature of the true BRDF, and the answer of the fitted table
 //! in float64, the twin of the GLSL.
 
+mod anisotropy;
 mod coat;
 mod diffuse;
 pub mod footprint;
@@ -16,7 +17,7 @@ pub use textured::transformed_image_integral;
 use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
 use crate::formula::ggx_formula;
 use crate::frame::SurfaceFrame;
-use crate::ggx::Ggx;
+use crate::ggx::{AnisotropicGgx, Ggx};
 use crate::material::Surface;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
@@ -119,7 +120,7 @@ fn uncoated_truth(
         Region::default()
     };
     let shown = |direction| image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
-    let signed = reflected(surface, frame.view(), &region, settings, shown);
+    let signed = reflected(surface, &frame, &region, settings, shown);
     // A two-sided light seen from behind has a negative solid angle
     Truth {
         radiance: light.radiance
@@ -133,18 +134,17 @@ fn uncoated_truth(
 /// with the other sign.
 fn reflected(
     surface: &Surface,
-    view: DVec3,
+    frame: &SurfaceFrame,
     region: &Region,
     settings: &Settings,
     shown: impl Fn(DVec3) -> DVec3,
 ) -> Truth {
-    let region = region.clipped(DVec3::Z);
-    let lobe = Ggx { alpha: surface.alpha };
+    let (region, view) = (region.clipped(DVec3::Z), frame.view());
     // Integrate each lobe over the light
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
         Estimate::default()
     } else {
-        let by_albedo = diffuse::albedo_part(surface, view, settings);
+        let by_albedo = diffuse::albedo_part(surface, frame, settings);
         region.integrate(settings, angles, |direction| {
             let part = diffuse::part(surface.interface, by_albedo, view, direction);
             let albedo = diffuse::rough(surface.diffuse_albedo, surface.diffuse_roughness, view, direction);
@@ -155,10 +155,14 @@ fn reflected(
         Estimate::default()
     } else {
         let grazing = DVec3::splat(surface.f90) - surface.f0;
-        integrate_lobe(lobe, view, &region, settings, |direction, value| {
+        let weigh = |direction: DVec3, value: f64| {
             let fresnel = surface.f0 + grazing * Ggx::schlick_weight(view, direction);
             (shown(direction) * fresnel * value).to_array()
-        })
+        };
+        match AnisotropicGgx::of(surface, frame) {
+            None => integrate_lobe(Ggx { alpha: surface.alpha }, view, &region, settings, weigh),
+            Some(lobe) => integrate_lobe(lobe, view, &region, settings, weigh),
+        }
     };
     // Add them
     let sum = |diffuse: [f64; 3], glossy: [f64; 3]| DVec3::from_array(diffuse) + DVec3::from_array(glossy);
@@ -193,15 +197,52 @@ pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settin
 }
 
 /// What a GGX lobe with Schlick's Fresnel term reflects of light from everywhere.
-fn hemisphere_albedo(alpha: f64, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
+fn hemisphere_albedo(lobe: impl Microfacets, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
     let hemisphere = Region::sphere().clipped(DVec3::Z);
-    let [lobe, schlick] = lobe_integrals(Ggx { alpha }, view, &hemisphere, settings).value;
+    let parts = integrate_lobe(lobe, view, &hemisphere, settings, |direction, value| {
+        [value, value * Ggx::schlick_weight(view, direction)]
+    });
+    let [lobe, schlick] = parts.value;
     f0 * lobe + (f90 - f0) * schlick
+}
+
+/// A lobe as its integration needs it.
+trait Microfacets: Copy {
+    /// `f cos` without Fresnel term.
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64;
+    /// The tangent of a half vector from the normal, in units of alpha, times its cosine.
+    fn slope(&self, half: DVec3) -> DVec3;
+    /// The smaller alpha.
+    fn smallest_alpha(&self) -> f64;
+}
+
+impl Microfacets for Ggx {
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64 {
+        self.evaluate(view, light)
+    }
+    fn slope(&self, half: DVec3) -> DVec3 {
+        half.with_z(0.0) / self.alpha
+    }
+    fn smallest_alpha(&self) -> f64 {
+        self.alpha
+    }
+}
+
+impl Microfacets for AnisotropicGgx {
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64 {
+        self.evaluate(view, light)
+    }
+    fn slope(&self, half: DVec3) -> DVec3 {
+        (self.to_axis(half).truncate() / self.alpha).extend(0.0)
+    }
+    fn smallest_alpha(&self) -> f64 {
+        self.alpha.min_element()
+    }
 }
 
 /// Integrates what `weigh` makes of a direction and of `f cos` there.
 fn integrate_lobe<const N: usize>(
-    lobe: Ggx,
+    lobe: impl Microfacets,
     view: DVec3,
     region: &Region,
     settings: &Settings,
@@ -217,15 +258,16 @@ fn integrate_lobe<const N: usize>(
 /// The edges of a triangle in units of the scale on which the GGX lobe varies: that of D over the half
 /// vectors, `alpha + sin theta_h`; that of masking over the light's height, which goes from none to full
 /// within the smaller of alpha and `cos theta_view`; and half a radian.
-fn lengths_on_lobe(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
+fn lengths_on_lobe(lobe: impl Microfacets, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
     let directions = triangle.map(DVec3::normalize_or_zero);
     // Project the half vectors onto the surface: D is a function of their distance from the normal
-    let halves = directions.map(|light| (view + light).normalize_or_zero().with_z(0.0));
-    let half_scale = lobe.alpha + distance_to_origin(&halves);
+    let halves = directions.map(|light| lobe.slope((view + light).normalize_or_zero()));
+    let half_scale = 1.0 + distance_to_origin(&halves);
+    let alpha = lobe.smallest_alpha();
     let lowest = directions[0].z.min(directions[1].z).min(directions[2].z).max(0.0);
-    let height_scale = lowest + view.z.min(lobe.alpha) + FINEST_HEIGHT;
+    let height_scale = lowest + view.z.min(alpha) + FINEST_HEIGHT;
     let (steps, angles) = (edges(&halves), edges(&directions));
-    let finest = 1e-2 * lobe.alpha * lobe.alpha;
+    let finest = 1e-2 * alpha * alpha;
     std::array::from_fn(|i| {
         // Near grazing the lobe narrows to a fan: the error estimate sees to what is finer than this
         let step = if angles[i] > finest { steps[i] / half_scale } else { 0.0 };
@@ -320,6 +362,19 @@ fn fitted_sample(quality: Quality, table: &LightTable, alpha: f64, cos_view: f64
     }
 }
 
+/// Likewise, for the specular lobe of a surface.
+fn surface_sample(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+) -> TableSample {
+    match AnisotropicGgx::of(surface, frame) {
+        None => fitted_sample(quality, table, surface.alpha, frame.cos_view()),
+        Some(lobe) => anisotropy::sample(quality, table, &lobe, frame.view()),
+    }
+}
+
 /// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel, of which a part
 /// lies above the surface.
 fn glossy_part(
@@ -329,7 +384,7 @@ fn glossy_part(
     frame: &SurfaceFrame,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
-    let sample = fitted_sample(quality, table, surface.alpha, frame.cos_view());
+    let sample = surface_sample(quality, table, surface, frame);
     let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;

@@ -48,6 +48,9 @@ bitflags::bitflags! {
         const COAT_BY_ALBEDO = 1 << 17;
         /// Some diffuse lobe is rough, EON instead of Lambert's. No layout of ours has its roughness: a G-buffer of the host's own does.
         const DIFFUSE_ROUGHNESS = 1 << 18;
+        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it. No layout of ours has them: a G-buffer of the host's
+        /// own does.
+        const ANISOTROPY = 1 << 20;
     }
 }
 
@@ -69,7 +72,8 @@ impl Effects {
         .union(Self::COAT)
         .union(Self::COAT_NORMAL)
         .union(Self::MODEL)
-        .union(Self::DIFFUSE_ROUGHNESS);
+        .union(Self::DIFFUSE_ROUGHNESS)
+        .union(Self::ANISOTROPY);
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -91,6 +95,7 @@ impl Effects {
             (Self::COUPLED_BY_ALBEDO, "coupled_by_albedo"),
             (Self::COAT_BY_ALBEDO, "coat_by_albedo"),
             (Self::DIFFUSE_ROUGHNESS, "diffuse_roughness"),
+            (Self::ANISOTROPY, "anisotropy"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

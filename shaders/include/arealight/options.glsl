@@ -35,6 +35,11 @@
 #define AREALIGHT_COAT_BY_ALBEDO 0
 #endif
 
+// The specular lobe is stretched along a tangent, ArealightSurface.anisotropy.
+#ifndef AREALIGHT_ANISOTROPY
+#define AREALIGHT_ANISOTROPY 0
+#endif
+
 // Some light emits from both sides: those whose record says so.
 #ifndef AREALIGHT_TWO_SIDED
 #define AREALIGHT_TWO_SIDED 0
@@ -109,6 +114,7 @@ const bool AREALIGHT_HAS_ROUGH_DIFFUSE = bool(AREALIGHT_DIFFUSE_ROUGHNESS);
 const bool AREALIGHT_HAS_COAT = bool(AREALIGHT_COAT);
 const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
 const bool AREALIGHT_COATS_BY_ALBEDO = bool(AREALIGHT_COAT_BY_ALBEDO);
+const bool AREALIGHT_HAS_ANISOTROPY = bool(AREALIGHT_ANISOTROPY);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);

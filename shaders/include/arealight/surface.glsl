@@ -10,6 +10,13 @@ struct ArealightCoat {
     float roughness; // perceptual, in [0, 1]
 };
 
+// A specular lobe of two roughnesses (with AREALIGHT_ANISOTROPY). A highlight is the longer along the tangent the more this exceeds
+// ArealightSurface.roughness, which is that across it.
+struct ArealightAnisotropy {
+    vec3 tangent;    // of any length, projected onto the surface; zero or along the normal: some direction of the surface
+    float roughness; // perceptual, along the tangent, in [0, 1]
+};
+
 // A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added or with AREALIGHT_COUPLED coupled; and what lies
 // on them.
 struct ArealightSurface {
@@ -26,6 +33,7 @@ struct ArealightSurface {
     float interface_f90; // at grazing incidence, in [0, 1]
     float diffuse_roughness; // of EON, in [0, 1]; 0: Lambert's lobe. Read with AREALIGHT_DIFFUSE_ROUGHNESS alone
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
+    ArealightAnisotropy anisotropy; // read with AREALIGHT_ANISOTROPY alone
 };
 
 // The shading frame: the normal, the view's projection onto the surface, and their cross product.
@@ -46,6 +54,20 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.f90 = mix(dielectric_f90, 1.0, metalness);
     surface.interface_f0 = max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b));
     surface.interface_f90 = dielectric_f90;
+}
+
+// Perceptual roughness along the tangent, of KHR_materials_anisotropy: of a roughness, which is that across it, and an
+// anisotropyStrength, both in [0, 1].
+float arealight_gltf_anisotropy(float roughness, float strength) {
+    return sqrt(mix(roughness * roughness, 1.0, strength * strength));
+}
+
+// Perceptual roughness along the tangent and across it of OpenPBR's specular_roughness and specular_roughness_anisotropy, both in
+// [0, 1]. The sum of the squared alphas is that of the isotropic lobe.
+vec2 arealight_openpbr_anisotropy(float roughness, float anisotropy) {
+    float aspect = 1.0 - anisotropy;
+    float along = roughness * roughness * sqrt(2.0 / (1.0 + aspect * aspect));
+    return sqrt(vec2(min(along, 1.0), aspect * along));
 }
 
 // What a coat reflects at normal incidence: that of an index of refraction of 1.5.

@@ -136,6 +136,8 @@ fn buffers() -> Buffers {
             interface_f90: glossy,
             diffuse_roughness: surface.number(&mut random),
             reserved: 0.0,
+            tangent: surface.vector(&mut random),
+            tangent_roughness: surface.number(&mut random),
         });
     }
     buffers

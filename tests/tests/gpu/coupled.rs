@@ -41,6 +41,7 @@ fn layered(random: &mut Random, kind: Kind) -> Surface {
             normal: None,
             by_albedo: true,
         }),
+        ..Surface::default()
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! One binary, since each links the engine and the oracle. A test's name begins with its module: `tiles::…`.
 
+mod anisotropy;
 mod arcs;
 mod bits;
 mod blockers;

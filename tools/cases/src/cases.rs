@@ -8,7 +8,7 @@ mod coat;
 mod fields;
 
 use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
-use arealight_oracle::material::{Interface, Surface};
+use arealight_oracle::material::{Anisotropy, Interface, Surface};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
@@ -474,20 +474,25 @@ impl Case {
             &CaseMaterial::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
                 Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })
             }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
-                unsupported("anisotropic GGX is not supported yet".into())
+            CaseMaterial::Ggx { alpha, .. } if alpha.min_element() < MIN_ALPHA => {
+                let least = alpha.min_element();
+                unsupported(format!("alpha {least} is below {MIN_ALPHA}, the smallest that is shaded"))
             }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
-                unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
+            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y && self.tangent.is_none() => {
+                unsupported("alpha_x and alpha_y differ, and there is no tangent".into())
             }
             CaseMaterial::Ggx { alpha, f0, albedo, coat, coupled } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
-                alpha: alpha.x,
+                alpha: alpha.y,
                 diffuse_roughness: 0.0,
                 interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
+                anisotropy: self
+                    .tangent
+                    .filter(|_| alpha.x != alpha.y)
+                    .map(|tangent| Anisotropy { tangent, alpha: alpha.x }),
             }),
         }
     }

@@ -129,11 +129,14 @@ pub(crate) fn subsets(
     subsets
 }
 
-/// What layers of surfaces may need.
-pub(crate) const LAYERS: Effects =
-    Effects::COAT.union(Effects::COAT_NORMAL).union(Effects::DIFFUSE_ROUGHNESS).union(Effects::MODEL);
+/// What surfaces may need beyond two isotropic lobes, added.
+pub(crate) const LAYERS: Effects = Effects::COAT
+    .union(Effects::COAT_NORMAL)
+    .union(Effects::DIFFUSE_ROUGHNESS)
+    .union(Effects::MODEL)
+    .union(Effects::ANISOTROPY);
 
-/// What a surface's layers need.
+/// What of it a surface needs.
 pub(crate) fn layer_effects(surface: &Surface) -> Effects {
     let mut effects = Effects::empty();
     effects.set(Effects::DIFFUSE_ROUGHNESS, surface.diffuse_roughness > 0.0);
@@ -146,6 +149,7 @@ pub(crate) fn layer_effects(surface: &Surface) -> Effects {
         effects.set(Effects::COAT_NORMAL, coat.normal.is_some());
         effects.set(Effects::COAT_BY_ALBEDO, coat.by_albedo);
     }
+    effects.set(Effects::ANISOTROPY, surface.anisotropy.is_some());
     effects
 }
 
@@ -169,6 +173,9 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         interface_f90,
         diffuse_roughness: surface.diffuse_roughness as f32,
         reserved: 0.0,
+        tangent: surface.anisotropy.map_or([0.0; 3], |anisotropy| rounded(anisotropy.tangent)),
+        tangent_roughness: surface.anisotropy.map_or(surface.alpha, |anisotropy| anisotropy.alpha).sqrt()
+            as f32,
     }
 }
 

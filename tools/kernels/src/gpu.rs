@@ -82,6 +82,10 @@ pub struct GpuCase {
     pub diffuse_roughness: f32,
     /// Zero.
     pub reserved: f32,
+    /// Tangent of the anisotropy, of any length.
+    pub tangent: [f32; 3],
+    /// Perceptual roughness along it.
+    pub tangent_roughness: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.

@@ -18,6 +18,7 @@ layout(constant_id = 6) const bool DIFFERENCE = false;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 8) const bool COAT = false;
 layout(constant_id = 9) const bool COAT_NORMAL = false;
+layout(constant_id = 10) const bool ANISOTROPY = false;
 #define AREALIGHT_DIFFUSE DIFFUSE
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
@@ -28,6 +29,7 @@ layout(constant_id = 9) const bool COAT_NORMAL = false;
 #define AREALIGHT_FOOTPRINT FOOTPRINT
 #define AREALIGHT_COAT COAT
 #define AREALIGHT_COAT_NORMAL COAT_NORMAL
+#define AREALIGHT_ANISOTROPY ANISOTROPY
 #endif
 
 #include "arealight/arealight.glsl"
@@ -104,6 +106,7 @@ vec3 shade(int first) {
     arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a, numbers[first + 5].rgb,
                                      numbers[first + 5].a);
     surface.coat = ArealightCoat(numbers[first + 14].xyz, numbers[first + 14].w, numbers[first + 3].y);
+    surface.anisotropy = ArealightAnisotropy(numbers[first + 14].xyz, numbers[first + 3].z);
     ArealightPoint point = arealight_point(surface);
 
     uvec4 counts = floatBitsToUint(numbers[first + 6]);

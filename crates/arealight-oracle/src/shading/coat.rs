@@ -3,6 +3,7 @@
 use super::{Truth, fitted_sample, hemisphere_albedo};
 use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
+use crate::ggx::Ggx;
 use crate::material::{Coat, Surface};
 use arealight::table::share_above_surface;
 use arealight::{LightTable, Quality};
@@ -27,7 +28,7 @@ pub(super) fn layered<E>(
     let own_view = SurfaceFrame::new(own_normal, view);
     // What the coat's lobe counts, and what it takes from those below
     let (f0, weight, share) = if coat.by_albedo {
-        let albedo = hemisphere_albedo(coat.alpha, Coat::F0, 1.0, own_view.view(), settings);
+        let albedo = hemisphere_albedo(Ggx { alpha: coat.alpha }, Coat::F0, 1.0, own_view.view(), settings);
         (Coat::F0, coat.weight, coat.weight * albedo)
     } else {
         let share = coat.share(own_view.cos_view());

@@ -1,9 +1,9 @@
 //! A diffuse lobe, Lambert's or rough, below an interface, in float64: the truth, and its fitted lobe.
 
-use super::{fitted_sample, hemisphere_albedo};
+use super::{hemisphere_albedo, surface_sample};
 use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
-use crate::ggx::Ggx;
+use crate::ggx::{AnisotropicGgx, Ggx};
 use crate::material::{Interface, Surface};
 use arealight::{LightTable, Quality};
 use glam::{DMat3, DVec3};
@@ -20,10 +20,14 @@ pub(super) fn part(interface: Option<Interface>, by_albedo: f64, view: DVec3, di
 }
 
 /// What the true albedo of the surface's GGX lobe at a view leaves, where that is asked for; else 1.
-pub(super) fn albedo_part(surface: &Surface, view: DVec3, settings: &Settings) -> f64 {
+pub(super) fn albedo_part(surface: &Surface, frame: &SurfaceFrame, settings: &Settings) -> f64 {
     match surface.interface {
         Some(Interface { f0, f90, by_albedo: true }) => {
-            1.0 - hemisphere_albedo(surface.alpha, f0, f90, view, settings)
+            let (view, isotropic) = (frame.view(), Ggx { alpha: surface.alpha });
+            1.0 - match AnisotropicGgx::of(surface, frame) {
+                None => hemisphere_albedo(isotropic, f0, f90, view, settings),
+                Some(lobe) => hemisphere_albedo(lobe, f0, f90, view, settings),
+            }
         }
         _ => 1.0,
     }
@@ -48,7 +52,7 @@ pub(super) fn lobe(
     };
     let Some(Interface { f0, f90, by_albedo }) = surface.interface else { return (inverse, albedo) };
     if by_albedo {
-        let sample = fitted_sample(quality, table, surface.alpha, cos_view);
+        let sample = surface_sample(quality, table, surface, frame);
         return (inverse, albedo * (1.0 - (f0 * sample.albedo + (f90 - f0) * sample.schlick)));
     }
     let x = 1.0 - cos_view;

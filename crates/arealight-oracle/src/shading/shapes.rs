@@ -85,7 +85,7 @@ fn uncoated_truth(
     let seen = LocalShape::new(light, &frame)?;
     let radiance = light.radiance.as_dvec3();
     let at = |count| {
-        let signed = reflected(surface, frame.view(), &seen.region(count), settings, |_| DVec3::ONE);
+        let signed = reflected(surface, &frame, &seen.region(count), settings, |_| DVec3::ONE);
         Truth { radiance: radiance * signed.radiance.abs(), error: radiance * signed.error, ..signed }
     };
     let [coarse, middle, fine] = [48, 96, 192].map(at);
