@@ -63,6 +63,16 @@ struct CPasses<'a> {
     shadow: *mut ArealightShadowPass,
 }
 
+/// An image as C has it.
+fn image(image: &Image, usage: Usage) -> ArealightImage {
+    ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
+}
+
+/// All of a buffer as C has it.
+fn whole(buffer: &Buffer) -> ArealightBuffer {
+    ArealightBuffer { buffer: buffer.handle().as_raw(), offset: 0, range: AREALIGHT_WHOLE_SIZE }
+}
+
 impl<'a> CPasses<'a> {
     fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>, shadow_rays: u32) -> Self {
         let options = ArealightPassOptions { shadow_rays, ..ArealightPassOptions::default() };
@@ -120,16 +130,6 @@ impl<'a> CPasses<'a> {
         ];
         let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
         let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
-        let image = |image: &Image, usage: Usage| ArealightImage {
-            view: image.view().as_raw(),
-            layout: usage.layout.as_raw().cast_unsigned(),
-            reserved: 0,
-        };
-        let whole = |buffer: &Buffer| ArealightBuffer {
-            buffer: buffer.handle().as_raw(),
-            offset: 0,
-            range: AREALIGHT_WHOLE_SIZE,
-        };
         let resources = ArealightResources {
             lights: whole(&lights),
             light_vertices: whole(&vertices),

@@ -71,7 +71,11 @@ impl View {
     fn stretched(&self, by: DVec2) -> Self {
         let flat = self.azimuth * by;
         let length = (self.sin * self.sin * flat.length_squared() + self.cos * self.cos).sqrt();
-        Self { azimuth: flat.normalize(), sin: self.sin * flat.length() / length, cos: self.cos / length }
+        Self {
+            azimuth: flat.normalize_or(DVec2::X),
+            sin: self.sin * flat.length() / length,
+            cos: self.cos / length,
+        }
     }
 
     /// The slopes of one of the visible normals of alpha 1: at (`across`, `along`) on the disk that they are seen on, seen from here.
