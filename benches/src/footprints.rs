@@ -302,22 +302,10 @@ fn far(engine: &Engine, truth: &dyn Fn(Quality, &EvalPoint) -> DVec3) -> Result<
     let towards = view.with_x(-view.x);
     let (u, v) = (DVec3::Y * 0.5, towards.cross(DVec3::Y) * -0.5);
     let vertices = [-u - v, u - v, u + v, v - u].map(|corner| towards * FAR + corner);
-    let lambert = Surface {
-        diffuse_albedo: DVec3::ONE,
-        f0: DVec3::ZERO,
-        f90: 0.0,
-        alpha: 1.0,
-        coat: None,
-        sheen: None,
-    };
-    let glossy = Surface {
-        diffuse_albedo: DVec3::ZERO,
-        f0: DVec3::ONE,
-        f90: 1.0,
-        alpha: 0.25,
-        coat: None,
-        sheen: None,
-    };
+    let lambert =
+        Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, ..Surface::default() };
+    let glossy =
+        Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha: 0.25, ..Surface::default() };
     // An absolute error of 1e-6 would be as much as these lights are
     let quality = Quality { form_factor: FormFactor::Difference, ..Quality::default() };
 

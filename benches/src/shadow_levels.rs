@@ -275,11 +275,14 @@ impl Truth {
         let mut picture = |seed, shadows| {
             let mut told = 0;
             view.pictures.begin()?;
-            view.pictures.renderer.reference(Reference { samples, seed, shadows }, |done| {
-                let steps = REFERENCE_STEPS * u64::from(done) / u64::from(samples);
-                progress(steps - told);
-                told = steps;
-            })?;
+            view.pictures.renderer.reference(
+                Reference { samples, seed, shadows, ..Reference::default() },
+                |done| {
+                    let steps = REFERENCE_STEPS * u64::from(done) / u64::from(samples);
+                    progress(steps - told);
+                    told = steps;
+                },
+            )?;
             view.pictures.radiance()
         };
         let (shadowed, unshadowed) = (picture(1, true)?, picture(1, false)?);

@@ -3,6 +3,9 @@
 
 // Rays through a binary hierarchy of boxes around triangles, as arealight::Blockers builds it. The including kernel defines BVH_NODES_BINDING
 // and the function bvh_meet_triangle.
+//
+// Nodes lie in the order in which rays come to them, an inner node's first child after it; `first` of an inner node is the one to go on with for a
+// ray that misses it. So a traversal needs no stack, which would take 32 registers.
 
 struct ArealightGpuBvhNode {
     vec3 min_corner;
@@ -14,9 +17,6 @@ struct ArealightGpuBvhNode {
 layout(set = 0, binding = BVH_NODES_BINDING, std430) readonly buffer Nodes {
     ArealightGpuBvhNode nodes[];
 };
-
-// The deepest hierarchy: the same as arealight::blockers::MAX_DEPTH.
-const uint BVH_STACK_SIZE = 32u;
 
 const uint BVH_NO_TRIANGLE = 0xffffffffu;
 
@@ -68,23 +68,17 @@ BvhHit bvh_trace(vec3 origin, vec3 direction, float limit, bool any_hit) {
     // A direction along an axis would divide by zero: 1e-30 reaches no box that it should not
     vec3 safe = mix(direction, vec3(1e-30), lessThan(abs(direction), vec3(1e-30)));
     vec3 inverse_direction = 1.0 / safe;
-    uint stack[BVH_STACK_SIZE];
-    uint depth = 0u;
-    stack[depth++] = 0u;
-    while (depth > 0u && !(any_hit && hit.triangle != BVH_NO_TRIANGLE)) {
-        uint index = stack[--depth];
+    // A root of zeros is nothing
+    uint end = nodes[0].count > 0u ? 1u : nodes[0].first;
+    uint index = 0u;
+    while (index < end && !(any_hit && hit.triangle != BVH_NO_TRIANGLE)) {
         ArealightGpuBvhNode node = nodes[index];
-        if (!bvh_enters(node, origin, inverse_direction, hit.distance)) {
-            continue;
-        }
-        for (uint i = 0u; i < node.count; i++) {
+        bool is_leaf = node.count > 0u;
+        bool is_entered = bvh_enters(node, origin, inverse_direction, hit.distance);
+        for (uint i = 0u; is_entered && i < node.count; i++) {
             bvh_meet_triangle(node.first + i, origin, direction, hit);
         }
-        // Children lie after their parent; a node of zeros has none
-        if (node.count == 0u && node.first > index && depth + 2u <= BVH_STACK_SIZE) {
-            stack[depth++] = node.first;
-            stack[depth++] = node.first + 1u;
-        }
+        index = is_leaf || is_entered ? index + 1u : max(node.first, index + 1u);
     }
     return hit;
 }

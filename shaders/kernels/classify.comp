@@ -37,10 +37,9 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "position.glsl"
 
 const bool HAS_DIFFUSE = (EFFECTS & EFFECT_DIFFUSE) != 0u;
-const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & EFFECT_GLOSSY) != 0u;
-// Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula.
-const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA;
+// Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula, nor for anisotropic lobes.
+const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA && !AREALIGHT_HAS_ANISOTROPY;
 // Likewise that of the coat's.
 const bool HAS_COAT_HORIZON = AREALIGHT_HAS_COAT && !AREALIGHT_USES_FORMULA;
 

@@ -96,7 +96,8 @@ vec2 contribution(uint index) {
     TileLightHeights heights;
     heights.surface = tile_heights(tile_planes(SURFACE_PAIR), light);
     heights.lobe = HAS_HORIZON ? tile_heights(tile_planes(LOBE_PAIR), light).y : 0.0;
-    bool is_below = !tile_is_diffuse() || heights.surface.y < 0.0;
+    // A rough diffuse lobe leans, and its horizon with it
+    bool is_below = !tile_is_diffuse() || (heights.surface.y < 0.0 && (!AREALIGHT_HAS_ROUGH_DIFFUSE || AREALIGHT_CLIPS_AT_SURFACE));
     if (HAS_GLOSSY) {
         bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe();
         is_below = is_below && (is_below_lobe || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
@@ -120,7 +121,7 @@ vec2 contribution(uint index) {
         heights.coat.y = tile_coat_spread() >= 0.0 ? tile_heights(tile_planes(COAT_MIRROR_PAIR), light).y : 0.0;
         vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
         // NaN is neither little nor much
-        bool is_known = tile_is_known() && tile_has_lobe() && tile_has_coat_horizon();
+        bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && tile_has_lobe() && tile_has_coat_horizon();
         bool is_sure = light.is_bounded && is_known && bounds.x >= 0.0 && bounds.y < TILE_FAR;
         sent = is_sure ? bounds : sent;
     }

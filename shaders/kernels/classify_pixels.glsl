@@ -14,6 +14,7 @@
 // their normals and by the range of their offsets, which makes them sharp on a flat floor however far it extends; the range of p
 // is a spread of the normals. A coat's lobe is that of the table without Fresnel term, about the coat's own normal.
 
+#include "arealight/lobes/diffuse.glsl"
 #include "tile_bounds.glsl"
 #include "tile_contribution.glsl"
 #include "tile_reduction.glsl"
@@ -55,14 +56,13 @@ ArealightGpuLobeHorizon lobe_horizon(float roughness, float cosine) {
     return lobe_horizons[cell.y * constants.horizon_cells + cell.x];
 }
 
-// The range of p for a surface.
-vec2 horizon_range(ArealightSurface surface, ArealightGpuLobeHorizon horizon) {
+// The range of p for a lobe with this Fresnel term, f0 being the mean of its channels.
+vec2 horizon_range(float f0, float f90, ArealightGpuLobeHorizon horizon) {
     // What part of the ratio Schlick's lobe has, by arealight_schlick_share and the lobes' heights
     vec2 part = vec2(0.0, 1.0);
     if (!AREALIGHT_SPLITS_FRESNEL) {
-        float mean = dot(surface.f0, vec3(1.0 / 3.0));
-        vec2 weight = (surface.f90 - mean) * horizon.weight;
-        part = mean >= 0.0 && surface.f90 > mean ? weight / (mean + weight + 1e-30) : vec2(0.0, mean <= 1.0 ? 0.0 : 1.0);
+        vec2 weight = (f90 - f0) * horizon.weight;
+        part = f0 >= 0.0 && f90 > f0 ? weight / (f0 + weight + 1e-30) : vec2(0.0, f0 <= 1.0 ? 0.0 : 1.0);
     }
     vec4 ends = mix(vec4(horizon.lobe, horizon.lobe), vec4(horizon.schlick, horizon.schlick), part.xxyy);
     return vec2(min(ends.x, ends.z), max(ends.y, ends.w));
@@ -94,22 +94,43 @@ PixelLobe pixel_lobe(vec3 normal, vec3 view, float cosine, ArealightGpuLobeHoriz
     return PixelLobe(horizon, spread, 2.0 * cosine * normal - view, vec2(cell.envelope.x * gain, cell.envelope.y));
 }
 
-// Finds the bounds of a coat's lobe, and takes from the lobes below what the coat reflects. `cosine`: of the surface's normal.
-void reduce_coat(inout ArealightSurface surface, vec3 normal, vec3 view, float cosine, vec3 position, bool has_surface) {
+// The density of a coupled diffuse lobe over that of Lambert's with the same albedo, at least and at most: the singular values of
+// arealight_coupled_diffuse_lobe's space for the views where it differs most give 0.874 and 1.151.
+const vec2 COUPLED_DENSITY = vec2(0.87, 1.16);
+
+// The least and the most of its diffuse albedo that a surface reflects, as density over Lambert's.
+vec2 diffuse_part(ArealightSurface surface, float cosine, ArealightGpuLobeHorizon cell) {
+    if (!AREALIGHT_COUPLES_DIFFUSE) {
+        return vec2(1.0);
+    }
+    if (AREALIGHT_COUPLES_BY_ALBEDO) {
+        float most = surface.interface_f0 + max(surface.interface_f90 - surface.interface_f0, 0.0) * cell.schlick_albedo;
+        return vec2(HAS_HORIZON ? max(1.0 - most, 0.0) : 0.0, 1.0);
+    }
+    float part = arealight_coupled_part(clamp(cosine, 0.0, 1.0), surface.interface_f0, surface.interface_f90);
+    return part * COUPLED_DENSITY;
+}
+
+// Finds the bounds of a coat's lobe, and takes from the lobes below what the coat reflects: from the diffuse one's bounds, `part`, and
+// from the specular one. `cosine`: of the surface's normal.
+void reduce_coat(inout ArealightSurface surface, inout vec2 part, vec3 normal, vec3 view, float cosine, vec3 position, bool has_surface) {
     vec3 own_normal = AREALIGHT_HAS_COAT_NORMAL ? arealight_normalize_or(surface.coat.normal, normal) : normal;
     float own_cosine = dot(own_normal, view);
-    float share = arealight_coat_share(surface.coat, own_cosine);
+    // What it keeps at least from the lobes below, and what it reflects at most
+    float kept = AREALIGHT_COATS_BY_ALBEDO ? 0.0 : arealight_coat_share(surface.coat, own_cosine);
+    float share = AREALIGHT_COATS_BY_ALBEDO ? surface.coat.weight : kept;
     bool has_coat = has_surface && surface.coat.weight != 0.0;
     ArealightGpuLobeHorizon cell = lobe_horizon(surface.coat.roughness, own_cosine);
-    PixelLobe lobe = pixel_lobe(own_normal, view, own_cosine, cell, cell.lobe);
+    vec2 range = AREALIGHT_COATS_BY_ALBEDO ? horizon_range(AREALIGHT_COAT_F0, 1.0, cell) : cell.lobe;
+    PixelLobe lobe = pixel_lobe(own_normal, view, own_cosine, cell, range);
     // A view from below the surface counts as grazing, for the coat too
     float spread = HAS_COAT_HORIZON && cosine > 0.0 ? lobe.spread : TILE_FAR;
     reduce_planes(COAT_PAIR, lobe.horizon, position, has_coat);
     if (CULL != 0u) {
         reduce_planes(COAT_MIRROR_PAIR, lobe.mirror, position, has_coat);
-        surface.diffuse_albedo *= 1.0 - share;
-        surface.f0 *= 1.0 - share;
-        surface.f90 *= 1.0 - share;
+        part *= 1.0 - vec2(share, kept);
+        surface.f0 *= 1.0 - kept;
+        surface.f90 *= 1.0 - kept;
     }
     vec4 reflection = vec4(spread, lobe.envelope.x, -lobe.envelope.y, share);
     tile_reduce(COAT_REFLECTION_PAIR, has_coat ? reflection : vec4(-TILE_FAR), vec4(-TILE_FAR));
@@ -131,8 +152,13 @@ void reduce_pixels(ivec2 pixel) {
 
     vec3 view = surface.view / distance;
     float cosine = dot(normal, view);
+    ArealightGpuLobeHorizon cell;
+    if (HAS_HORIZON) {
+        cell = lobe_horizon(surface.roughness, cosine);
+    }
+    vec2 part = diffuse_part(surface, cosine, cell);
     if (AREALIGHT_HAS_COAT) {
-        reduce_coat(surface, normal, view, cosine, position, has_surface);
+        reduce_coat(surface, part, normal, view, cosine, position, has_surface);
     }
 
     // The glossy lobe: its horizon, and what it reflects at most
@@ -140,8 +166,7 @@ void reduce_pixels(ivec2 pixel) {
     bool has_sheen = AREALIGHT_HAS_SHEEN && surface.sheen.color != vec3(0.0);
     vec3 reflection = vec3(0.0, -TILE_FAR, 0.0);
     if (HAS_HORIZON) {
-        ArealightGpuLobeHorizon cell = lobe_horizon(surface.roughness, cosine);
-        PixelLobe lobe = pixel_lobe(normal, view, cosine, cell, horizon_range(surface, cell));
+        PixelLobe lobe = pixel_lobe(normal, view, cosine, cell, horizon_range(dot(surface.f0, vec3(1.0 / 3.0)), surface.f90, cell));
         spread = lobe.spread;
         reduce_planes(LOBE_PAIR, lobe.horizon, position, has_surface);
 
@@ -160,7 +185,7 @@ void reduce_pixels(ivec2 pixel) {
     if (HAS_DIFFUSE || CULL != 0u) {
         vec3 albedo = HAS_DIFFUSE ? surface.diffuse_albedo : vec3(0.0);
         float is_diffuse = albedo != vec3(0.0) ? 1.0 : 0.0;
-        vec2 diffuse = vec2(-min(albedo.r, min(albedo.g, albedo.b)), arealight_max_component(albedo));
+        vec2 diffuse = vec2(-min(albedo.r, min(albedo.g, albedo.b)), arealight_max_component(albedo)) * part;
         tile_reduce(REFLECTION_PAIR, has_surface ? vec4(is_diffuse, reflection) : vec4(-TILE_FAR),
                     has_surface ? vec4(diffuse, 0.0, 0.0) : vec4(-TILE_FAR));
     }

@@ -26,13 +26,31 @@ const uint EFFECT_TEXTURED_ELLIPSE = 4096u;
 const uint EFFECT_COAT = 8192u;
 // Some coat has a normal of its own; EFFECT_COAT is set then, too.
 const uint EFFECT_COAT_NORMAL = 16384u;
+// Diffuse lobes are coupled with the Fresnel term above them.
+const uint EFFECT_COUPLED = 32768u;
+// They are by the specular lobe's albedo; EFFECT_COUPLED is set then, too.
+const uint EFFECT_COUPLED_BY_ALBEDO = 65536u;
+// Coats are layered by their albedo; EFFECT_COAT is set then, too.
+const uint EFFECT_COAT_BY_ALBEDO = 131072u;
+// Some diffuse lobe is rough.
+const uint EFFECT_DIFFUSE_ROUGHNESS = 262144u;
+// Some surface's specular lobe is stretched along a tangent.
+const uint EFFECT_ANISOTROPY = 1048576u;
 // Some surface has sheen.
-const uint EFFECT_SHEEN = 32768u;
+const uint EFFECT_SHEEN = 524288u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
+
+// Which kinds of lights there may be beside convex quads without an image.
+const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
+const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
+const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
+const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
+const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
+const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
 
 // Values of the constants of the quality, which are 0 else.
 const int FORM_FACTOR_DIFFERENCE = 1;
@@ -42,8 +60,13 @@ const int LOBES_FORMULA = 1;
 
 #define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
 #define AREALIGHT_SPECULAR ((EFFECTS & EFFECT_GLOSSY) != 0u)
+#define AREALIGHT_COUPLED ((EFFECTS & EFFECT_COUPLED) != 0u)
+#define AREALIGHT_COUPLED_BY_ALBEDO ((EFFECTS & EFFECT_COUPLED_BY_ALBEDO) != 0u)
+#define AREALIGHT_DIFFUSE_ROUGHNESS ((EFFECTS & EFFECT_DIFFUSE_ROUGHNESS) != 0u)
 #define AREALIGHT_COAT ((EFFECTS & EFFECT_COAT) != 0u)
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
+#define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)
+#define AREALIGHT_ANISOTROPY ((EFFECTS & EFFECT_ANISOTROPY) != 0u)
 #define AREALIGHT_SHEEN ((EFFECTS & EFFECT_SHEEN) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS

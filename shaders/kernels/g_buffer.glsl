@@ -28,8 +28,8 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 #if AREALIGHT_HOST_G_BUFFER
 
 // Of the host: declares the images of the next three bindings, of COAT_BINDING and of SHEEN_BINDING as it likes, and defines
-// arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT and
-// its sheen with AREALIGHT_HAS_SHEEN alone. It lies in an include folder of the host's compiler.
+// arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its
+// sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY alone. It lies in an include folder of the host's compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -97,6 +97,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.position = position;
     surface.view = camera - position;
     surface.coat = load_coat(pixel);
+    surface.diffuse_roughness = 0.0;
     surface.sheen = load_sheen(pixel);
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
@@ -116,6 +117,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
         surface.roughness = normal.w;
         arealight_surface_from_metalness(surface, base_color.rgb, base_color.a, specular.rgb, specular.a);
     }
+    surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
     return surface;
 }
 

@@ -2,7 +2,7 @@
 #define PICKED_LIGHT_GLSL
 
 // A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel defines LIGHTS_BINDING
-// and SHAPES_BINDING.
+// and SHAPES_BINDING, and has effects.glsl: what the frame's lights do not need is not in the pipeline.
 
 #include "light_records.glsl"
 #include "light_vertices.glsl"
@@ -56,25 +56,25 @@ PickedLight picked_light(uint pick, vec3 position) {
     light.row = 0u;
     light.end = 0u;
     uint index = pick & PICK_INDEX;
-    if ((pick & PICK_SHAPE) == 0u) {
+    if (!HAS_SHAPES || (pick & PICK_SHAPE) == 0u) {
         ArealightGpuLight record = lights[index];
         light.center = record.center - position;
         light.size = record.radius * sqrt(record.area);
-        light.is_mesh = (record.flags & LIGHT_MESH) != 0u;
+        light.is_mesh = HAS_MESHES && (record.flags & LIGHT_MESH) != 0u;
         light.two_sided = (record.flags & LIGHT_TWO_SIDED) != 0u;
         light.row = record.first_vertex;
         light.end = record.first_vertex + record.vertex_count;
         light.outline = arealight_vertex_outline(light.center, record.first_vertex, record.vertex_count,
-                                                 (record.flags & LIGHT_QUAD) != 0u);
+                                                 !HAS_POLYGONS || (record.flags & LIGHT_QUAD) != 0u);
         return light;
     }
     ArealightGpuShape record = shapes[index];
     light.center = record.center - position;
     light.two_sided = (record.flags & SHAPE_TWO_SIDED) != 0u;
-    if (record.kind == SHAPE_TUBE) {
+    if (HAS_TUBES && record.kind == SHAPE_TUBE) {
         light.outline = tube_outline(light.center, record.axis_u, record.radius, int(record.detail));
         light.size = 2.0 * sqrt(record.radius * length(record.axis_u));
-    } else if (record.kind == SHAPE_SPHERE) {
+    } else if (HAS_SPHERES && record.kind == SHAPE_SPHERE) {
         light.outline = sphere_outline(light.center, record.radius);
         light.size = 1.7724539 * record.radius;
     } else {

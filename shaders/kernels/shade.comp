@@ -47,8 +47,6 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 const bool BY_TILES = CLASS != CLASS_FRAME;
 const bool HAS_LIGHTS = CLASS != CLASS_EMPTY;
 // EFFECTS of tiles of quads have none of these: TileClass::lights in Rust
-const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
-const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 
 // The lights of a pixel: those of its tile's list, or those of the frame.
 struct LightList {

@@ -11,10 +11,6 @@
 #include "pick_lights.glsl"
 #include "position.glsl"
 
-const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
-const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
-const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
-const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
 
 // 1: the host's own shader says what part of each light arrives: from shadow maps, or from anything that it knows.
 #ifndef AREALIGHT_HOST_VISIBILITY

@@ -53,39 +53,84 @@ bool place_before(ivec2 pixel, ivec2 size, vec3 position, out vec2 place) {
     return clip.w > 0.0;
 }
 
-// What is known of a pixel's point from the frame before: the mean of those of the four pixels around its place that are of its surface.
-HistoryPixel reprojected(ivec2 pixel, ivec2 size, vec3 position, vec3 normal) {
-    HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, position, normal);
-    vec3 before = position + history_head(16u, 0u).xyz;
-    vec2 place;
-    if (!place_before(pixel, size, before, place)) {
-        return mean;
+// A pixel's point and surface in the frame before, to which pixels there are compared.
+struct Before {
+    vec2 place;    // in pixels
+    vec3 position; // relative to that frame's origin
+    vec3 normal;
+    float tolerance; // out of the surface's plane
+};
+
+// Reads the record of a pixel of the frame before; false where that is not of the same surface.
+bool load_before(Before before, ivec2 pixel, ivec2 size, out HistoryPixel tap) {
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) {
+        return false;
     }
-    float tolerance = SAME_PLANE * distance(constants.camera, position);
-    vec2 corner = floor(place - 0.5);
-    vec2 part = place - 0.5 - corner;
+    tap = load_history(pixel, size, 1u);
+    return tap.frames > 0.0 && abs(dot(before.normal, tap.position - before.position)) < before.tolerance &&
+           dot(before.normal, tap.normal) > SAME_NORMAL;
+}
+
+// Where a point was in the frame before; false where that is behind the camera.
+bool find_before(ivec2 pixel, ivec2 size, vec3 position, vec3 normal, out Before before) {
+    before.position = position + history_head(16u, 0u).xyz;
+    before.normal = normal;
+    before.tolerance = SAME_PLANE * distance(constants.camera, position);
+    return place_before(pixel, size, before.position, before.place);
+}
+
+// What is known of a pixel's point from the frame before: the mean of those of the four pixels around its place that are of its surface.
+HistoryPixel reprojected(Before before, ivec2 size) {
+    HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0));
+    vec2 corner = floor(before.place - 0.5);
+    vec2 part = before.place - 0.5 - corner;
     float sum = 0.0;
     for (int i = 0; i < 4; i++) {
         ivec2 step = ivec2(i & 1, i >> 1);
-        vec2 there = corner + vec2(step);
-        if (all(greaterThanEqual(there, vec2(0.0))) && all(lessThan(there, vec2(size)))) {
-            HistoryPixel tap = load_history(ivec2(there), size, 1u);
-            bool is_same = tap.frames > 0.0 && abs(dot(normal, tap.position - before)) < tolerance && dot(normal, tap.normal) > SAME_NORMAL;
+        HistoryPixel tap;
+        if (load_before(before, ivec2(corner) + step, size, tap)) {
             vec2 weights = mix(1.0 - part, part, vec2(step));
-            float weight = is_same ? weights.x * weights.y : 0.0;
-            mean.shadow += weight * tap.shadow;
-            mean.frames += weight * tap.frames;
-            sum += weight;
+            mean.shadow += weights.x * weights.y * tap.shadow;
+            mean.frames += weights.x * weights.y * tap.frames;
+            sum += weights.x * weights.y;
         }
     }
-    if (sum > 1e-3) {
-        mean.shadow /= sum;
-        mean.frames /= sum;
-    } else {
-        mean.shadow = vec2(0.0);
-        mean.frames = 0.0;
-    }
+    float scale = sum > 1e-3 ? 1.0 / sum : 0.0;
+    mean.shadow *= scale;
+    mean.frames *= scale;
     return mean;
+}
+
+// The cubic weights of four pixels in a row, at a part of the way from the second to the third. Source: Catmull and Rom 1974.
+vec4 cubic_weights(float part) {
+    vec2 squares = vec2(part, part * part) * part;
+    return 0.5 * vec4(-part + 2.0 * squares.x - squares.y, 2.0 - 5.0 * squares.x + 3.0 * squares.y,
+                      part + 4.0 * squares.x - 3.0 * squares.y, squares.y - squares.x);
+}
+
+// As what is known by the four pixels around, `mean`, by the sixteen around, which does not widen with every frame; held between what the
+// four have. The four's where some of the sixteen are of another surface.
+vec2 sharp_shadow(Before before, ivec2 size, vec2 mean) {
+    vec2 corner = floor(before.place - 0.5);
+    vec2 part = before.place - 0.5 - corner;
+    vec4 weights_x = cubic_weights(part.x);
+    vec4 weights_y = cubic_weights(part.y);
+    vec2 sum = vec2(0.0);
+    vec2 least = vec2(3e38);
+    vec2 most = vec2(0.0);
+    for (int i = 0; i < 16; i++) {
+        ivec2 step = ivec2(i & 3, i >> 2);
+        HistoryPixel tap;
+        if (!load_before(before, ivec2(corner) + step - 1, size, tap)) {
+            return mean;
+        }
+        sum += weights_x[step.x] * weights_y[step.y] * tap.shadow;
+        if ((step.x == 1 || step.x == 2) && (step.y == 1 || step.y == 2)) {
+            least = min(least, tap.shadow);
+            most = max(most, tap.shadow);
+        }
+    }
+    return clamp(sum, least, most);
 }
 
 void load_patch(ivec2 corner, ivec2 size) {
@@ -97,9 +142,14 @@ void load_patch(ivec2 corner, ivec2 size) {
             vec4 shadow = imageLoad(shadow_image, pixel);
             if (shadow.b > 0.0) {
                 vec3 normal = load_normal(pixel, position);
-                HistoryPixel before = reprojected(pixel, size, position, normal);
+                Before before;
+                vec2 known = vec2(shadow.r, 0.0);
+                if (find_before(pixel, size, position, normal, before)) {
+                    HistoryPixel mean = reprojected(before, size);
+                    known = mean.frames > 0.0 ? vec2(mean.shadow.x, mean.frames) : known;
+                }
                 patch_texels[i] = vec4(position, shadow.r);
-                patch_before[i] = packHalf2x16(vec2(before.frames > 0.0 ? before.shadow.x : shadow.r, before.frames));
+                patch_before[i] = packHalf2x16(known);
                 patch_normals[i] = pack_normal(normal);
             }
         }
@@ -173,7 +223,15 @@ void main() {
     int center = (local.y + REACH + POOL) * PATCH + local.x + REACH + POOL;
     HistoryPixel history = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0, 0.0, 1.0));
     if (patch_normals[center] != 0u) {
-        history = reprojected(pixel, size, patch_texels[center].xyz, unpack_normal(patch_normals[center]));
+        vec3 position = patch_texels[center].xyz;
+        vec3 normal = unpack_normal(patch_normals[center]);
+        Before before;
+        if (find_before(pixel, size, position, normal, before)) {
+            history = reprojected(before, size);
+            history.shadow = sharp_shadow(before, size, history.shadow);
+        }
+        history.position = position;
+        history.normal = normal;
         vec2 now = imageLoad(shadow_image, pixel).rg;
         float frames = history.frames > 0.0 ? frames_of(local, history.frames) : 1.0;
         history.shadow = mix(history.shadow, now, 1.0 / frames);

@@ -300,7 +300,7 @@ impl<'a> CLibrary<'a> {
             height: 1,
             camera: camera.to_array(),
             lights: packed.summary,
-            reserved: 0,
+            seed: 0,
             position_from_clip: null(),
             tile_lists: ArealightBuffer::default(),
         };

@@ -58,7 +58,7 @@ impl Random {
 
 /// A surface without any lobe.
 pub fn black_surface() -> Surface {
-    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, coat: None, sheen: None }
+    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, ..Surface::default() }
 }
 
 /// A white Lambert surface: with a radiance of one, the answer is the form factor.

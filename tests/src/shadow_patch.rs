@@ -233,14 +233,20 @@ fn image(engine: &TestEngine, format: vk::Format, usage: vk::ImageUsageFlags) ->
 }
 
 /// An image of one colour, to be read.
-fn filled(engine: &TestEngine, texel: [f32; 4]) -> Image {
+///
+/// # Panics
+/// Where the device fails.
+pub fn filled(engine: &TestEngine, texel: [f32; 4]) -> Image {
     let image = image(engine, vk::Format::R32G32B32A32_SFLOAT, vk::ImageUsageFlags::SAMPLED);
     image.upload(&vec![texel; (SIDE * SIDE) as usize], Usage::COMPUTE_READ).unwrap();
     image
 }
 
 /// An image to be written.
-fn stored(engine: &TestEngine, format: vk::Format) -> Image {
+///
+/// # Panics
+/// Where the device fails.
+pub fn stored(engine: &TestEngine, format: vk::Format) -> Image {
     let image = image(engine, format, vk::ImageUsageFlags::STORAGE);
     let host = engine.host();
     host.submit(|commands| image.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_WRITE)).unwrap();

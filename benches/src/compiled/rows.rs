@@ -104,7 +104,7 @@ pub fn rows() -> Vec<Row> {
     let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = Effects::all() - LOBES - COATS - Effects::SHEEN;
+    let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
     let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
     vec![
         // Others' ways to shade quads, with our reads
@@ -127,6 +127,16 @@ pub fn rows() -> Vec<Row> {
         // Quads and nothing else, with more asked of them or of the surface
         quads("two-sided quads", "exact", LOBES | Effects::TWO_SIDED, exact),
         quads("quads", "exact, F0 from an image", LOBES | Effects::SPECULAR_INPUT, exact),
+        // Quads on surfaces whose layers share light
+        quads("quads", "exact, coupled", LOBES | Effects::COUPLED, exact),
+        quads("quads", "both horizons, coupled", LOBES | Effects::COUPLED, both),
+        quads(
+            "quads",
+            "exact, coupled by albedo",
+            LOBES | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO,
+            exact,
+        ),
+        quads("quads", "exact, all layers by albedo", LOBES | Effects::COAT | Effects::MODEL, exact),
         // Quads on coated surfaces
         quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
@@ -149,7 +159,7 @@ pub fn rows() -> Vec<Row> {
         shade("quads and polygons", "exact", LOBES | polygon, true, exact),
         shade("quads and disks", "exact", LOBES | disk, true, exact),
         shade("every kind", "exact", LOBES | every_kind, true, exact),
-        shade("every kind", "exact, coat with its own normal", LOBES | every_kind | COATS, true, exact),
+        shade("every kind", "exact, coat with its own normal", LOBES | COATS | every_kind, true, exact),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),
@@ -161,9 +171,14 @@ pub fn rows() -> Vec<Row> {
         picks("quads", "exact, picks of 1 ray", none, 1),
         picks("quads", "exact, picks of 4 rays", none, 4),
         picks("every kind", "exact, picks of 1 ray", every_kind, 1),
-        shadow_rays("every kind", "1 ray", LOBES, 1),
-        shadow_rays("every kind", "4 rays", LOBES, 4),
-        shadow_rays("every kind", "1 ray, coat with its own normal", LOBES | COATS, 1),
+        shadow_rays("quads", "1 ray", none, LOBES, 1),
+        shadow_rays("quads", "4 rays", none, LOBES, 4),
+        shadow_rays("quads", "1 ray, coat with its own normal", none, LOBES | COATS, 1),
+        shadow_rays("quads and polygons", "1 ray", polygon, LOBES, 1),
+        shadow_rays("quads and disks", "1 ray", disk, LOBES, 1),
+        shadow_rays("every kind", "1 ray", every_kind, LOBES, 1),
+        shadow_rays("every kind", "4 rays", every_kind, LOBES, 4),
+        shadow_rays("every kind", "1 ray, coat with its own normal", every_kind, LOBES | COATS, 1),
         shadow_history("by the camera", ShadowHistory::Camera),
         shadow_history("by motion vectors", ShadowHistory::MotionVectors),
         shadow_filter("off", ShadowFilter::Off, ShadowHistory::Off),
@@ -224,9 +239,16 @@ fn picks(lights: &'static str, level: &'static str, kinds: Effects, rays: u32) -
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
 }
 
-/// Rays through [`arealight::Blockers`].
-fn shadow_rays(lights: &'static str, level: &'static str, surfaces: Effects, rays: u32) -> Row {
-    let specialization = plan::shadow_rays_specialization(shadowed(surfaces, rays));
+/// Rays through [`arealight::Blockers`]; `kinds` of lights beside quads.
+fn shadow_rays(
+    lights: &'static str,
+    level: &'static str,
+    kinds: Effects,
+    surfaces: Effects,
+    rays: u32,
+) -> Row {
+    let frame = LightSummary { quad_count: 1, effects: kinds, ..LightSummary::default() };
+    let specialization = plan::shadow_rays_specialization(shadowed(surfaces, rays), frame);
     row(&kernels::SHADOW_RAYS, lights, level, None, specialization)
 }
 

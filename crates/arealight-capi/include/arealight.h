@@ -62,8 +62,20 @@
 // Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_NORMAL 16384
 
-// Some surface has sheen: ArealightResources.sheen is read.
-#define AREALIGHT_EFFECT_SHEEN 32768
+// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+#define AREALIGHT_EFFECT_COUPLED 32768
+
+// They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
+#define AREALIGHT_EFFECT_COUPLED_BY_ALBEDO 65536
+
+// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+#define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
+
+// Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
+#define AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS 262144
+
+// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
+#define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
@@ -135,6 +147,21 @@
 // In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
 #define AREALIGHT_RADIANCE_RGBA16F 1
 
+// The mean of a pixel's shadow rays as it is: unbiased, with noise in penumbras.
+#define AREALIGHT_SHADOW_FILTER_OFF 0
+
+// A mean over neighbours in the same plane, as wide as a part of the penumbra.
+#define AREALIGHT_SHADOW_FILTER_GATHER 1
+
+// One frame's rays.
+#define AREALIGHT_SHADOW_HISTORY_OFF 0
+
+// Those of up to sixteen frames, found again by the camera's motion alone.
+#define AREALIGHT_SHADOW_HISTORY_CAMERA 1
+
+// Likewise, by motion vectors of the host's.
+#define AREALIGHT_SHADOW_HISTORY_MOTION 2
+
 // The table is kept in 32-bit floats, 16 bytes a texel.
 #define AREALIGHT_TABLE_RGBA32F 0
 
@@ -202,8 +229,14 @@ typedef enum ArealightResult {
 // The library on a device of the host, with a light table.
 typedef struct Arealight Arealight;
 
+// Triangles that block shadow rays, in a hierarchy of boxes, for hosts that have none of their own.
+typedef struct ArealightBlockers ArealightBlockers;
+
 // A shade pass, specialised for surfaces and a quality.
 typedef struct ArealightPass ArealightPass;
+
+// Shadow rays after a shade pass whose ArealightPassOptions have them.
+typedef struct ArealightShadowPass ArealightShadowPass;
 
 // The images of lights on a device, filtered for shading.
 typedef struct ArealightTextures ArealightTextures;
@@ -356,8 +389,8 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL and _SHEEN. 0 is DIFFUSE and GLOSSY. What lights need is known
-    // from ArealightFrame.lights.
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _COUPLED and
+    // _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;
@@ -387,6 +420,8 @@ typedef struct ArealightPassOptions {
     float tile_cull_threshold;
     // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
     uint32_t tile_least_quads;
+    // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
+    uint32_t shadow_rays;
 } ArealightPassOptions;
 
 // What a descriptor set is made with.
@@ -444,8 +479,6 @@ typedef struct ArealightResources {
     // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
     // normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     struct ArealightImage coat;
-    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
-    struct ArealightImage sheen;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -457,6 +490,8 @@ typedef struct ArealightResources {
     struct ArealightBuffer lobe_horizons;
     // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
     struct ArealightBuffer tile_lists;
+    // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
+    struct ArealightBuffer shadow_picks;
 } ArealightResources;
 
 // The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
@@ -480,14 +515,68 @@ typedef struct ArealightFrame {
     float camera[3];
     // ArealightPackedLights.summary of the lights in the set's buffers.
     struct ArealightLightSummary lights;
-    // 0
-    uint32_t reserved;
+    // With shadow rays, of their random numbers: one more in each frame. Else 0.
+    uint32_t seed;
     // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
     // be null with AREALIGHT_POSITION_IMAGE.
     const float *position_from_clip;
     // With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     struct ArealightBuffer tile_lists;
 } ArealightFrame;
+
+// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+typedef struct ArealightBlockerArrays {
+    // Where the hierarchy's nodes go.
+    void *nodes;
+    // Where the triangles go.
+    void *triangles;
+    // In: bytes at `nodes`. Out: bytes that are needed.
+    uint64_t nodes_size;
+    // In: bytes at `triangles`. Out: bytes that are needed, 48 a triangle.
+    uint64_t triangles_size;
+} ArealightBlockerArrays;
+
+// What a shadow pass does with the radiance of its shade pass.
+typedef struct ArealightShadowOptions {
+    // One of AREALIGHT_SHADOW_FILTER_*.
+    uint32_t filter;
+    // One of AREALIGHT_SHADOW_HISTORY_*.
+    uint32_t history;
+    // One of AREALIGHT_OUTPUT_*, for ArealightShadowResources.radiance.
+    uint32_t output;
+} ArealightShadowOptions;
+
+// The host's resources of a shadow pass beyond those of its shade pass.
+typedef struct ArealightShadowResources {
+    // A storage image (rgba16f) of the frame's size, in VK_IMAGE_LAYOUT_GENERAL. The pass alone writes it.
+    struct ArealightImage shadow;
+    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the unshadowed one in
+    // ArealightResources.radiance.
+    struct ArealightImage radiance;
+    // With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros before the first frame and after each cut. The
+    // pass alone writes it; it is the same for all frames of a view. Else 0.
+    struct ArealightBuffer history;
+    // With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is, in parts of the image's
+    // width and height (rg16f). Else 0.
+    struct ArealightImage motion;
+    // ArealightBlockerArrays.nodes. 0 with a module of the host's.
+    struct ArealightBuffer blocker_nodes;
+    // ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
+    struct ArealightBuffer blocker_triangles;
+} ArealightShadowResources;
+
+// What a shadow pass records.
+typedef struct ArealightShadowFrame {
+    // That of the shade pass. With a history it has `position_from_clip`, also where positions come from an image, and `seed` counts frames.
+    const struct ArealightFrame *frame;
+    // VkDescriptorSet for set 1 of a module of the host's. Else 0.
+    uint64_t host_set;
+    // What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with a
+    // history.
+    float origin_shift[3];
+    // 0
+    uint32_t reserved;
+} ArealightShadowFrame;
 
 // The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.
 typedef struct ArealightTextureOptions {
@@ -685,6 +774,110 @@ enum ArealightResult arealight_pass_prepare(const struct ArealightPass *pass,
 // No commands of the pass are pending, the device is alive, and no other thread uses the pass.
 enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
 
+// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with, in any vertex order. It takes a microsecond or
+// two a triangle. `*out` is the host's to destroy.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many items as the count says.
+enum ArealightResult arealight_blockers_create(const float *vertices,
+                                               uint32_t triangle_count,
+                                               struct ArealightBlockers **out);
+
+// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only says how large they must be.
+//
+// The host sees to it:
+// Pointers are null or valid, with as many bytes as their sizes say.
+enum ArealightResult arealight_blockers_read(const struct ArealightBlockers *blockers,
+                                             struct ArealightBlockerArrays *arrays);
+
+// Destroys a hierarchy, whose copies stay. Null is nothing.
+//
+// The host sees to it:
+// No other thread uses it.
+enum ArealightResult arealight_blockers_destroy(struct ArealightBlockers *blockers);
+
+// Makes a shadow pass, after shade passes of `options`; its rays meet ArealightShadowResources.blocker_nodes. `*out` is the host's to
+// destroy.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_shadow_pass_create(const struct Arealight *arealight,
+                                                  const struct ArealightPassOptions *options,
+                                                  const struct ArealightShadowOptions *shadows,
+                                                  struct ArealightShadowPass **out);
+
+// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of `arealight export` with its own answer to what
+// blocks a ray, such as an acceleration structure. What that reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`.
+// `words` is SPIR-V, `size` its bytes.
+//
+// The host sees to it:
+// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long as the pass.
+enum ArealightResult arealight_shadow_pass_create_with_module(const struct Arealight *arealight,
+                                                              const struct ArealightPassOptions *options,
+                                                              const struct ArealightShadowOptions *shadows,
+                                                              const uint32_t *words,
+                                                              size_t size,
+                                                              uint64_t host_set_layout,
+                                                              struct ArealightShadowPass **out);
+
+// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a pass without shadow rays.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_pass_shadow_picks_size(const struct ArealightPass *pass,
+                                                      uint32_t width,
+                                                      uint32_t height,
+                                                      uint64_t *out);
+
+// How many bytes ArealightShadowResources.history needs, for images of `width` x `height` pixels.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_shadow_history_size(uint32_t width, uint32_t height, uint64_t *out);
+
+// What descriptor sets of the pass are made with.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_shadow_pass_set_layout(const struct ArealightShadowPass *pass,
+                                                      struct ArealightSetLayout *out);
+
+// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of the shade pass before.
+//
+// The host sees to it:
+// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+enum ArealightResult arealight_shadow_pass_write_set(const struct ArealightShadowPass *pass,
+                                                     const struct Arealight *arealight,
+                                                     uint64_t set,
+                                                     const struct ArealightResources *shade,
+                                                     const struct ArealightShadowResources *resources);
+
+// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what arealight_shadow_pass_record
+// would take a moment for otherwise.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_shadow_pass_prepare(const struct ArealightShadowPass *pass,
+                                                   const struct ArealightFrame *frame);
+
+// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or three with a history, with barriers
+// between them. The barrier for what the shade pass wrote is the host's, and so is one after. `resources` are those that the set was written
+// with.
+//
+// The host sees to it:
+// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was recorded earlier on the same queue.
+enum ArealightResult arealight_shadow_pass_record(const struct ArealightShadowPass *pass,
+                                                  void *command_buffer,
+                                                  uint64_t set,
+                                                  const struct ArealightShadowResources *resources,
+                                                  const struct ArealightShadowFrame *frame);
+
+// Destroys a pass, before or after the object that it was made from. Null is nothing.
+//
+// The host sees to it:
+// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+enum ArealightResult arealight_shadow_pass_destroy(struct ArealightShadowPass *pass);
+
 // Makes an image for what lights show, without memory. `*out` is the host's to destroy.
 //
 // The host sees to it:
@@ -789,7 +982,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 56);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 60);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
@@ -804,6 +997,7 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, g_buffer) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 44);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 52);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, shadow_rays) == 56);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
@@ -847,7 +1041,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 248);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 272);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -861,18 +1055,40 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 168);
 AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 184);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 200);
 AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 224);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 248);
 AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, lights) == 20);
-AREALIGHT_ASSERT(offsetof(ArealightFrame, reserved) == 36);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, seed) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
 AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, reserved) == 12);
+AREALIGHT_ASSERT(sizeof(ArealightShadowOptions) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, filter) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, history) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightShadowOptions, output) == 8);
+AREALIGHT_ASSERT(sizeof(ArealightShadowResources) == 120);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, shadow) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, radiance) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, history) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, motion) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_nodes) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightShadowResources, blocker_triangles) == 96);
+AREALIGHT_ASSERT(sizeof(ArealightShadowFrame) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, frame) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, host_set) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, origin_shift) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightShadowFrame, reserved) == 28);
+AREALIGHT_ASSERT(sizeof(ArealightBlockerArrays) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, nodes_size) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightBlockerArrays, triangles_size) == 24);
 AREALIGHT_ASSERT(sizeof(ArealightTextureOptions) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, height) == 4);

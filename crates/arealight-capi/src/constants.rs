@@ -26,8 +26,18 @@ pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
 /// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
+/// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+pub const AREALIGHT_EFFECT_COUPLED: u32 = 32768;
+/// They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
+pub const AREALIGHT_EFFECT_COUPLED_BY_ALBEDO: u32 = 65536;
+/// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+pub const AREALIGHT_EFFECT_COAT_BY_ALBEDO: u32 = 131072;
+/// Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
+pub const AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS: u32 = 262144;
+/// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
+pub const AREALIGHT_EFFECT_ANISOTROPY: u32 = 1048576;
 /// Some surface has sheen: ArealightResources.sheen is read.
-pub const AREALIGHT_EFFECT_SHEEN: u32 = 32768;
+pub const AREALIGHT_EFFECT_SHEEN: u32 = 524288;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.
@@ -84,6 +94,18 @@ pub const AREALIGHT_IMAGES_SEPARATE: u32 = 1;
 pub const AREALIGHT_RADIANCE_RGBA32F: u32 = 0;
 /// In 16-bit floats, rounded to the nearest; what is above 65,504 as that.
 pub const AREALIGHT_RADIANCE_RGBA16F: u32 = 1;
+
+/// The mean of a pixel's shadow rays as it is: unbiased, with noise in penumbras.
+pub const AREALIGHT_SHADOW_FILTER_OFF: u32 = 0;
+/// A mean over neighbours in the same plane, as wide as a part of the penumbra.
+pub const AREALIGHT_SHADOW_FILTER_GATHER: u32 = 1;
+
+/// One frame's rays.
+pub const AREALIGHT_SHADOW_HISTORY_OFF: u32 = 0;
+/// Those of up to sixteen frames, found again by the camera's motion alone.
+pub const AREALIGHT_SHADOW_HISTORY_CAMERA: u32 = 1;
+/// Likewise, by motion vectors of the host's.
+pub const AREALIGHT_SHADOW_HISTORY_MOTION: u32 = 2;
 
 /// The table is kept in 32-bit floats, 16 bytes a texel.
 pub const AREALIGHT_TABLE_RGBA32F: u32 = 0;

@@ -10,6 +10,7 @@
 //! | [`device`] | from the host's handles to a table on its device |
 //! | [`pass`] | the shade pass |
 //! | [`lights`] | lights, packed for its frames |
+//! | [`shadows`] | the shadow pass, and what blocks its rays |
 //! | [`textures`] | the images of textured lights |
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
@@ -29,6 +30,7 @@ mod handles;
 pub mod lights;
 mod loader;
 pub mod pass;
+pub mod shadows;
 pub mod textures;
 pub mod types;
 
@@ -37,6 +39,7 @@ pub use device::*;
 pub use failure::{ArealightResult, arealight_last_error};
 pub use lights::*;
 pub use pass::*;
+pub use shadows::*;
 pub use textures::*;
 pub use types::*;
 

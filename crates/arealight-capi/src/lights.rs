@@ -113,7 +113,7 @@ pub(crate) fn read_flag(flag: u32, field: &str) -> Result<bool, Failure> {
     }
 }
 
-fn check_size(bytes: &[u8], size: u64, field: &str) -> Result<(), Failure> {
+pub(crate) fn check_size(bytes: &[u8], size: u64, field: &str) -> Result<(), Failure> {
     if size < bytes.len() as u64 {
         let message = format!("{field}: {size}, but {} are needed", bytes.len());
         return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
@@ -123,7 +123,7 @@ fn check_size(bytes: &[u8], size: u64, field: &str) -> Result<(), Failure> {
 
 /// # Safety
 /// `to` has as many bytes, that nobody else uses.
-unsafe fn copy(bytes: &[u8], to: *mut c_void) {
+pub(crate) unsafe fn copy(bytes: &[u8], to: *mut c_void) {
     // SAFETY: the same contract; both are as long as is copied.
     unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), to.cast(), bytes.len()) };
 }

@@ -20,6 +20,12 @@ pub struct ArealightPass {
     pass: ShadePass,
 }
 
+impl ArealightPass {
+    pub(crate) fn shade_pass(&self) -> &ShadePass {
+        &self.pass
+    }
+}
+
 /// Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
 /// arealight_pass_prepare. `*out` is the host's to destroy.
 ///
@@ -102,7 +108,7 @@ fn tile_options(options: &ArealightPassOptions) -> Option<TileOptions> {
     (tiles.capacity > 0).then_some(tiles)
 }
 
-fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
+pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure> {
     let surfaces = match read_effects(options.surfaces, "options.surfaces")? {
         none if none.is_empty() => ShadeOptions::default().surfaces,
         given if Effects::SURFACES.contains(given) => given,
@@ -143,12 +149,15 @@ fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptions, Failure
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
             "radiance_format",
         )?,
-        shadow_rays: 0,
+        shadow_rays: level(options.shadow_rays, &RAYS, "shadow_rays")?,
     })
 }
 
+/// How many shadow rays a pixel may have.
+const RAYS: [u32; ShadeOptions::MOST_SHADOW_RAYS as usize + 1] = [0, 1, 2, 3, 4];
+
 /// The level that a number stands for: its place among them.
-fn level<T: Copy>(number: u32, levels: &[T], field: &str) -> Result<T, Failure> {
+pub(crate) fn level<T: Copy>(number: u32, levels: &[T], field: &str) -> Result<T, Failure> {
     levels.get(number as usize).copied().ok_or_else(|| {
         Failure::argument(format!("options.{field}: {number} must be from 0 to {}", levels.len() - 1))
     })
@@ -209,29 +218,39 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             )
         };
         arguments::refuse_null([(set == 0, "set")])?;
-        let table = arealight.table_resource().ok_or_else(|| {
-            Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
-        })?;
         let resources = ShadeResources {
-            table,
-            lights: buffer(resources.lights),
-            light_vertices: buffer(resources.light_vertices),
-            shapes: (resources.shapes.buffer != 0).then(|| buffer(resources.shapes)),
-            light_textures: (resources.light_textures.view != 0).then(|| filtered(resources.light_textures)),
-            position: sampled(resources.position),
-            normal: sampled(resources.normal),
-            base_color: sampled(resources.base_color),
-            specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
-            coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
-            sheen: (resources.sheen.view != 0).then(|| sampled(resources.sheen)),
-            radiance: stored(resources.radiance),
-            glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
             lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
             tile_lists: pass.tiles().map(|_| buffer(resources.tile_lists)),
-            ..ShadeResources::default()
+            ..read_resources(arealight, resources)?
         };
         // SAFETY: the caller vouches for the set and the resources.
         Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
+    })
+}
+
+/// The host's resources but those of tiles.
+pub(crate) fn read_resources(
+    arealight: &Arealight,
+    resources: &ArealightResources,
+) -> Result<ShadeResources, Failure> {
+    let table = arealight.table_resource().ok_or_else(|| {
+        Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
+    })?;
+    Ok(ShadeResources {
+        table,
+        lights: buffer(resources.lights),
+        light_vertices: buffer(resources.light_vertices),
+        shapes: (resources.shapes.buffer != 0).then(|| buffer(resources.shapes)),
+        light_textures: (resources.light_textures.view != 0).then(|| filtered(resources.light_textures)),
+        position: sampled(resources.position),
+        normal: sampled(resources.normal),
+        base_color: sampled(resources.base_color),
+        specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
+        coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
+        radiance: stored(resources.radiance),
+        glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
+        picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),
+        ..ShadeResources::default()
     })
 }
 
@@ -240,7 +259,7 @@ pub(crate) fn sampled(image: ArealightImage) -> Resource {
     Resource::SampledImage { view: vk::ImageView::from_raw(image.view), layout }
 }
 
-fn stored(image: ArealightImage) -> Resource {
+pub(crate) fn stored(image: ArealightImage) -> Resource {
     Resource::StorageImage { view: vk::ImageView::from_raw(image.view) }
 }
 
@@ -249,7 +268,7 @@ fn filtered(image: ArealightImage) -> Resource {
     Resource::FilteredImage { view: vk::ImageView::from_raw(image.view), layout }
 }
 
-fn buffer(buffer: ArealightBuffer) -> Resource {
+pub(crate) fn buffer(buffer: ArealightBuffer) -> Resource {
     let ArealightBuffer { buffer, offset, range } = buffer;
     Resource::StorageBuffer { buffer: vk::Buffer::from_raw(buffer), offset, range }
 }
@@ -307,7 +326,7 @@ pub unsafe extern "C" fn arealight_pass_record(
 
 /// # Safety
 /// The frame's pointer is null or valid.
-unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
+pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
     let matrix = frame.position_from_clip;
     let matrix = (!matrix.is_null()).then_some(matrix);
     // SAFETY: the same contract.
@@ -318,7 +337,7 @@ unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
         position_from_clip: matrix.transpose()?.map(Mat4::from_cols_slice),
         lights: read_summary(frame.lights)?,
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
-        ..ShadeFrame::default()
+        seed: frame.seed,
     })
 }
 
@@ -371,6 +390,11 @@ mod tests {
             (c::AREALIGHT_EFFECT_TEXTURED_ELLIPSE, Effects::TEXTURED_ELLIPSE),
             (c::AREALIGHT_EFFECT_COAT, Effects::COAT),
             (c::AREALIGHT_EFFECT_COAT_NORMAL, Effects::COAT_NORMAL),
+            (c::AREALIGHT_EFFECT_COUPLED, Effects::COUPLED),
+            (c::AREALIGHT_EFFECT_COUPLED_BY_ALBEDO, Effects::COUPLED_BY_ALBEDO),
+            (c::AREALIGHT_EFFECT_COAT_BY_ALBEDO, Effects::COAT_BY_ALBEDO),
+            (c::AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS, Effects::DIFFUSE_ROUGHNESS),
+            (c::AREALIGHT_EFFECT_ANISOTROPY, Effects::ANISOTROPY),
             (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
@@ -413,6 +437,7 @@ mod tests {
             (ArealightPassOptions { g_buffer: 4, ..zero }, "options.g_buffer"),
             (ArealightPassOptions { radiance_images: 2, ..zero }, "options.radiance_images"),
             (ArealightPassOptions { radiance_format: 2, ..zero }, "options.radiance_format"),
+            (ArealightPassOptions { shadow_rays: 5, ..zero }, "options.shadow_rays: 5 must be from 0 to 4"),
         ] {
             let message = shade_options(&wrong).err().unwrap().message;
             assert!(message.starts_with(field), "{message}");

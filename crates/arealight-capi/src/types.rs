@@ -89,8 +89,8 @@ pub struct ArealightUpload {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL and _SHEEN. 0 is DIFFUSE and GLOSSY. What lights need is known
-    /// from ArealightFrame.lights.
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN, _COUPLED and
+    /// _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,
@@ -120,6 +120,8 @@ pub struct ArealightPassOptions {
     pub tile_cull_threshold: f32,
     /// With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
     pub tile_least_quads: u32,
+    /// How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
+    pub shadow_rays: u32,
 }
 
 /// What a descriptor set is made with.
@@ -279,6 +281,8 @@ pub struct ArealightResources {
     pub lobe_horizons: ArealightBuffer,
     /// What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
     pub tile_lists: ArealightBuffer,
+    /// Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
+    pub shadow_picks: ArealightBuffer,
 }
 
 /// What differs from frame to frame.
@@ -293,8 +297,8 @@ pub struct ArealightFrame {
     pub camera: [f32; 3],
     /// ArealightPackedLights.summary of the lights in the set's buffers.
     pub lights: ArealightLightSummary,
-    /// 0
-    pub reserved: u32,
+    /// With shadow rays, of their random numbers: one more in each frame. Else 0.
+    pub seed: u32,
     /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
     /// be null with AREALIGHT_POSITION_IMAGE.
     pub position_from_clip: *const f32,
@@ -313,6 +317,68 @@ pub struct ArealightTileMemory {
     pub usage: u32,
     /// 0
     pub reserved: u32,
+}
+
+/// What a shadow pass does with the radiance of its shade pass.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ArealightShadowOptions {
+    /// One of AREALIGHT_SHADOW_FILTER_*.
+    pub filter: u32,
+    /// One of AREALIGHT_SHADOW_HISTORY_*.
+    pub history: u32,
+    /// One of AREALIGHT_OUTPUT_*, for ArealightShadowResources.radiance.
+    pub output: u32,
+}
+
+/// The host's resources of a shadow pass beyond those of its shade pass.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct ArealightShadowResources {
+    /// A storage image (rgba16f) of the frame's size, in VK_IMAGE_LAYOUT_GENERAL. The pass alone writes it.
+    pub shadow: ArealightImage,
+    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the unshadowed one in
+    /// ArealightResources.radiance.
+    pub radiance: ArealightImage,
+    /// With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros before the first frame and after each cut. The
+    /// pass alone writes it; it is the same for all frames of a view. Else 0.
+    pub history: ArealightBuffer,
+    /// With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is, in parts of the image's
+    /// width and height (rg16f). Else 0.
+    pub motion: ArealightImage,
+    /// ArealightBlockerArrays.nodes. 0 with a module of the host's.
+    pub blocker_nodes: ArealightBuffer,
+    /// ArealightBlockerArrays.triangles; without triangles, any buffer. 0 with a module of the host's.
+    pub blocker_triangles: ArealightBuffer,
+}
+
+/// What a shadow pass records.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightShadowFrame {
+    /// That of the shade pass. With a history it has `position_from_clip`, also where positions come from an image, and `seed` counts frames.
+    pub frame: *const ArealightFrame,
+    /// VkDescriptorSet for set 1 of a module of the host's. Else 0.
+    pub host_set: u64,
+    /// What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with a
+    /// history.
+    pub origin_shift: [f32; 3],
+    /// 0
+    pub reserved: u32,
+}
+
+/// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct ArealightBlockerArrays {
+    /// Where the hierarchy's nodes go.
+    pub nodes: *mut c_void,
+    /// Where the triangles go.
+    pub triangles: *mut c_void,
+    /// In: bytes at `nodes`. Out: bytes that are needed.
+    pub nodes_size: u64,
+    /// In: bytes at `triangles`. Out: bytes that are needed, 48 a triangle.
+    pub triangles_size: u64,
 }
 
 /// The lights' images: a layer each, all of one size, with the levels that footprints are looked up in.

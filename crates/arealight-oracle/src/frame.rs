@@ -1,10 +1,13 @@
 //! The surface frame of a shading point.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// Below this squared sine between view and normal the tangent is taken from a fixed axis: what is left of
 /// the view after its normal part is subtracted would be rounding error.
 const PARALLEL: f64 = 1e-28;
+
+/// Below this squared sine between a tangent and the normal the tangent has no direction: what float32 leaves of it is rounding.
+const AXIS_PARALLEL: f64 = 1e-10;
 
 /// An orthonormal, right-handed frame in which z is the normal and the view lies in the xz plane, x ≥ 0.
 ///
@@ -48,6 +51,18 @@ impl SurfaceFrame {
     /// A vector in the coordinates of the inputs, from one of the surface frame's.
     pub fn from_surface(&self, vector: DVec3) -> DVec3 {
         self.axes * vector
+    }
+
+    /// The direction of `tangent` in the surface's plane, unit, in the frame's x and y. One along the normal, or zero, counts as the
+    /// first axis that is far from the normal, whatever the view.
+    pub fn axis(&self, tangent: DVec3) -> DVec2 {
+        let normal = self.axes.z_axis;
+        let project = |v: DVec3| v - normal * normal.dot(v);
+        let mut flat = project(direction_or(tangent, normal));
+        if flat.length_squared() < AXIS_PARALLEL {
+            flat = project(if normal.x.abs() < 0.6 { DVec3::X } else { DVec3::Y });
+        }
+        self.to_surface(flat).truncate().normalize_or(DVec2::X)
     }
 
     /// Cosine of the angle between normal and view, in [-1, 1]; negative for a view below the surface.

@@ -4,7 +4,9 @@
 //! *Understanding the Masking-Shadowing Function* (G2); Heitz 2018, *Sampling the GGX Distribution of
 //! Visible Normals* (sampling).
 
-use glam::DVec3;
+use crate::frame::SurfaceFrame;
+use crate::material::Surface;
+use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
 /// An isotropic GGX lobe.
@@ -87,5 +89,46 @@ impl Ggx {
         // D G1 <v, h> / cos_v, with G1 / cos_v = 2 / (cos_v + sqrt(alpha² + (1 - alpha²) cos_v²))
         let root = (a2 + (1.0 - a2) * view.z * view.z).sqrt();
         self.distribution(half) * 2.0 * view.dot(half).max(0.0) / (view.z + root)
+    }
+}
+
+/// A GGX lobe of two alphas, height-correlated as [`Ggx`] is (Heitz 2014, appendix A).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnisotropicGgx {
+    /// Unit, in the surface's plane of the surface frame: `alpha.x` runs along it.
+    pub axis: DVec2,
+    /// Alpha along the axis and across it, above 0.
+    pub alpha: DVec2,
+}
+
+impl AnisotropicGgx {
+    /// The lobe of a surface in its frame; `None` where it has one alpha.
+    pub fn of(surface: &Surface, frame: &SurfaceFrame) -> Option<Self> {
+        let anisotropy = surface.anisotropy.as_ref()?;
+        let axis = frame.axis(anisotropy.tangent);
+        Some(Self { axis, alpha: DVec2::new(anisotropy.alpha, surface.alpha) })
+    }
+
+    /// A vector of the surface frame, in the frame of the axis and the normal.
+    pub fn to_axis(&self, vector: DVec3) -> DVec3 {
+        let flat = DVec2::new(self.axis.x, -self.axis.y).rotate(vector.truncate());
+        flat.extend(vector.z)
+    }
+
+    /// As [`Ggx::evaluate`].
+    pub fn evaluate(&self, view: DVec3, light: DVec3) -> f64 {
+        if light.z <= 0.0 || view.z < 0.0 {
+            return 0.0;
+        }
+        let half = self.to_axis((view + light).normalize_or_zero());
+        let slope = (half.truncate() / self.alpha).length_squared() + half.z * half.z;
+        let distribution = 1.0 / (PI * self.alpha.x * self.alpha.y * slope * slope);
+        let stretched = |direction: DVec3| {
+            let direction = self.to_axis(direction);
+            (direction * self.alpha.extend(1.0)).length()
+        };
+        // f = D G2 / (4 cos_v cos_l); G2 / (4 cos_v cos_l) in a form without division by either cosine
+        let visibility = 0.5 / (light.z * stretched(view) + view.z * stretched(light));
+        distribution * visibility * light.z
     }
 }

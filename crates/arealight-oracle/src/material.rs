@@ -43,7 +43,7 @@ impl Default for Material {
     }
 }
 
-/// What the lobes need to know of a surface: a Lambert lobe and a GGX lobe, added, and a coat above both.
+/// What the lobes need to know of a surface: a diffuse lobe and a GGX lobe, added or coupled, and a coat above both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Lambert albedo in [0, 1]; the lobe is `albedo / pi`.
@@ -54,10 +54,52 @@ pub struct Surface {
     pub f90: f64,
     /// GGX alpha, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
+    /// Roughness of the diffuse lobe in [0, 1]: 0 is Lambert's, else EON of Portsmouth, Kutz and Hill 2025.
+    pub diffuse_roughness: f64,
+    /// What lies above the diffuse lobe; `None` where the two lobes are added.
+    pub interface: Option<Interface>,
     /// What lies above both lobes.
     pub coat: Option<Coat>,
     /// What lies above both lobes and below the coat.
     pub sheen: Option<Sheen>,
+    /// Where the GGX lobe is stretched along a tangent; [`Surface::alpha`] is that across it then.
+    pub anisotropy: Option<Anisotropy>,
+}
+
+/// A GGX distribution of two alphas, of which this is one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Anisotropy {
+    /// Any length and any angle to the surface, onto which it is projected; zero and one along the normal count as some direction of
+    /// the surface.
+    pub tangent: DVec3,
+    /// GGX alpha along it, not below [`arealight::MIN_ALPHA`].
+    pub alpha: f64,
+}
+
+impl Anisotropy {
+    /// Alphas along the tangent and across it of a roughness and an `anisotropyStrength`, both in [0, 1], of
+    /// `KHR_materials_anisotropy`.
+    pub fn gltf_alphas(roughness: f64, strength: f64) -> [f64; 2] {
+        let alpha = roughness * roughness;
+        [alpha + (1.0 - alpha) * strength * strength, alpha].map(|alpha| alpha.max(arealight::MIN_ALPHA))
+    }
+}
+
+impl Default for Surface {
+    /// Black, with an alpha of 1.
+    fn default() -> Self {
+        Self {
+            diffuse_albedo: DVec3::ZERO,
+            f0: DVec3::ZERO,
+            f90: 0.0,
+            alpha: 1.0,
+            diffuse_roughness: 0.0,
+            interface: None,
+            coat: None,
+            sheen: None,
+            anisotropy: None,
+        }
+    }
 }
 
 /// Sheen, as `KHR_materials_sheen` has it: the Charlie lobe ([`crate::sheen`]), added to what its albedo at the view leaves of the lobes
@@ -77,8 +119,21 @@ impl Sheen {
     }
 }
 
+/// The interface that light crosses on its way to a Lambert lobe, which gets what Schlick's Fresnel term leaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interface {
+    /// Reflectance at normal incidence, in [0, 1].
+    pub f0: f64,
+    /// Reflectance at grazing incidence, in [0, 1].
+    pub f90: f64,
+    /// Whether the lobe gets what the albedo of the GGX lobe leaves at the view, as in OpenPBR
+    /// ([`Effects::COUPLED_BY_ALBEDO`](arealight::Effects::COUPLED_BY_ALBEDO)); else what the Fresnel term of the half vector leaves, as in
+    /// glTF.
+    pub by_albedo: bool,
+}
+
 /// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel term. It reflects the part
-/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest.
+/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest. Or as OpenPBR has it, by its albedo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coat {
     /// How much of the surface it covers, in (0, 1].
@@ -87,6 +142,9 @@ pub struct Coat {
     pub alpha: f64,
     /// Its normal, of any length above zero; `None` where it is the surface's.
     pub normal: Option<DVec3>,
+    /// Whether it has Schlick's Fresnel term of the half vector, and what is below gets what its albedo at the view leaves
+    /// ([`Effects::COAT_BY_ALBEDO`](arealight::Effects::COAT_BY_ALBEDO)).
+    pub by_albedo: bool,
 }
 
 impl Coat {
@@ -104,7 +162,7 @@ impl Material {
     /// The surface of this material: what `arealight_surface_from_metalness` does in GLSL.
     ///
     /// The Lambert albedo is `base_color (1 - metalness)`; the lobes are added without Fresnel coupling, as
-    /// in most real-time engines. The coat has the surface's normal.
+    /// in many real-time engines. The coat has the surface's normal.
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
         let base = self.base_color.as_dvec3();
@@ -115,12 +173,27 @@ impl Material {
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
-            coat: (weight > 0.0).then(|| Coat { weight, alpha: alpha(self.coat_roughness), normal: None }),
+            diffuse_roughness: 0.0,
+            interface: None,
+            coat: (weight > 0.0).then(|| Coat {
+                weight,
+                alpha: alpha(self.coat_roughness),
+                normal: None,
+                by_albedo: false,
+            }),
             sheen: (self.sheen_color != Vec3::ZERO).then(|| Sheen {
                 color: self.sheen_color.as_dvec3(),
                 roughness: f64::from(self.sheen_roughness),
             }),
+            anisotropy: None,
         }
+    }
+
+    /// The same with the Lambert lobe coupled, as glTF has it.
+    pub fn coupled_surface(&self) -> Surface {
+        let f0 = f64::from(self.dielectric_f0.max_element());
+        let interface = Interface { f0, f90: f64::from(self.dielectric_f90), by_albedo: false };
+        Surface { interface: Some(interface), ..self.surface() }
     }
 }
 

@@ -1,7 +1,9 @@
 //! A polygon light on a surface: the truth by cubature of the true BRDF, and the answer of the fitted table
 //! in float64, the twin of the GLSL.
 
+mod anisotropy;
 mod coat;
+mod diffuse;
 pub mod footprint;
 pub mod poses;
 mod shapes;
@@ -16,7 +18,7 @@ pub use textured::transformed_image_integral;
 use crate::cubature::{Estimate, Region, Settings, angles, distance_to_origin, edges};
 use crate::formula::ggx_formula;
 use crate::frame::SurfaceFrame;
-use crate::ggx::Ggx;
+use crate::ggx::{AnisotropicGgx, Ggx};
 use crate::material::Surface;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
@@ -94,7 +96,7 @@ pub fn truth(
     light: &RelativeLight,
     settings: &Settings,
 ) -> Truth {
-    let Ok(truth) = coat::layered::<Infallible>(surface, normal, view, |surface, normal, view| {
+    let Ok(truth) = coat::layered::<Infallible>(surface, normal, view, settings, |surface, normal, view| {
         Ok(uncoated_truth(surface, normal, view, light, settings))
     });
     truth
@@ -120,7 +122,7 @@ fn uncoated_truth(
         Region::default()
     };
     let shown = |direction| image.as_ref().map_or(DVec3::ONE, |image| image.color(direction));
-    let signed = reflected(surface, frame.view(), &region, settings, shown);
+    let signed = reflected(surface, &frame, &region, settings, shown);
     // A two-sided light seen from behind has a negative solid angle
     Truth {
         radiance: light.radiance
@@ -134,34 +136,38 @@ fn uncoated_truth(
 /// with the other sign.
 fn reflected(
     surface: &Surface,
-    view: DVec3,
+    frame: &SurfaceFrame,
     region: &Region,
     settings: &Settings,
     shown: impl Fn(DVec3) -> DVec3,
 ) -> Truth {
-    let region = region.clipped(DVec3::Z);
-    let lobe = Ggx { alpha: surface.alpha };
+    let (region, view) = (region.clipped(DVec3::Z), frame.view());
     // Integrate each lobe over the light
     let diffuse = if surface.diffuse_albedo == DVec3::ZERO {
         Estimate::default()
     } else {
+        let by_albedo = diffuse::albedo_part(surface, frame, settings);
         region.integrate(settings, angles, |direction| {
-            (shown(direction) * (direction.z.max(0.0) / PI)).to_array()
+            let part = diffuse::part(surface.interface, by_albedo, view, direction);
+            let albedo = diffuse::rough(surface.diffuse_albedo, surface.diffuse_roughness, view, direction);
+            (albedo * shown(direction) * (part * direction.z.max(0.0) / PI)).to_array()
         })
     };
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
         Estimate::default()
     } else {
         let grazing = DVec3::splat(surface.f90) - surface.f0;
-        integrate_lobe(lobe, view, &region, settings, |direction, value| {
+        let weigh = |direction: DVec3, value: f64| {
             let fresnel = surface.f0 + grazing * Ggx::schlick_weight(view, direction);
             (shown(direction) * fresnel * value).to_array()
-        })
+        };
+        match AnisotropicGgx::of(surface, frame) {
+            None => integrate_lobe(Ggx { alpha: surface.alpha }, view, &region, settings, weigh),
+            Some(lobe) => integrate_lobe(lobe, view, &region, settings, weigh),
+        }
     };
     // Add them
-    let sum = |diffuse: [f64; 3], glossy: [f64; 3]| {
-        surface.diffuse_albedo * DVec3::from_array(diffuse) + DVec3::from_array(glossy)
-    };
+    let sum = |diffuse: [f64; 3], glossy: [f64; 3]| DVec3::from_array(diffuse) + DVec3::from_array(glossy);
     let base = Truth {
         radiance: sum(diffuse.value, glossy.value),
         error: sum(diffuse.error, glossy.error),
@@ -196,9 +202,53 @@ pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settin
     })
 }
 
+/// What a GGX lobe with Schlick's Fresnel term reflects of light from everywhere.
+fn hemisphere_albedo(lobe: impl Microfacets, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
+    let hemisphere = Region::sphere().clipped(DVec3::Z);
+    let parts = integrate_lobe(lobe, view, &hemisphere, settings, |direction, value| {
+        [value, value * Ggx::schlick_weight(view, direction)]
+    });
+    let [lobe, schlick] = parts.value;
+    f0 * lobe + (f90 - f0) * schlick
+}
+
+/// A lobe as its integration needs it.
+trait Microfacets: Copy {
+    /// `f cos` without Fresnel term.
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64;
+    /// The tangent of a half vector from the normal, in units of alpha, times its cosine.
+    fn slope(&self, half: DVec3) -> DVec3;
+    /// The smaller alpha.
+    fn smallest_alpha(&self) -> f64;
+}
+
+impl Microfacets for Ggx {
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64 {
+        self.evaluate(view, light)
+    }
+    fn slope(&self, half: DVec3) -> DVec3 {
+        half.with_z(0.0) / self.alpha
+    }
+    fn smallest_alpha(&self) -> f64 {
+        self.alpha
+    }
+}
+
+impl Microfacets for AnisotropicGgx {
+    fn evaluate(&self, view: DVec3, light: DVec3) -> f64 {
+        self.evaluate(view, light)
+    }
+    fn slope(&self, half: DVec3) -> DVec3 {
+        (self.to_axis(half).truncate() / self.alpha).extend(0.0)
+    }
+    fn smallest_alpha(&self) -> f64 {
+        self.alpha.min_element()
+    }
+}
+
 /// Integrates what `weigh` makes of a direction and of `f cos` there.
 fn integrate_lobe<const N: usize>(
-    lobe: Ggx,
+    lobe: impl Microfacets,
     view: DVec3,
     region: &Region,
     settings: &Settings,
@@ -214,15 +264,16 @@ fn integrate_lobe<const N: usize>(
 /// The edges of a triangle in units of the scale on which the GGX lobe varies: that of D over the half
 /// vectors, `alpha + sin theta_h`; that of masking over the light's height, which goes from none to full
 /// within the smaller of alpha and `cos theta_view`; and half a radian.
-fn lengths_on_lobe(lobe: Ggx, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
+fn lengths_on_lobe(lobe: impl Microfacets, view: DVec3, triangle: &[DVec3; 3]) -> [f64; 3] {
     let directions = triangle.map(DVec3::normalize_or_zero);
     // Project the half vectors onto the surface: D is a function of their distance from the normal
-    let halves = directions.map(|light| (view + light).normalize_or_zero().with_z(0.0));
-    let half_scale = lobe.alpha + distance_to_origin(&halves);
+    let halves = directions.map(|light| lobe.slope((view + light).normalize_or_zero()));
+    let half_scale = 1.0 + distance_to_origin(&halves);
+    let alpha = lobe.smallest_alpha();
     let lowest = directions[0].z.min(directions[1].z).min(directions[2].z).max(0.0);
-    let height_scale = lowest + view.z.min(lobe.alpha) + FINEST_HEIGHT;
+    let height_scale = lowest + view.z.min(alpha) + FINEST_HEIGHT;
     let (steps, angles) = (edges(&halves), edges(&directions));
-    let finest = 1e-2 * lobe.alpha * lobe.alpha;
+    let finest = 1e-2 * alpha * alpha;
     std::array::from_fn(|i| {
         // Near grazing the lobe narrows to a fan: the error estimate sees to what is finer than this
         let step = if angles[i] > finest { steps[i] / half_scale } else { 0.0 };
@@ -280,16 +331,18 @@ pub fn ltc_on(
         }
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    // Integrate the cosine
+    // Integrate the cosine, or the diffuse lobe's transformed one
+    let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
         _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
-        None => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
-        Some(image) => {
-            let signed = transformed_image_integral(&DMat3::IDENTITY, &vertices, image, false);
+        None if inverse == DMat3::IDENTITY => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
+        Some(image) if inverse == DMat3::IDENTITY => {
+            let signed = transformed_image_integral(&inverse, &vertices, image, false);
             signed.to_array().map(|channel| emitted(channel, light.two_sided)).into()
         }
+        _ => lobe(&inverse, share_above_surface(&inverse)),
     };
-    let diffuse = surface.diffuse_albedo * shown;
+    let diffuse = albedo * shown;
     light.radiance * layered(quality, table, surface, &frame, diffuse + glossy, lobe)
 }
 
@@ -308,7 +361,7 @@ fn layered(
     };
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
-    below.lerp(coat.albedo * lobe(&coat.inverse, coat.above_surface), coat.share)
+    below * (1.0 - coat.share) + coat.albedo * lobe(&coat.inverse, coat.above_surface)
 }
 
 /// What the table or the formula holds for a lobe.
@@ -316,6 +369,19 @@ fn fitted_sample(quality: Quality, table: &LightTable, alpha: f64, cos_view: f64
     match quality.lobes {
         Lobes::Table => table.lookup(alpha.sqrt(), cos_view),
         Lobes::Formula => ggx_formula(alpha.sqrt(), cos_view),
+    }
+}
+
+/// Likewise, for the specular lobe of a surface.
+fn surface_sample(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+) -> TableSample {
+    match AnisotropicGgx::of(surface, frame) {
+        None => fitted_sample(quality, table, surface.alpha, frame.cos_view()),
+        Some(lobe) => anisotropy::sample(quality, table, &lobe, frame.view()),
     }
 }
 
@@ -328,7 +394,7 @@ fn glossy_part(
     frame: &SurfaceFrame,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
-    let sample = fitted_sample(quality, table, surface.alpha, frame.cos_view());
+    let sample = surface_sample(quality, table, surface, frame);
     let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
     let f0_part = surface.f0 * sample.albedo;
     let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;

@@ -6,6 +6,7 @@ use crate::layouts::Layouts;
 use crate::pass::{Resource, check_module};
 use crate::pipelines::Pipelines;
 use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of, push_constants_of_view};
+use arealight::LightSummary;
 use arealight::gpu::ShadowConstants;
 use arealight::kernels::{SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
@@ -244,20 +245,20 @@ impl ShadowPass {
         unsafe { self.rays.layouts().write_set(set, &all) }
     }
 
-    /// Makes the pipelines, which [`ShadowPass::record`] would otherwise do when it is first called.
+    /// Makes the pipelines for a frame of these lights, which [`ShadowPass::record`] would otherwise do when the first such frame is recorded.
     ///
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
-    pub fn prepare(&self) -> Result<(), Error> {
-        self.rays.with(self.rays_constants(), |_| ())?;
+    pub fn prepare(&self, lights: LightSummary) -> Result<(), Error> {
+        self.rays.with(self.rays_constants(lights), |_| ())?;
         if self.has_history() {
             self.history.with(self.history_constants(), |_| ())?;
         }
         self.filter.with(self.filter_constants(), |_| ())
     }
 
-    fn rays_constants(&self) -> Vec<(u32, u32)> {
-        plan::shadow_rays_specialization(self.options)
+    fn rays_constants(&self, lights: LightSummary) -> Vec<(u32, u32)> {
+        plan::shadow_rays_specialization(self.options, lights)
     }
 
     fn filter_constants(&self) -> Vec<(u32, u32)> {
@@ -344,13 +345,13 @@ impl ShadowPass {
         self.rays.layouts().check_host_set(frame.host_set)?;
         let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
         let head = self.history_head(resources, frame)?;
-        let ShadeFrame { seed, size, .. } = *frame.shade;
+        let ShadeFrame { seed, size, lights, .. } = *frame.shade;
         let constants = ShadowConstants { position_from_clip, camera, seed, size };
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
         self.rays.check(set, bytemuck::bytes_of(&constants), groups)?;
-        self.prepare()?;
+        self.prepare(lights)?;
         let sets = std::iter::once(set).chain(frame.host_set).collect();
-        Ok(ReadyFrame { sets, constants, groups, head })
+        Ok(ReadyFrame { sets, constants, groups, head, lights })
     }
 
     /// Records one dispatch.
@@ -364,7 +365,7 @@ impl ShadowPass {
         ready: &ReadyFrame,
     ) -> Result<(), Error> {
         let (pipelines, specialization) = match stage {
-            ShadowStage::Rays => (&self.rays, self.rays_constants()),
+            ShadowStage::Rays => (&self.rays, self.rays_constants(ready.lights)),
             ShadowStage::History => (&self.history, self.history_constants()),
             ShadowStage::Filter => (&self.filter, self.filter_constants()),
         };
@@ -429,6 +430,7 @@ struct ReadyFrame {
     constants: ShadowConstants,
     groups: [u32; 3],
     head: Option<HistoryHead>,
+    lights: LightSummary,
 }
 
 /// Of a history's head, what one frame writes: see `shadow_history.glsl`.

@@ -6,8 +6,8 @@ use crate::gpu::GpuBvhNode;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Triangles that block light from both sides, in a binary hierarchy of boxes. The root is node 0; the children of an inner node are
-/// neighbours, after it.
+/// Triangles that block light from both sides, in a binary hierarchy of boxes. The root is node 0; nodes lie in the order in which a ray comes
+/// to them, so that it goes on with the next one, or past all in a box that it misses ([`GpuBvhNode::first`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blockers {
     /// Never empty: without triangles it is one node of zeros, which a traversal passes by.
@@ -21,8 +21,7 @@ pub struct Blockers {
     pub max_depth: u32,
 }
 
-/// The deepest hierarchy, in nodes from the root to a leaf: a traversal with a stack of so many entries holds it. `BVH_STACK_SIZE` in
-/// `shaders/kernels/bvh.glsl`.
+/// The deepest hierarchy, in nodes from the root to a leaf: a ray that ends in a leaf has been through so many boxes.
 pub const MAX_DEPTH: u32 = 32;
 
 /// The most triangles: 3 GiB of records, near what devices bind.
@@ -100,7 +99,7 @@ fn depth(nodes: &[GpuBvhNode]) -> u32 {
         deepest = deepest.max(depth);
         let node = nodes[index];
         if node.is_inner() {
-            stack.extend([(node.first as usize, depth + 1), (node.first as usize + 1, depth + 1)]);
+            stack.extend([(index + 1, depth + 1), (nodes[index + 1].end(index + 1), depth + 1)]);
         }
     }
     deepest
@@ -142,37 +141,44 @@ struct Builder<'a> {
     nodes: Vec<GpuBvhNode>,
 }
 
-/// A part of the order, with the node that is to hold it.
+/// A part of the order that a node is to hold.
 struct Task {
-    node: usize,
     range: Range<usize>,
     depth: u32,
 }
 
 impl<'a> Builder<'a> {
     fn new(limit: u32, boxes: &'a [Box3]) -> Self {
-        Self { limit, boxes, order: (0..boxes.len() as u32).collect(), nodes: vec![EMPTY_NODE] }
+        Self { limit, boxes, order: (0..boxes.len() as u32).collect(), nodes: vec![] }
     }
 
     /// Nodes, and the order of the leaves' boxes.
     fn build(mut self) -> (Vec<GpuBvhNode>, Vec<u32>) {
         let mut tasks = vec![];
-        if !self.boxes.is_empty() {
-            tasks.push(Task { node: 0, range: 0..self.order.len(), depth: 1 });
+        if self.boxes.is_empty() {
+            self.nodes.push(EMPTY_NODE);
+        } else {
+            tasks.push(Task { range: 0..self.order.len(), depth: 1 });
         }
-        while let Some(Task { node, range, depth }) = tasks.pop() {
+        // A node's descendants are made right after it
+        let mut inner = vec![];
+        while let Some(Task { range, depth }) = tasks.pop() {
             let bounds = self.bounds(&range);
             let [min, max] = bounds.map(|corner| corner.to_array());
             let Some(middle) = self.split(&range, bounds, depth) else {
                 let (first, count) = (range.start as u32, range.len() as u32);
-                self.nodes[node] = GpuBvhNode { min, first, max, count };
+                self.nodes.push(GpuBvhNode { min, first, max, count });
                 continue;
             };
-            let first = self.nodes.len();
-            self.nodes[node] = GpuBvhNode { min, first: first as u32, max, count: 0 };
-            self.nodes.extend([EMPTY_NODE; 2]);
-            tasks.push(Task { node: first, range: range.start..middle, depth: depth + 1 });
-            tasks.push(Task { node: first + 1, range: middle..range.end, depth: depth + 1 });
+            inner.push(self.nodes.len());
+            self.nodes.push(GpuBvhNode { min, first: 0, max, count: 0 });
+            tasks.push(Task { range: range.start..middle, depth: depth + 1 });
+            tasks.push(Task { range: middle..range.end, depth: depth + 1 });
+        }
+        // Children are before their parents here
+        for node in inner.into_iter().rev() {
+            let second = self.nodes[node + 1].end(node + 1);
+            self.nodes[node].first = self.nodes[second].end(second) as u32;
         }
         (self.nodes, self.order)
     }
@@ -302,8 +308,17 @@ mod tests {
             let own = [Vec3::from_array(node.min), Vec3::from_array(node.max)];
             assert!(own[0].cmpge(low).all() && own[1].cmple(high).all(), "node {index} leaves its parent");
             if node.is_inner() {
-                assert!(node.first as usize > index, "a traversal ends");
-                stack.extend([(node.first as usize, own), (node.first as usize + 1, own)]);
+                let second = blockers.nodes[index + 1].end(index + 1);
+                assert!(second > index + 1, "a traversal ends");
+                assert_eq!(
+                    node.end(index),
+                    blockers.nodes[second].end(second),
+                    "node {index} ends with its children"
+                );
+                stack.extend([(index + 1, own), (second, own)]);
+            }
+            if index == 0 && !boxes.is_empty() {
+                assert_eq!(node.end(0), blockers.nodes.len(), "the root holds every node");
             }
             for place in node.first..node.first + node.count {
                 let held = blockers.order[place as usize] as usize;
@@ -333,7 +348,7 @@ mod tests {
             [point; 2]
         };
         let boxes: Vec<Box3> = (0..530).map(point).collect();
-        // The twin: without the limit it is deeper than the kernels' stack
+        // The twin: without the limit it is deeper
         let free = Blockers::no_deeper_than(u32::MAX, &triangles(&boxes));
         assert!(free.max_depth > MAX_DEPTH, "depth {}", free.max_depth);
         built(&boxes);
@@ -368,10 +383,10 @@ mod tests {
                 [corner, corner + 0.1]
             })
             .collect();
-        let root = built(&boxes).nodes[0].first as usize;
-        let heights = |blockers: &Blockers| [0, 1].map(|i| blockers.nodes[root + i].max[1]);
-        let blockers = built(&boxes);
-        assert_eq!(heights(&blockers).map(f32::round), [0.0, 50.0]);
+        let nodes = built(&boxes).nodes;
+        let mut heights = [1, nodes[1].end(1)].map(|child| nodes[child].max[1].round());
+        heights.sort_by(f32::total_cmp);
+        assert_eq!(heights, [0.0, 50.0]);
     }
 
     #[test]

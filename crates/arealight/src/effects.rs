@@ -38,8 +38,21 @@ bitflags::bitflags! {
         const COAT = 1 << 13;
         /// Some coat has a normal of its own, other than its surface's. Such a surface needs [`Effects::COAT`], too.
         const COAT_NORMAL = 1 << 14;
+        /// The diffuse lobe gets what the Fresnel term above it leaves, as in glTF; else it is added to the specular lobe, as in many
+        /// engines, and dielectrics reflect 4 to 24 % too much.
+        const COUPLED = 1 << 15;
+        /// It gets what the specular lobe's albedo leaves, as in OpenPBR. With [`Effects::COUPLED`].
+        const COUPLED_BY_ALBEDO = 1 << 16;
+        /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR; else what a Fresnel term of the view does, as in glTF.
+        /// With [`Effects::COAT`].
+        const COAT_BY_ALBEDO = 1 << 17;
+        /// Some diffuse lobe is rough, EON instead of Lambert's. No layout of ours has its roughness: a G-buffer of the host's own does.
+        const DIFFUSE_ROUGHNESS = 1 << 18;
+        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it. No layout of ours has them: a G-buffer of the host's
+        /// own does.
+        const ANISOTROPY = 1 << 20;
         /// Some surface has sheen, so the G-buffer's image of sheen is read.
-        const SHEEN = 1 << 15;
+        const SHEEN = 1 << 19;
     }
 }
 
@@ -50,13 +63,20 @@ impl Effects {
     /// With any of these the light textures are read.
     pub const IMAGES: Self = Self::TEXTURED.union(Self::TEXTURED_ELLIPSE);
 
+    /// How layers of surfaces share light: the material model, a choice of the host's that changes the picture. Of every other effect the
+    /// code alone changes nothing where no surface or light needs it.
+    pub const MODEL: Self = Self::COUPLED.union(Self::COUPLED_BY_ALBEDO).union(Self::COAT_BY_ALBEDO);
+
     /// What surfaces need, whatever the lights.
     pub const SURFACES: Self = Self::DIFFUSE
         .union(Self::GLOSSY)
         .union(Self::SPECULAR_INPUT)
         .union(Self::COAT)
         .union(Self::COAT_NORMAL)
-        .union(Self::SHEEN);
+        .union(Self::MODEL)
+        .union(Self::DIFFUSE_ROUGHNESS)
+        .union(Self::SHEEN)
+        .union(Self::ANISOTROPY);
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -74,7 +94,12 @@ impl Effects {
             (Self::TEXTURED_ELLIPSE, "textured_ellipse"),
             (Self::COAT, "coat"),
             (Self::COAT_NORMAL, "coat_normal"),
+            (Self::COUPLED, "coupled"),
+            (Self::COUPLED_BY_ALBEDO, "coupled_by_albedo"),
+            (Self::COAT_BY_ALBEDO, "coat_by_albedo"),
+            (Self::DIFFUSE_ROUGHNESS, "diffuse_roughness"),
             (Self::SHEEN, "sheen"),
+            (Self::ANISOTROPY, "anisotropy"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))

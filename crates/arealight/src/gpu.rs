@@ -124,8 +124,8 @@ pub struct ShadowConstants {
 pub struct GpuBvhNode {
     /// The box's smallest corner, relative to the origin.
     pub min: [f32; 3],
-    /// Index of the first of a leaf's triangles; or of the first of an inner node's two children, after its own. All
-    /// zeros are a node of nothing.
+    /// Index of the first of a leaf's triangles; or of the node after all those in an inner node, of whose two children the first is the next node. A
+    /// root of zeros holds nothing.
     pub first: u32,
     /// The box's largest corner.
     pub max: [f32; 3],
@@ -137,6 +137,11 @@ impl GpuBvhNode {
     /// Whether it has children.
     pub fn is_inner(&self) -> bool {
         self.count == 0 && self.first > 0
+    }
+
+    /// The node after all those in this one, which is at `index`: where a ray that misses it goes on.
+    pub fn end(&self, index: usize) -> usize {
+        if self.is_inner() { self.first as usize } else { index + 1 }
     }
 }
 

@@ -213,15 +213,20 @@ pub fn shadow_history_size(size: [u32; 2]) -> u64 {
 
 /// The values of the constants of the kernel [`kernels::SHADOW_HISTORY`].
 pub fn shadow_history_specialization(options: ShadeOptions, history: ShadowHistory) -> Vec<(u32, u32)> {
-    let mut values = shadow_rays_specialization(options);
+    let mut values = shadow_specialization(options, options.surfaces & Effects::SURFACES);
     values.push((kernels::constant::SHADOW_MOTION, u32::from(history == ShadowHistory::MotionVectors)));
     values
 }
 
-/// The values of the constants of the kernel [`kernels::SHADOW_RAYS`].
-pub fn shadow_rays_specialization(options: ShadeOptions) -> Vec<(u32, u32)> {
+/// The values of the constants of the kernel [`kernels::SHADOW_RAYS`], for a frame's lights: what none of them needs is not in the pipeline.
+pub fn shadow_rays_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<(u32, u32)> {
+    shadow_specialization(options, options.effects(lights))
+}
+
+/// The values of the constants that every kernel of shadows has.
+fn shadow_specialization(options: ShadeOptions, effects: Effects) -> Vec<(u32, u32)> {
     vec![
-        (kernels::constant::EFFECTS, (options.surfaces & Effects::SURFACES).bits()),
+        (kernels::constant::EFFECTS, effects.bits()),
         (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
         (kernels::constant::FRESNEL, options.quality.fresnel as u32),
@@ -238,7 +243,7 @@ pub fn shadow_filter_specialization(
     history: ShadowHistory,
     output: Output,
 ) -> Vec<(u32, u32)> {
-    let mut values = shadow_rays_specialization(options);
+    let mut values = shadow_specialization(options, options.surfaces & Effects::SURFACES);
     values.extend([
         (kernels::constant::OUTPUT, output as u32 | options.format as u32),
         (kernels::constant::SHADOW_FILTER, filter as u32),
@@ -319,6 +324,22 @@ mod tests {
             values.iter().find(|(id, _)| *id == kernels::constant::HAS_QUADS).map(|(_, value)| *value)
         };
         assert_eq!([counts(3, 1, 0), counts(3, 0, 0)].map(has_quads), [Some(1), Some(0)]);
+    }
+
+    #[test]
+    fn shadow_rays_have_the_kinds_of_the_frames_lights() {
+        let options = ShadeOptions { shadow_rays: 1, ..ShadeOptions::default() };
+        let effects = |values: Vec<(u32, u32)>| {
+            values.into_iter().find(|(id, _)| *id == kernels::constant::EFFECTS).map(|(_, value)| value)
+        };
+        for kinds in [Effects::empty(), Effects::SPHERE, Effects::POLYGON | Effects::MESH] {
+            let lights = LightSummary { effects: kinds, ..counts(3, 1, 2) };
+            let shade = effects(shade_specialization(options, lights));
+            assert_eq!(effects(shadow_rays_specialization(options, lights)), shade);
+            // What comes after the rays does not differ by lights
+            let history = shadow_history_specialization(options, ShadowHistory::Camera);
+            assert_eq!(effects(history), Some(options.surfaces.bits()));
+        }
     }
 
     #[test]

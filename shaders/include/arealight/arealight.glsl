@@ -18,7 +18,7 @@
 // Reading order:
 //   common.glsl, options.glsl      conventions; what a translation unit may switch
 //   surface.glsl                   a shading point's surface and frame
-//   lobes/*                        table.glsl, formula.glsl -> specular.glsl -> coat.glsl; diffuse.glsl; sheen.glsl; lobe.glsl
+//   lobes/*                        table.glsl, formula.glsl -> specular.glsl -> anisotropy.glsl, coat.glsl; diffuse.glsl; sheen.glsl; lobe.glsl
 //   material.glsl                  which lobes a surface has: ArealightPoint
 //   form_factor/*                  arcs, quads, outlines, ellipses, spheres, tubes in any linear space
 //   lights/*                       a file per kind of light

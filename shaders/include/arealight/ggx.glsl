@@ -23,15 +23,20 @@ float arealight_ggx_visibility(float cos_view, float cos_light, float alpha) {
     return 0.5 / max(view + light, 1e-30);
 }
 
+// (1 - cos theta_vh)^5, of which Schlick's Fresnel term is f0 + (f90 - f0) times that.
+float arealight_schlick_weight(vec3 view, vec3 half_vector) {
+    float weight = 1.0 - clamp(dot(view, half_vector), 0.0, 1.0);
+    float weight2 = weight * weight;
+    return weight2 * weight2 * weight;
+}
+
 // f cos(theta_light) with Schlick's Fresnel term, a channel, 1/sr; zero for directions below the surface.
 vec3 arealight_ggx_evaluate(vec3 view, vec3 light, float alpha, vec3 f0, float f90) {
     if (light.z <= 0.0 || view.z < 0.0) {
         return vec3(0.0);
     }
     vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
-    float weight = 1.0 - clamp(dot(view, half_vector), 0.0, 1.0);
-    float weight2 = weight * weight;
-    vec3 fresnel = f0 + (vec3(f90) - f0) * (weight2 * weight2 * weight);
+    vec3 fresnel = f0 + (vec3(f90) - f0) * arealight_schlick_weight(view, half_vector);
     return fresnel * (arealight_ggx_distribution(half_vector, alpha)
                     * arealight_ggx_visibility(view.z, light.z, alpha) * light.z);
 }

@@ -11,8 +11,8 @@
 //     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the light comes from,
 //     // and its z is the form factor
 //     vec3 arealight_vector_form_factor(mat3 space, Local local);
-//     // The colour that a lobe sees of its image, 1 without: what the radiance is multiplied with
-//     vec3 arealight_image_seen(mat3 space, Local local, vec3 vector);
+//     // The colour of its image averaged over a lobe, 1 without: what the radiance is multiplied with
+//     vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
 //
 // AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected and arealight_radiance.
 // EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop AREALIGHT_LOOPED_LOBES, where one after the other
@@ -50,7 +50,7 @@ float arealight_gained(float form_factor, float gain) {
         mat3 space = point.lobes[lobe].space;                                                       \
         vec3 vector = arealight_vector_form_factor(space, local);                                   \
         float form_factor = arealight_gained(arealight_form_factor(vector), point.lobes[lobe].gain); \
-        return form_factor * arealight_image_seen(space, local, vector);                            \
+        return form_factor * arealight_image_average(space, local, vector);                            \
     }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \

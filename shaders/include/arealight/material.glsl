@@ -1,6 +1,7 @@
 #ifndef AREALIGHT_MATERIAL_GLSL
 #define AREALIGHT_MATERIAL_GLSL
 
+#include "arealight/lobes/anisotropy.glsl"
 #include "arealight/lobes/coat.glsl"
 #include "arealight/lobes/diffuse.glsl"
 #include "arealight/lobes/sheen.glsl"
@@ -44,9 +45,25 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     ArealightPoint point;
     point.position = surface.position;
     point.to_frame = arealight_frame_matrix(frame);
-    point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_diffuse_lobe(surface.diffuse_albedo);
-    if (AREALIGHT_HAS_SPECULAR) {
+    point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
+    if (AREALIGHT_HAS_SPECULAR && AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
+        ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
+        if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
+            vec3 reflected = arealight_specular_albedo(stretched.table, vec3(surface.interface_f0), surface.interface_f90);
+            point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
+        }
+        if (AREALIGHT_SPLITS_FRESNEL) {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_f0_lobe(stretched, surface.f0);
+            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_anisotropic_schlick_lobe(stretched, surface.f0, surface.f90);
+        } else {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
+        }
+    } else if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
+        if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
+            vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
+            point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
+        }
         if (AREALIGHT_SPLITS_FRESNEL) {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
             point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);

@@ -11,16 +11,37 @@
 #ifndef AREALIGHT_SPECULAR
 #define AREALIGHT_SPECULAR 1
 #endif
-// A clear coat above both, ArealightSurface.coat; and with a normal of its own.
+// The diffuse lobe gets what the specular one's Fresnel term leaves, as in glTF: ArealightSurface.interface_f0, interface_f90. Else the
+// two are added, as many engines do. And by albedo: it gets what the specular lobe does not reflect of the view, as in OpenPBR.
+#ifndef AREALIGHT_COUPLED
+#define AREALIGHT_COUPLED 0
+#endif
+#ifndef AREALIGHT_COUPLED_BY_ALBEDO
+#define AREALIGHT_COUPLED_BY_ALBEDO 0
+#endif
+// The diffuse lobe is EON, ArealightSurface.diffuse_roughness.
+#ifndef AREALIGHT_DIFFUSE_ROUGHNESS
+#define AREALIGHT_DIFFUSE_ROUGHNESS 0
+#endif
+// A clear coat above both, ArealightSurface.coat; with a normal of its own; and with what is below getting what the coat does not reflect
+// of the view, as in OpenPBR, instead of what a Fresnel term of the view leaves, as in glTF.
 #ifndef AREALIGHT_COAT
 #define AREALIGHT_COAT 0
 #endif
 #ifndef AREALIGHT_COAT_NORMAL
 #define AREALIGHT_COAT_NORMAL 0
 #endif
+#ifndef AREALIGHT_COAT_BY_ALBEDO
+#define AREALIGHT_COAT_BY_ALBEDO 0
+#endif
 // Sheen above the first two and below a coat, ArealightSurface.sheen.
 #ifndef AREALIGHT_SHEEN
 #define AREALIGHT_SHEEN 0
+#endif
+
+// The specular lobe is stretched along a tangent, ArealightSurface.anisotropy.
+#ifndef AREALIGHT_ANISOTROPY
+#define AREALIGHT_ANISOTROPY 0
 #endif
 
 // Some light emits from both sides: those whose record says so.
@@ -91,8 +112,13 @@
 
 const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
 const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
+const bool AREALIGHT_COUPLES_DIFFUSE = bool(AREALIGHT_COUPLED);
+const bool AREALIGHT_COUPLES_BY_ALBEDO = bool(AREALIGHT_COUPLED_BY_ALBEDO);
+const bool AREALIGHT_HAS_ROUGH_DIFFUSE = bool(AREALIGHT_DIFFUSE_ROUGHNESS);
 const bool AREALIGHT_HAS_COAT = bool(AREALIGHT_COAT);
 const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
+const bool AREALIGHT_COATS_BY_ALBEDO = bool(AREALIGHT_COAT_BY_ALBEDO);
+const bool AREALIGHT_HAS_ANISOTROPY = bool(AREALIGHT_ANISOTROPY);
 const bool AREALIGHT_HAS_SHEEN = bool(AREALIGHT_SHEEN);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);

@@ -16,7 +16,15 @@ struct ArealightSheen {
     float roughness; // perceptual, in [0, 1]
 };
 
-// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added; and what lies on them.
+// A specular lobe of two roughnesses (with AREALIGHT_ANISOTROPY). A highlight is the longer along the tangent the more this exceeds
+// ArealightSurface.roughness, which is that across it.
+struct ArealightAnisotropy {
+    vec3 tangent;    // of any length, projected onto the surface; zero or along the normal: some direction of the surface
+    float roughness; // perceptual, along the tangent, in [0, 1]
+};
+
+// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added or with AREALIGHT_COUPLED coupled; and what lies
+// on them.
 struct ArealightSurface {
     vec3 position;       // relative to the host's origin, in the lights' unit of length
     vec3 normal;         // shading normal, of any length
@@ -25,7 +33,13 @@ struct ArealightSurface {
     vec3 f0;             // reflectance at normal incidence, in [0, 1]
     float f90;           // reflectance at grazing incidence, in [0, 1]
     float roughness;     // perceptual, in [0, 1]
+    // Of the interface that light crosses on its way to the diffuse lobe, whose channels are coupled by the largest; both 0 where there
+    // is none. Read with AREALIGHT_COUPLED alone
+    float interface_f0;  // reflectance at normal incidence, in [0, 1]
+    float interface_f90; // at grazing incidence, in [0, 1]
+    float diffuse_roughness; // of EON, in [0, 1]; 0: Lambert's lobe. Read with AREALIGHT_DIFFUSE_ROUGHNESS alone
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
+    ArealightAnisotropy anisotropy; // read with AREALIGHT_ANISOTROPY alone
     ArealightSheen sheen; // read with AREALIGHT_SHEEN alone
 };
 
@@ -45,6 +59,22 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.diffuse_albedo = base_color * (1.0 - metalness);
     surface.f0 = mix(dielectric_f0, base_color, metalness);
     surface.f90 = mix(dielectric_f90, 1.0, metalness);
+    surface.interface_f0 = max(dielectric_f0.r, max(dielectric_f0.g, dielectric_f0.b));
+    surface.interface_f90 = dielectric_f90;
+}
+
+// Perceptual roughness along the tangent, of KHR_materials_anisotropy: of a roughness, which is that across it, and an
+// anisotropyStrength, both in [0, 1].
+float arealight_gltf_anisotropy(float roughness, float strength) {
+    return sqrt(mix(roughness * roughness, 1.0, strength * strength));
+}
+
+// Perceptual roughness along the tangent and across it of OpenPBR's specular_roughness and specular_roughness_anisotropy, both in
+// [0, 1]. The sum of the squared alphas is that of the isotropic lobe.
+vec2 arealight_openpbr_anisotropy(float roughness, float anisotropy) {
+    float aspect = 1.0 - anisotropy;
+    float along = roughness * roughness * sqrt(2.0 / (1.0 + aspect * aspect));
+    return sqrt(vec2(min(along, 1.0), aspect * along));
 }
 
 // What a coat reflects at normal incidence: that of an index of refraction of 1.5.

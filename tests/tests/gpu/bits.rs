@@ -134,6 +134,12 @@ fn buffers() -> Buffers {
             coat_roughness: surface.number(&mut random),
             sheen_color: [glossy; 3],
             sheen_roughness: surface.number(&mut random),
+            interface_f0: 0.0,
+            interface_f90: glossy,
+            diffuse_roughness: surface.number(&mut random),
+            reserved: 0.0,
+            tangent: surface.vector(&mut random),
+            tangent_roughness: surface.number(&mut random),
         });
     }
     buffers

@@ -237,7 +237,7 @@ fn dark_frame(width: u32) -> ArealightFrame {
         height: 8,
         camera: [0.0; 3],
         lights: ArealightLightSummary::default(),
-        reserved: 0,
+        seed: 0,
         position_from_clip: null(),
         tile_lists: ArealightBuffer::default(),
     }

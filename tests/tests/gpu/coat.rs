@@ -32,8 +32,9 @@ fn coated(random: &mut Random, tilt: f64) -> Surface {
             weight: random.between(0.2, 1.0),
             alpha: 10.0_f64.powf(random.between(-2.0, 0.0)),
             normal: (tilt > 0.0).then_some(normal),
+            by_albedo: false,
         }),
-        sheen: None,
+        ..Surface::default()
     }
 }
 
@@ -198,7 +199,7 @@ fn a_white_surface_below_a_coat_sends_no_more_than_it_gets() {
         for tilt in [0.0_f64, 0.3, 1.2, 1.57, 2.5] {
             for theta in [0.0_f64, 0.7, 1.5, 1.569, 1.8] {
                 let normal = Some(DVec3::new(-0.8 * tilt.sin(), 0.6 * tilt.sin(), tilt.cos()));
-                let coat = Some(Coat { weight: 1.0, alpha, normal });
+                let coat = Some(Coat { weight: 1.0, alpha, normal, by_albedo: false });
                 let surface = Surface { coat, ..lambert_surface() };
                 let view = DVec3::new(theta.sin(), 0.0, theta.cos());
                 points.extend(box_faces().into_iter().map(|face| point(surface, view, face, false)));

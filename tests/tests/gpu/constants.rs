@@ -3,9 +3,7 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions};
 use arealight::pyramid::MOST_TAPS;
-use arealight::{
-    Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, blockers, tiles,
-};
+use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -48,7 +46,6 @@ const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_te
 const SHADOW_HISTORY_GLSL: &str = include_str!("../../../shaders/kernels/shadow_history.glsl");
 const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_picks.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
-const BVH_GLSL: &str = include_str!("../../../shaders/kernels/bvh.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
 
 #[test]
@@ -136,7 +133,6 @@ fn choices_have_the_same_numbers_in_glsl() {
     ] {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
     }
-    assert_constants(BVH_GLSL, "BVH_STACK_SIZE", &[("", number(blockers::MAX_DEPTH))]);
     let footprints = [
         ("ROUND", number(Footprint::Round as u32)),
         ("ELLIPSE", number(Footprint::Ellipse as u32)),

@@ -74,7 +74,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             sheen_roughness: sheens[i].w,
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
-        let surface = material.surface();
+        let surface = material.coupled_surface();
         EvalPoint {
             surface: Surface { coat: surface.coat.map(|coat| Coat { normal, ..coat }), ..surface },
             position: position + view.buffers.origin,
@@ -180,7 +180,7 @@ fn reference_converges(engine: &TestEngine, name: &str) {
     let mut view = view(engine, &scene);
     let emitted = view.renderer.radiance().unwrap();
     let samples = 256;
-    view.renderer.reference(Reference { samples, seed: 7, shadows: false }, |_| {}).unwrap();
+    view.renderer.reference(Reference { samples, seed: 7, ..Reference::default() }, |_| {}).unwrap();
     let sampled = view.renderer.radiance().unwrap();
 
     // The truth at every 37th pixel, by cubature
@@ -225,7 +225,10 @@ fn the_fitted_lobes_look_like_the_reference() {
         fitted.renderer.shade(scene.effects(), Quality::default()).unwrap();
         let fitted = fitted.renderer.radiance().unwrap();
         let mut sampled = view(&engine, &scene);
-        sampled.renderer.reference(Reference { samples: 64, seed: 3, shadows: false }, |_| {}).unwrap();
+        sampled
+            .renderer
+            .reference(Reference { samples: 64, seed: 3, ..Reference::default() }, |_| {})
+            .unwrap();
         let sampled = sampled.renderer.radiance().unwrap();
         let mean = |picture: &[Vec4]| {
             picture.iter().zip(&emitted).map(|(p, e)| (*p - *e).truncate().as_dvec3()).sum::<DVec3>()

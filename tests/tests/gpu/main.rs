@@ -2,14 +2,17 @@
 //!
 //! One binary, since each links the engine and the oracle. A test's name begins with its module: `tiles::…`.
 
+mod anisotropy;
 mod arcs;
 mod bits;
 mod blockers;
 mod c_api;
 mod c_pictures;
+mod c_shadows;
 mod coat;
 mod coat_tiles;
 mod constants;
+mod coupled;
 mod cpp_host;
 mod effects;
 mod footprints;

@@ -265,7 +265,9 @@ impl Frame<'_> {
     /// The mean of the first channel by the reference.
     fn reference(&self) -> f64 {
         let mut renderer = self.renderer();
-        renderer.reference(Reference { samples: 32, seed: 1, shadows: false }, |_| ()).expect("it samples");
+        renderer
+            .reference(Reference { samples: 32, coupled: false, ..Reference::default() }, |_| ())
+            .expect("it samples");
         let texels = renderer.radiance().expect("radiance");
         texels.iter().map(|texel| f64::from(texel.x)).sum::<f64>() / texels.len() as f64
     }

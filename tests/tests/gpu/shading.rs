@@ -122,8 +122,7 @@ fn fresnel_and_both_lobes_add_up() {
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: random.unit(),
         alpha: random.between(0.05, 1.0),
-        coat: None,
-        sheen: None,
+        ..Default::default()
     });
     let bound = |point: &EvalPoint| 2.0 * rounding(point.surface.alpha);
     let Some(comparison) = compare("both lobes", &points, Quality::default(), bound) else { return };
@@ -138,8 +137,7 @@ fn every_way_to_the_glossy_lobe_follows_its_twin() {
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: 1.0,
         alpha: random.between(0.05, 1.0),
-        coat: None,
-        sheen: None,
+        ..Default::default()
     });
     let Some(engine) = TestEngine::new() else { return };
     let mut answers: Vec<Vec<glam::Vec3>> = Vec::new();

@@ -75,7 +75,9 @@ impl View {
         let constants = self.buffers.constants(&self.camera, SIZE, Vec3::ZERO);
         let renderer = SceneRenderer::new(engine, &self.buffers, lights, constants, SIZE);
         let mut renderer = renderer.expect("it fits");
-        renderer.reference(Reference { samples, seed: 5, shadows }, |_| {}).expect("it samples");
+        renderer
+            .reference(Reference { samples, seed: 5, shadows, coupled: false }, |_| {})
+            .expect("it samples");
         let radiance = renderer.radiance().expect("a picture");
         let download = |image: &arealight_engine::host::Image| -> Vec<[f32; 4]> {
             image.download(Usage::COMPUTE_READ).expect("a picture")

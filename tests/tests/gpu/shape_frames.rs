@@ -230,7 +230,8 @@ fn effects_that_no_shape_needs_change_nothing() {
     let Some(engine) = TestEngine::new() else { return };
     let shapes = of_kinds(Effects::SPHERE);
     let needed = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPHERE;
-    let (few, many) = (shade(&engine, needed, &shapes), shade(&engine, Effects::all(), &shapes));
+    let (few, many) =
+        (shade(&engine, needed, &shapes), shade(&engine, Effects::all() - Effects::MODEL, &shapes));
     let apart = few.iter().zip(&many).map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0, f32::max);
     // The compiler may fuse another multiplication and addition of another pipeline
     assert!(apart < 2e-6, "{apart}");
@@ -280,7 +281,8 @@ fn the_reference_samples_shapes() {
             let renderer = SceneRenderer::new(&engine, &buffers, shapes, constants, SIZE);
             let mut renderer = renderer.expect("a renderer");
             if sampled {
-                let reference = Reference { samples: SAMPLES, seed: 10, shadows: false };
+                let reference =
+                    Reference { samples: SAMPLES, seed: 10, coupled: false, ..Reference::default() };
                 renderer.reference(reference, |_| {}).expect("a reference");
             } else {
                 let lobe = if glossy { Effects::GLOSSY } else { Effects::DIFFUSE };

@@ -110,6 +110,12 @@ impl<'a> Sweep<'a> {
                 coat_roughness: 0.0,
                 sheen_color: [0.0; 3],
                 sheen_roughness: 0.0,
+                interface_f0: 0.0,
+                interface_f90: 0.0,
+                diffuse_roughness: 0.0,
+                reserved: 0.0,
+                tangent: [0.0; 3],
+                tangent_roughness: material.roughness,
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();

@@ -289,7 +289,7 @@ fn effects_are_listed_with_what_needs_them() {
     assert!(effect("tube")["reason"].is_null(), "{summary:#}");
     let output = run(folder.path(), &["effects", &scene("sweep.glb")]);
     let told = text(&output.stdout);
-    for words in ["diffuse", "material '", "This scene's set: diffuse, glossy\n"] {
+    for words in ["diffuse", "material '", "This scene's set: diffuse, glossy, coupled\n"] {
         assert!(told.contains(words), "{words}: {told}");
     }
 }

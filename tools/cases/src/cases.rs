@@ -8,7 +8,7 @@ mod coat;
 mod fields;
 
 use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
-use arealight_oracle::material::{Sheen, Surface};
+use arealight_oracle::material::{Anisotropy, Interface, Sheen, Surface};
 use arealight_oracle::shading::{RelativeLight, ShownImage};
 use arealight_oracle::sheen::MIN_ROUGHNESS;
 use arealight_oracle::texture::Texture;
@@ -75,10 +75,12 @@ pub struct Case {
 /// What the surface of a case is made of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CaseMaterial {
-    /// A Lambert lobe.
+    /// A Lambert lobe, or a rough one.
     Diffuse {
-        /// Albedo, not negative.
+        /// Albedo, not negative; of a rough lobe at most 1.
         albedo: DVec3,
+        /// Roughness of EON in [0, 1]; 0 is Lambert's lobe.
+        roughness: f64,
     },
     /// A GGX lobe, and perhaps a Lambert lobe added to it.
     Ggx {
@@ -259,7 +261,13 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
 
 fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
     match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
-        "diffuse" => Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)? }),
+        "diffuse" => {
+            Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)?, roughness: 0.0 })
+        }
+        "eon" => Ok(CaseMaterial::Diffuse {
+            albedo: fields.color("albedo", 1.0)?,
+            roughness: fields.share("diffuse_roughness")?,
+        }),
         "sheen" => Ok(CaseMaterial::Sheen(read_sheen(fields)?)),
         bsdf @ ("ggx" | "coat" | "sheen_over") => {
             let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
@@ -289,7 +297,7 @@ fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
             Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat, sheen })
         }
         other => {
-            let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\" and \"diffuse\" are";
+            let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\", \"diffuse\" and \"eon\" are";
             Err(fields.error("bsdf", &format!("\"{other}\" is not known; {known}")))
         }
     }
@@ -474,14 +482,6 @@ impl Case {
     fn surface(&self) -> Result<Surface, Unsupported> {
         let unsupported = |reason: String| Err(Unsupported { reason });
         match &self.material {
-            CaseMaterial::Diffuse { albedo } => Ok(Surface {
-                diffuse_albedo: *albedo,
-                f0: DVec3::ZERO,
-                f90: 0.0,
-                alpha: 1.0,
-                coat: None,
-                sheen: None,
-            }),
             CaseMaterial::Sheen(sheen) | CaseMaterial::Ggx { sheen: Some(sheen), .. }
                 if sheen.roughness < MIN_ROUGHNESS =>
             {
@@ -490,29 +490,38 @@ impl Case {
                     "sheen_roughness {roughness} is below {MIN_ROUGHNESS}, the smallest that is shaded"
                 ))
             }
-            CaseMaterial::Sheen(sheen) => {
-                let (none, sheen) = (DVec3::ZERO, Some(*sheen));
-                Ok(Surface { diffuse_albedo: none, f0: none, f90: 0.0, alpha: 1.0, coat: None, sheen })
+            CaseMaterial::Sheen(sheen) => Ok(Surface { sheen: Some(*sheen), ..Surface::default() }),
+            &CaseMaterial::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
+                Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })
             }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y => {
-                unsupported("anisotropic GGX is not supported yet".into())
+            CaseMaterial::Ggx { alpha, .. } if alpha.min_element() < MIN_ALPHA => {
+                let least = alpha.min_element();
+                unsupported(format!("alpha {least} is below {MIN_ALPHA}, the smallest that is shaded"))
             }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x < MIN_ALPHA => {
-                unsupported(format!("alpha {} is below {MIN_ALPHA}, the smallest that is shaded", alpha.x))
+            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y && self.tangent.is_none() => {
+                unsupported("alpha_x and alpha_y differ, and there is no tangent".into())
             }
-            CaseMaterial::Ggx { albedo: Some(albedo), coupled: true, .. } if *albedo != DVec3::ZERO => {
-                unsupported("coupling of the Lambert lobe to the Fresnel term is not supported yet".into())
-            }
-            CaseMaterial::Ggx { alpha, f0, albedo, coat, sheen, .. } => Ok(Surface {
+            CaseMaterial::Ggx { alpha, f0, albedo, coat, sheen, coupled } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
-                alpha: alpha.x,
+                alpha: alpha.y,
+                diffuse_roughness: 0.0,
+                interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
                 sheen: *sheen,
+                anisotropy: self
+                    .tangent
+                    .filter(|_| alpha.x != alpha.y)
+                    .map(|tangent| Anisotropy { tangent, alpha: alpha.x }),
             }),
         }
     }
+}
+
+/// The interface of a surface whose Lambert lobe is coupled as glTF has it.
+fn interface(f0: DVec3) -> Interface {
+    Interface { f0: f0.max_element(), f90: 1.0, by_albedo: false }
 }
 
 impl CaseTexture {

@@ -12,7 +12,7 @@ pub struct Family {
     pub shape: &'static str,
     /// Whether the light has a texture.
     pub textured: bool,
-    /// `diffuse`, `ggx`, `ggx + diffuse`, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
+    /// `diffuse`, `rough diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
     pub material: &'static str,
 }
 
@@ -25,10 +25,12 @@ impl Family {
             CaseShape::Polygon { texture: Some(_), .. } | CaseShape::Disk { texture: Some(_), .. }
         );
         let material = match &case.material {
-            CaseMaterial::Diffuse { .. } => "diffuse",
+            CaseMaterial::Diffuse { roughness: 0.0, .. } => "diffuse",
+            CaseMaterial::Diffuse { .. } => "rough diffuse",
             CaseMaterial::Ggx { coat: Some(_), .. } => "coat",
             CaseMaterial::Ggx { sheen: Some(_), .. } => "sheen_over",
             CaseMaterial::Sheen(_) => "sheen",
+            CaseMaterial::Ggx { albedo: Some(_), coupled: true, .. } => "ggx over diffuse",
             CaseMaterial::Ggx { alpha, albedo, .. } => match (alpha.x == alpha.y, albedo) {
                 (true, None) => "ggx",
                 (true, Some(_)) => "ggx + diffuse",
@@ -59,6 +61,8 @@ pub struct Measure {
     pub unanswered: usize,
     /// `sqrt(mean over cases and channels of (answer - truth)²) / mean truth`.
     pub rmse_over_mean: f64,
+    /// Mean over cases and channels of `|answer - truth|` of lights of unit radiance.
+    pub mean_unit_error: f64,
     /// Median over the cases of `max |answer - truth| / max truth`, the maxima over the channels.
     pub median: f64,
     /// 95 % quantile of the same, interpolated between cases.
@@ -93,7 +97,7 @@ pub fn measure(cases: &[Case], answers: &[Answer], truth: &[Answer]) -> Result<V
             Some(radiance) => {
                 let known = truth.get(case.name.as_str());
                 let known = known.ok_or_else(|| UnknownTruth { case: case.name.clone() })?;
-                errors.add(&case.name, radiance, *known);
+                errors.add(case, radiance, *known);
             }
         }
     }
@@ -118,16 +122,18 @@ struct Errors<'a> {
     unanswered: usize,
     squares: f64,
     truths: f64,
+    units: f64,
     relative: Vec<(f64, &'a str)>,
 }
 
 impl<'a> Errors<'a> {
-    fn add(&mut self, name: &'a str, answer: [f64; 3], truth: [f64; 3]) {
+    fn add(&mut self, case: &'a Case, answer: [f64; 3], truth: [f64; 3]) {
         for i in 0..3 {
+            self.units += quotient((answer[i] - truth[i]).abs(), case.light.radiance[i]);
             self.squares += (answer[i] - truth[i]).powi(2);
             self.truths += truth[i];
         }
-        self.relative.push((relative_error(answer, truth), name));
+        self.relative.push((relative_error(answer, truth), &case.name));
     }
 
     fn finish(mut self, family: Family) -> Measure {
@@ -139,6 +145,7 @@ impl<'a> Errors<'a> {
             answered: self.relative.len(),
             unanswered: self.unanswered,
             rmse_over_mean: quotient((self.squares / values).sqrt(), self.truths / values),
+            mean_unit_error: self.units / values,
             median: quantile(&self.relative, 0.5),
             quantile_95: quantile(&self.relative, 0.95),
             worst,
@@ -198,6 +205,7 @@ mod tests {
         let ggx = &measures[2];
         assert!((ggx.rmse_over_mean - (9.0_f64 / 6.0).sqrt() / 2.0).abs() < 1e-15);
         assert!((ggx.median - 0.5).abs() < 1e-15 && (ggx.quantile_95 - 0.95).abs() < 1e-15);
+        assert!((ggx.mean_unit_error - 0.5).abs() < 1e-15);
         assert_eq!((ggx.worst, ggx.worst_case.as_str()), (1.0, "a"));
     }
 

@@ -34,16 +34,9 @@ impl Engine {
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
         // Points get a pipeline that has no more than they need
-        let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
-        for (index, point) in points.iter().enumerate() {
-            let needed = (point.light.effects() & POLYGONAL) | layer_effects(&point.surface);
-            match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
-                Some((_, subset)) => subset.push(index),
-                None => subsets.push((needed, vec![index])),
-            }
-        }
+        let needed = |point: &EvalPoint| (point.light.effects() & POLYGONAL) | layer_effects(&point.surface);
         let mut radiance = vec![Vec3::ZERO; points.len()];
-        for (needed, indices) in subsets {
+        for (needed, indices) in subsets(&points.iter().collect::<Vec<_>>(), needed) {
             let effects = (Effects::all() - POLYGONAL - LAYERS) | needed;
             let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
             let dispatch = plan::eval(effects, quality, 0);
@@ -120,25 +113,54 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     surface_case(&point.surface, point.normal, point.view, light)
 }
 
-const COATS: Effects = Effects::COAT.union(Effects::COAT_NORMAL);
+/// The indices of the points that need the same effects.
+pub(crate) fn subsets(
+    points: &[&EvalPoint],
+    needed: impl Fn(&EvalPoint) -> Effects,
+) -> Vec<(Effects, Vec<usize>)> {
+    let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
+    for (index, point) in points.iter().enumerate() {
+        let needed = needed(point);
+        match subsets.iter_mut().find(|(effects, _)| *effects == needed) {
+            Some((_, subset)) => subset.push(index),
+            None => subsets.push((needed, vec![index])),
+        }
+    }
+    subsets
+}
 
-/// What lies above other lobes needs.
-pub(crate) const LAYERS: Effects = COATS.union(Effects::SHEEN);
+/// What surfaces may need beyond two isotropic lobes, added.
+pub(crate) const LAYERS: Effects = Effects::COAT
+    .union(Effects::COAT_NORMAL)
+    .union(Effects::DIFFUSE_ROUGHNESS)
+    .union(Effects::MODEL)
+    .union(Effects::SHEEN)
+    .union(Effects::ANISOTROPY);
 
-/// What a surface's coat and sheen need.
+/// What of it a surface needs.
 pub(crate) fn layer_effects(surface: &Surface) -> Effects {
-    let coat = match surface.coat {
-        None => Effects::empty(),
-        Some(Coat { normal: None, .. }) => Effects::COAT,
-        Some(_) => COATS,
-    };
-    if surface.sheen.is_some() { coat | Effects::SHEEN } else { coat }
+    let mut effects = Effects::empty();
+    effects.set(Effects::DIFFUSE_ROUGHNESS, surface.diffuse_roughness > 0.0);
+    if let Some(interface) = surface.interface {
+        effects |= Effects::COUPLED;
+        effects.set(Effects::COUPLED_BY_ALBEDO, interface.by_albedo);
+    }
+    if let Some(coat) = surface.coat {
+        effects |= Effects::COAT;
+        effects.set(Effects::COAT_NORMAL, coat.normal.is_some());
+        effects.set(Effects::COAT_BY_ALBEDO, coat.by_albedo);
+    }
+    effects.set(Effects::SHEEN, surface.sheen.is_some());
+    effects.set(Effects::ANISOTROPY, surface.anisotropy.is_some());
+    effects
 }
 
 /// A surface as the eval kernels read it.
 pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light: u32) -> GpuCase {
-    let coat = surface.coat.unwrap_or(Coat { weight: 0.0, alpha: 1.0, normal: None });
+    let coat = surface.coat.unwrap_or(Coat { weight: 0.0, alpha: 1.0, normal: None, by_albedo: false });
     let sheen = surface.sheen.unwrap_or(Sheen { color: DVec3::ZERO, roughness: 1.0 });
+    let [interface_f0, interface_f90] =
+        surface.interface.map_or([0.0; 2], |it| [it.f0 as f32, it.f90 as f32]);
     GpuCase {
         normal: rounded(normal),
         roughness: surface.alpha.sqrt() as f32,
@@ -152,6 +174,13 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         coat_roughness: coat.alpha.sqrt() as f32,
         sheen_color: sheen.color.as_vec3().to_array(),
         sheen_roughness: sheen.roughness as f32,
+        interface_f0,
+        interface_f90,
+        diffuse_roughness: surface.diffuse_roughness as f32,
+        reserved: 0.0,
+        tangent: surface.anisotropy.map_or([0.0; 3], |anisotropy| rounded(anisotropy.tangent)),
+        tangent_roughness: surface.anisotropy.map_or(surface.alpha, |anisotropy| anisotropy.alpha).sqrt()
+            as f32,
     }
 }
 

@@ -1,6 +1,6 @@
 //! Shading points one by one under disks, spheres and tubes.
 
-use crate::eval::{EvalPoint, LAYERS, POLYGONAL, layer_effects, surface_case};
+use crate::eval::{EvalPoint, LAYERS, POLYGONAL, layer_effects, subsets, surface_case};
 use crate::{Engine, EngineError};
 use arealight::gpu::GpuShape;
 use arealight::{Effects, PackedLights, Quality};
@@ -35,12 +35,31 @@ impl Engine {
         Ok(radiance)
     }
 
-    /// As [`Engine::eval_shapes`], by one pipeline, which takes shapes of that kind or of [`GpuShape::ANY`].
+    /// As [`Engine::eval_shapes`], by pipelines that take shapes of that kind or of [`GpuShape::ANY`].
     ///
     /// # Errors
     /// As [`Engine::eval_shapes`].
     pub fn eval_shapes_as(
         &self,
+        kind: u32,
+        points: &[&EvalPoint],
+        quality: Quality,
+    ) -> Result<Vec<Vec3>, EngineError> {
+        let mut radiance = vec![Vec3::ZERO; points.len()];
+        for (layers, indices) in subsets(points, |point| layer_effects(&point.surface)) {
+            let subset: Vec<&EvalPoint> = indices.iter().map(|&index| points[index]).collect();
+            let answers = self.eval_shapes_with(layers, kind, &subset, quality)?;
+            for (&index, answer) in indices.iter().zip(answers) {
+                radiance[index] = answer;
+            }
+        }
+        Ok(radiance)
+    }
+
+    /// The radiance of points whose surfaces have these layers.
+    fn eval_shapes_with(
+        &self,
+        layers: Effects,
         kind: u32,
         points: &[&EvalPoint],
         quality: Quality,
@@ -54,13 +73,8 @@ impl Engine {
             shapes.extend(PackedLights::new(light, point.position)?.shapes);
             cases.push(surface_case(&point.surface, point.normal, point.view, index as u32));
         }
-        if cases.is_empty() {
-            return Ok(Vec::new());
-        }
-
-        // Points under lights of one colour do not pay for images, nor those without a coat or sheen for those
+        // Points under lights of one colour do not pay for images, nor those without layers for layers
         let textured = points.iter().any(|point| point.light.texture.is_some());
-        let layers: Effects = points.iter().map(|point| layer_effects(&point.surface)).collect();
         let mut effects = (Effects::all() - POLYGONAL - LAYERS) | layers;
         effects.set(Effects::TEXTURED_ELLIPSE, textured);
         let dispatch = plan::eval_shapes(effects, quality, kind, 0);

@@ -12,7 +12,7 @@ use arealight::{Effects, Light, LightSummary, PackedLights, Quality};
 use arealight_scene::SceneBuffers;
 use arealight_tool_kernels::LightSampling;
 use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
-use arealight_tool_kernels::kernels::{REFERENCE, SHADOWS, VISIBILITY};
+use arealight_tool_kernels::kernels::{COUPLED, REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -28,12 +28,14 @@ pub struct Reference {
     /// Whether the scene's triangles block light, but for [its lamps](arealight_scene::Triangle::lamp). Without, light passes through
     /// everything, as in the shade pass.
     pub shadows: bool,
+    /// Whether diffuse lobes get what the Fresnel term leaves, as in glTF; else the two are added, as without [`Effects::COUPLED`].
+    pub coupled: bool,
 }
 
 impl Default for Reference {
-    /// 256 samples, without shadows.
+    /// 256 samples, without shadows, materials as in glTF.
     fn default() -> Self {
-        Self { samples: 256, seed: 0, shadows: false }
+        Self { samples: 256, seed: 0, shadows: false, coupled: true }
     }
 }
 
@@ -218,7 +220,11 @@ impl<'a> SceneRenderer<'a> {
             ])
             .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
             .collect();
-        let pass = self.engine.pass(&REFERENCE, &[(SHADOWS, reference.shadows.into())], &resources)?;
+        let pass = self.engine.pass(
+            &REFERENCE,
+            &[(SHADOWS, reference.shadows.into()), (COUPLED, reference.coupled.into())],
+            &resources,
+        )?;
 
         let mut total = Some(Duration::ZERO);
         let mut done = 0;

@@ -19,6 +19,12 @@ struct ArealightGpuCase {
     float coat_roughness;
     vec3 sheen_color;
     float sheen_roughness;
+    float interface_f0;
+    float interface_f90;
+    float diffuse_roughness;
+    float reserved;
+    vec3 tangent;
+    float tangent_roughness;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -34,7 +40,9 @@ layout(push_constant, std430) uniform EvalConstants {
 
 ArealightSurface case_surface(ArealightGpuCase given) {
     return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
-                            given.roughness, ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness),
+                            given.roughness, given.interface_f0, given.interface_f90, given.diffuse_roughness,
+                            ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness),
+                            ArealightAnisotropy(given.tangent, given.tangent_roughness),
                             ArealightSheen(given.sheen_color, given.sheen_roughness));
 }
 

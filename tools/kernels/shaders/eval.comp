@@ -22,7 +22,6 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #include "polygon_lights.glsl"
 #include "cases.glsl"
 
-const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
 
 vec3 radiance_of(ArealightPoint point, ArealightGpuLight record) {
     if ((EFFECTS & EFFECT_MESH) != 0u && (record.flags & LIGHT_MESH) != 0u) {

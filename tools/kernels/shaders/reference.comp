@@ -29,6 +29,8 @@ const bool HAS_SPECULAR_INPUT = true;
 
 // 1: triangles of the scene block light.
 layout(constant_id = 100) const uint SHADOWS = 0u;
+// 1: the Lambert lobe gets what the Fresnel term leaves, as in glTF; else it is added.
+layout(constant_id = 101) const uint COUPLED = 0u;
 
 #include "arealight/ggx.glsl"
 #include "arealight/shadows/ray_origin.glsl"
@@ -95,6 +97,7 @@ struct Lobes {
     mat3 to_surface;
     vec3 view;
     vec3 diffuse_albedo;
+    vec2 above_diffuse; // its reflectances above the Lambert lobe, at normal and at grazing incidence
     vec3 f0;
     float f90;
     float alpha;
@@ -181,13 +184,17 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
-                 surface.diffuse_albedo, surface.f0, surface.f90, alpha, probability,
+                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, alpha, probability,
                  load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen));
 }
 
 // f cos, all lobes.
 vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
+    if (COUPLED != 0u) {
+        vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
+        diffuse *= 1.0 - mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
+    }
     vec3 base = diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
     if (lobes.sheen.color != vec3(0.0)) {
         vec3 view = vec3(lobes.view.xy, max(lobes.view.z, AREALIGHT_FORMULA_MIN_COS_VIEW));

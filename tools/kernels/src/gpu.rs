@@ -78,6 +78,18 @@ pub struct GpuCase {
     pub sheen_color: [f32; 3],
     /// The sheen's perceptual roughness.
     pub sheen_roughness: f32,
+    /// Reflectance of the interface above the Lambert lobe, at normal incidence; with both 0 there is none.
+    pub interface_f0: f32,
+    /// At grazing incidence.
+    pub interface_f90: f32,
+    /// Roughness of the diffuse lobe; 0 is Lambert's.
+    pub diffuse_roughness: f32,
+    /// Zero.
+    pub reserved: f32,
+    /// Tangent of the anisotropy, of any length.
+    pub tangent: [f32; 3],
+    /// Perceptual roughness along it.
+    pub tangent_roughness: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.

@@ -64,6 +64,8 @@ pub static EVAL_SHAPES: Kernel = Kernel {
 
 /// Id of a specialisation constant of [`REFERENCE`]: 1 where the triangles of the scene block light, else 0.
 pub const SHADOWS: u32 = 100;
+/// Id of a specialisation constant of [`REFERENCE`]: 1 where diffuse lobes get what the Fresnel term leaves, as in glTF, else 0.
+pub const COUPLED: u32 = 101;
 
 /// The buffers of a scene: a hierarchy of its triangles, and what they look like.
 const SCENE: [Binding; 5] = [
@@ -106,7 +108,7 @@ pub static REFERENCE: Kernel = Kernel {
         SCENE[3],
         SCENE[4],
     ],
-    constants: &[SHADOWS],
+    constants: &[SHADOWS, COUPLED],
 };
 
 /// Finds the surface that each pixel sees, in a hierarchy of triangles, and writes a G-buffer. Push constants: [`crate::gpu::VisibilityConstants`].

@@ -2,18 +2,19 @@
 
 use crate::{Scene, SceneMaterial};
 use arealight::Effects;
+use arealight_oracle::material::Material;
 use glam::Vec3;
 
 /// An effect, and who in the scene needs it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Call {
+pub struct RequiredEffect {
     /// One effect.
     pub effect: Effects,
     /// The first light or material that needs it, such as "light 'sign'".
     pub reason: String,
 }
 
-impl std::fmt::Display for Call {
+impl std::fmt::Display for RequiredEffect {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: {}", self.effect, self.reason)
     }
@@ -21,17 +22,17 @@ impl std::fmt::Display for Call {
 
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
 /// [`Scene::effects`] is their union.
-pub fn required_effects(scene: &Scene) -> Vec<Call> {
+pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
     // Only materials that something has been made of are in a scene
-    let material = |effect, calls: fn(&SceneMaterial) -> bool| {
-        let first = scene.materials.iter().find(|m| calls(m))?;
-        Some(Call { effect, reason: format!("material '{}'", first.name) })
+    let material = |effect, needs: fn(&SceneMaterial) -> bool| {
+        let first = scene.materials.iter().find(|m| needs(m))?;
+        Some(RequiredEffect { effect, reason: format!("material '{}'", first.name) })
     };
     let light = |effect| {
         let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
-        Some(Call { effect, reason: format!("light '{}'", first.name) })
+        Some(RequiredEffect { effect, reason: format!("light '{}'", first.name) })
     };
-    let calls = [
+    let required = [
         material(Effects::DIFFUSE, has_diffuse_lobe),
         material(Effects::GLOSSY, has_glossy_lobe),
         light(Effects::TWO_SIDED),
@@ -45,15 +46,16 @@ pub fn required_effects(scene: &Scene) -> Vec<Call> {
         light(Effects::TEXTURED_ELLIPSE),
         material(Effects::COAT, has_coat),
         material(Effects::COAT_NORMAL, has_coat_normal),
+        material(Effects::COUPLED, is_coupled),
         material(Effects::SHEEN, has_sheen),
     ];
-    calls.into_iter().flatten().collect()
+    required.into_iter().flatten().collect()
 }
 
 impl Scene {
     /// The union of [`required_effects`].
     pub fn effects(&self) -> Effects {
-        required_effects(self).iter().map(|call| call.effect).collect()
+        required_effects(self).iter().map(|one| one.effect).collect()
     }
 }
 
@@ -85,6 +87,12 @@ fn has_coat(material: &SceneMaterial) -> bool {
 
 fn has_sheen(material: &SceneMaterial) -> bool {
     material.material.sheen_color != Vec3::ZERO
+}
+
+/// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.
+fn is_coupled(material: &SceneMaterial) -> bool {
+    let Material { dielectric_f0, dielectric_f90, .. } = material.material;
+    has_diffuse_lobe(material) && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0)
 }
 
 /// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.

@@ -48,7 +48,7 @@ mod uv_map;
 
 pub use area_lights::LUMENS_PER_WATT;
 pub use camera::Camera;
-pub use effects::{Call, required_effects};
+pub use effects::{RequiredEffect, required_effects};
 pub use error::SceneError;
 pub use gpu::{BufferError, Hit, SceneBuffers};
 pub use light_textures::{

@@ -27,18 +27,15 @@ pub fn closest_hit(
 ) -> Option<Hit> {
     let inverse = DVec3::ONE / direction;
     let mut closest: Option<Hit> = None;
-    let mut stack = vec![0];
-    while let Some(index) = stack.pop() {
-        let Some(node) = nodes.get(index) else { continue };
+    let mut index = 0;
+    while let Some(node) = nodes.get(index) {
         let limit = closest.map_or(f64::INFINITY, |hit| hit.distance);
         if !enters(node, origin, inverse, limit) {
+            index = node.end(index);
             continue;
         }
-        let first = node.first as usize;
-        if node.is_inner() {
-            stack.extend([first, first + 1]);
-        }
-        let leaf = triangles.iter().enumerate().skip(first).take(node.count as usize);
+        index += 1;
+        let leaf = triangles.iter().enumerate().skip(node.first as usize).take(node.count as usize);
         for (triangle, shape) in leaf {
             let double_sided = materials
                 .get(shape.material as usize)

@@ -18,7 +18,8 @@ layout(constant_id = 6) const bool DIFFERENCE = false;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 layout(constant_id = 8) const bool COAT = false;
 layout(constant_id = 9) const bool COAT_NORMAL = false;
-layout(constant_id = 10) const bool SHEEN = false;
+layout(constant_id = 10) const bool ANISOTROPY = false;
+layout(constant_id = 11) const bool SHEEN = false;
 #define AREALIGHT_DIFFUSE DIFFUSE
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
@@ -29,6 +30,7 @@ layout(constant_id = 10) const bool SHEEN = false;
 #define AREALIGHT_FOOTPRINT FOOTPRINT
 #define AREALIGHT_COAT COAT
 #define AREALIGHT_COAT_NORMAL COAT_NORMAL
+#define AREALIGHT_ANISOTROPY ANISOTROPY
 #define AREALIGHT_SHEEN SHEEN
 #endif
 
@@ -106,6 +108,7 @@ vec3 shade(int first) {
     arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a, numbers[first + 5].rgb,
                                      numbers[first + 5].a);
     surface.coat = ArealightCoat(numbers[first + 14].xyz, numbers[first + 14].w, numbers[first + 3].y);
+    surface.anisotropy = ArealightAnisotropy(numbers[first + 14].xyz, numbers[first + 3].z);
     surface.sheen = ArealightSheen(numbers[first + 15].rgb, numbers[first + 15].a);
     ArealightPoint point = arealight_point(surface);
 

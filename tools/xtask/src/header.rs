@@ -71,7 +71,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 17] {
+fn layouts() -> [Layout; 21] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
@@ -84,7 +84,7 @@ fn layouts() -> [Layout; 17] {
         }
         ArealightPassOptions {
             surfaces, form_factor, horizon, fresnel, lobes, footprint, position, output,
-            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads,
+            radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads, shadow_rays,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
@@ -96,13 +96,17 @@ fn layouts() -> [Layout; 17] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, coat, light_textures, radiance,
-            glossy, lobe_horizons, tile_lists,
+            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, light_textures, radiance,
+            glossy, lobe_horizons, tile_lists, shadow_picks,
         }
         ArealightFrame {
-            width, height, camera, lights, reserved, position_from_clip, tile_lists,
+            width, height, camera, lights, seed, position_from_clip, tile_lists,
         }
         ArealightTileMemory { size, usage, reserved }
+        ArealightShadowOptions { filter, history, output }
+        ArealightShadowResources { shadow, radiance, history, motion, blocker_nodes, blocker_triangles }
+        ArealightShadowFrame { frame, host_set, origin_shift, reserved }
+        ArealightBlockerArrays { nodes, triangles, nodes_size, triangles_size }
         ArealightTextureOptions { width, height, layers, reserved }
         ArealightTextureNeeds { memory, level_set, source_set, level_set_count, reserved }
         ArealightTextureSetup { memory, memory_offset, level_sets, level_set_count, reserved, command_buffer }
@@ -147,7 +151,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "4cdb31522f84d830");
+    const ABI: (u32, &str) = (2, "df2bf780a5e94f94");
 
     #[test]
     fn another_abi_has_another_version() {

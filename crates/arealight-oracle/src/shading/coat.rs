@@ -1,7 +1,9 @@
 //! A clear coat above other lobes, in float64: its true BRDF, and its fitted lobe.
 
-use super::{Truth, fitted_sample};
+use super::{Truth, fitted_sample, hemisphere_albedo};
+use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
+use crate::ggx::Ggx;
 use crate::material::{Coat, Surface};
 use arealight::table::share_above_surface;
 use arealight::{LightTable, Quality};
@@ -9,12 +11,13 @@ use glam::{DMat3, DVec3};
 
 /// What a coated surface reflects: `uncoated` says what a surface without a coat does, with its normal and a direction to the viewer.
 ///
-/// A coat is such a surface itself: GGX without Fresnel term, about its own normal. A view from below the base counts as grazing,
+/// A coat is such a surface itself: GGX about its own normal, without Fresnel term where it isn't by albedo. A view from below the base counts as grazing,
 /// for the coat too.
 pub(super) fn layered<E>(
     surface: &Surface,
     normal: DVec3,
     view: DVec3,
+    settings: &Settings,
     uncoated: impl Fn(&Surface, DVec3, DVec3) -> Result<Truth, E>,
 ) -> Result<Truth, E> {
     let below = uncoated(surface, normal, view)?;
@@ -22,19 +25,20 @@ pub(super) fn layered<E>(
     let frame = SurfaceFrame::new(normal, view);
     let view = frame.from_surface(frame.view());
     let own_normal = coat.normal.unwrap_or_else(|| frame.from_surface(DVec3::Z));
-    let lobe = Surface {
-        diffuse_albedo: DVec3::ZERO,
-        f0: DVec3::ONE,
-        f90: 1.0,
-        alpha: coat.alpha,
-        coat: None,
-        sheen: None,
+    let own_view = SurfaceFrame::new(own_normal, view);
+    // What the coat's lobe counts, and what it takes from those below
+    let (f0, weight, share) = if coat.by_albedo {
+        let albedo = hemisphere_albedo(Ggx { alpha: coat.alpha }, Coat::F0, 1.0, own_view.view(), settings);
+        (Coat::F0, coat.weight, coat.weight * albedo)
+    } else {
+        let share = coat.share(own_view.cos_view());
+        (1.0, share, share)
     };
+    let lobe = Surface { f0: DVec3::splat(f0), f90: 1.0, alpha: coat.alpha, ..Surface::default() };
     let above = uncoated(&lobe, own_normal, view)?;
-    let share = coat.share(SurfaceFrame::new(own_normal, view).cos_view());
     Ok(Truth {
-        radiance: below.radiance.lerp(above.radiance, share),
-        error: below.error.lerp(above.error, share),
+        radiance: below.radiance * (1.0 - share) + above.radiance * weight,
+        error: below.error * (1.0 - share) + above.error * weight,
         evaluations: below.evaluations + above.evaluations,
     })
 }
@@ -45,9 +49,9 @@ pub(super) struct CoatLobe {
     pub inverse: DMat3,
     /// The larger of its parts above the base's horizon and above its own.
     pub above_surface: f64,
-    /// What it reflects of the light that it gets.
+    /// What it reflects of the light.
     pub albedo: f64,
-    /// The part of the light that it gets.
+    /// The part of the light that it takes from what is below.
     pub share: f64,
 }
 
@@ -59,12 +63,15 @@ impl CoatLobe {
         let sample = fitted_sample(quality, table, coat.alpha, own.cos_view());
         let to_own =
             DMat3::from_cols(own.to_surface(DVec3::X), own.to_surface(DVec3::Y), own.to_surface(DVec3::Z));
-        let inverse = sample.inverse * to_own;
-        Self {
-            inverse,
-            above_surface: share_above_surface(&sample.inverse).max(share_above_surface(&inverse)),
-            albedo: sample.albedo,
-            share: coat.share(own.cos_view()),
-        }
+        let (in_own, albedo, share) = if coat.by_albedo {
+            let albedo = coat.weight * (Coat::F0 * sample.albedo + (1.0 - Coat::F0) * sample.schlick);
+            (sample.inverse_by_f0(Coat::F0, 1.0), albedo, albedo)
+        } else {
+            let share = coat.share(own.cos_view());
+            (sample.inverse, share * sample.albedo, share)
+        };
+        let inverse = in_own * to_own;
+        let above_surface = share_above_surface(&in_own).max(share_above_surface(&inverse));
+        Self { inverse, above_surface, albedo, share }
     }
 }

@@ -106,9 +106,9 @@ fn pose(random: &mut Stream, family: Family) -> Pose {
     };
     let alpha = roughness * roughness;
     let surface = if family == Family::Diffuse {
-        Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha, coat: None, sheen: None }
+        Surface { diffuse_albedo: DVec3::ONE, f0: DVec3::ZERO, f90: 0.0, alpha, ..Surface::default() }
     } else {
-        Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha, coat: None, sheen: None }
+        Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ONE, f90: 1.0, alpha, ..Surface::default() }
     };
     // As large as screens are, as far as they are
     let width = random.between(0.3_f64.ln(), 2.0_f64.ln()).exp();

@@ -1,7 +1,7 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
 use super::coat;
-use super::{RelativeLight, ShownImage, Truth, glossy_part, layered, reflected};
+use super::{RelativeLight, ShownImage, Truth, diffuse, glossy_part, layered, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
 use crate::frame::SurfaceFrame;
@@ -11,6 +11,7 @@ use crate::polygon::{above_horizon, emitted};
 use crate::sphere::{self, Sphere};
 use crate::texture::Texture;
 use crate::tube::{self, Ends, Tube};
+use arealight::table::share_above_surface;
 use arealight::{Horizon, Light, LightShape, LightTable, LightTexture, Quality, TubeEnds};
 use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
@@ -43,7 +44,13 @@ pub fn shape_ltc_on(
         DVec3::splat(form_factor.min(1.0))
     };
     let glossy = glossy_part(quality, table, surface, &frame, lobe);
-    let base = surface.diffuse_albedo * seen.lambert_form_factor() + glossy;
+    let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
+    let diffuse = if inverse == DMat3::IDENTITY {
+        DVec3::splat(seen.lambert_form_factor())
+    } else {
+        lobe(&inverse, share_above_surface(&inverse))
+    };
+    let base = albedo * diffuse + glossy;
     Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, base, lobe))
 }
 
@@ -61,7 +68,7 @@ pub fn shape_truth(
     light: &Light,
     settings: &Settings,
 ) -> Option<Truth> {
-    let truth = coat::layered(surface, normal, view, |surface, normal, view| {
+    let truth = coat::layered(surface, normal, view, settings, |surface, normal, view| {
         uncoated_truth(surface, normal, view, light, settings).ok_or(())
     });
     truth.ok()
@@ -78,7 +85,7 @@ fn uncoated_truth(
     let seen = LocalShape::new(light, &frame)?;
     let radiance = light.radiance.as_dvec3();
     let at = |count| {
-        let signed = reflected(surface, frame.view(), &seen.region(count), settings, |_| DVec3::ONE);
+        let signed = reflected(surface, &frame, &seen.region(count), settings, |_| DVec3::ONE);
         Truth { radiance: radiance * signed.radiance.abs(), error: radiance * signed.error, ..signed }
     };
     let [coarse, middle, fine] = [48, 96, 192].map(at);

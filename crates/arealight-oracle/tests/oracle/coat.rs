@@ -12,14 +12,7 @@ use std::sync::LazyLock;
 static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 fn coated(coat: Coat) -> Surface {
-    Surface {
-        diffuse_albedo: DVec3::ONE,
-        f0: DVec3::ZERO,
-        f90: 0.0,
-        alpha: 1.0,
-        coat: Some(coat),
-        sheen: None,
-    }
+    Surface { diffuse_albedo: DVec3::ONE, coat: Some(coat), ..Surface::default() }
 }
 
 /// Light of unit radiance from every direction.
@@ -47,7 +40,7 @@ fn hard_coats() -> impl Iterator<Item = (Coat, DVec3)> {
         thetas.into_iter().flat_map(move |theta| {
             alphas.into_iter().map(move |alpha| {
                 let normal = DVec3::new(-tilt.sin() * 0.8, tilt.sin() * 0.6, tilt.cos());
-                (Coat { weight: 0.9, alpha, normal: Some(normal) }, view_at(theta))
+                (Coat { weight: 0.9, alpha, normal: Some(normal), by_albedo: false }, view_at(theta))
             })
         })
     })
@@ -68,7 +61,7 @@ fn a_white_surface_below_a_coat_sends_no_more_than_it_gets() {
         }
     }
     // The twin: added instead of layered they send more
-    let (coat, view) = (Coat { weight: 0.9, alpha: 0.01, normal: None }, view_at(1.4));
+    let (coat, view) = (Coat { weight: 0.9, alpha: 0.01, normal: None, by_albedo: false }, view_at(1.4));
     let added = from_everywhere(|light| {
         let both = ltc(&TABLE, &coated(coat), DVec3::Z, view, light);
         let share = coat.share(view.z);

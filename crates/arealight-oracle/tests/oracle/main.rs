@@ -3,6 +3,7 @@
 mod article;
 mod coat;
 mod common;
+mod coupled;
 mod ellipse;
 mod footprints;
 mod ggx;

@@ -13,7 +13,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 fn glossy(alpha: f64, f0: f64) -> Surface {
-    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::splat(f0), f90: 1.0, alpha, coat: None, sheen: None }
+    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::splat(f0), f90: 1.0, alpha, ..Surface::default() }
 }
 
 fn diffuse() -> Surface {
@@ -22,8 +22,7 @@ fn diffuse() -> Surface {
         f0: DVec3::ZERO,
         f90: 0.0,
         alpha: 1.0,
-        coat: None,
-        sheen: None,
+        ..Surface::default()
     }
 }
 

@@ -61,7 +61,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalDisk local) {
     return vec3(0.0, 0.0, arealight_ellipse_form_factor(center, axis_u, axis_v, true));
 }
 
-vec3 arealight_image_seen(mat3 space, ArealightLocalDisk local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_DISKS && local.image != AREALIGHT_NO_IMAGE) {
         vec3 center = space * local.center;

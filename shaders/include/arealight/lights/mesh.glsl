@@ -53,7 +53,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
     return sum;
 }
 
-vec3 arealight_image_seen(mat3 space, ArealightLocalMesh local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightLocalMesh local, vec3 vector) {
     return vec3(1.0);
 }
 

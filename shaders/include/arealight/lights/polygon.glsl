@@ -174,7 +174,7 @@ vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLob
 
 #endif
 
-vec3 arealight_image_seen(mat3 space, ArealightLocalPolygon local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightLocalPolygon local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_POLYGONS && local.image.layer != AREALIGHT_NO_IMAGE) {
         ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);

@@ -100,7 +100,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
 }
 
-vec3 arealight_image_seen(mat3 space, ArealightLocalQuad local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightLocalQuad local, vec3 vector) {
     return vec3(1.0);
 }
 

@@ -48,7 +48,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalSphere local) {
     return vec3(0.0, 0.0, arealight_ellipse_form_factor(center, axis_u, axis_v, true));
 }
 
-vec3 arealight_image_seen(mat3 space, ArealightLocalSphere local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightLocalSphere local, vec3 vector) {
     return vec3(1.0);
 }
 

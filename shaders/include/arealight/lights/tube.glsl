@@ -28,7 +28,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightTube local) {
     return vec3(0.0, 0.0, arealight_tube_form_factor(local, space, horizon));
 }
 
-vec3 arealight_image_seen(mat3 space, ArealightTube local, vec3 vector) {
+vec3 arealight_image_average(mat3 space, ArealightTube local, vec3 vector) {
     return vec3(1.0);
 }
 

@@ -18,12 +18,16 @@ ArealightLobe arealight_table_lobe(ArealightFrame frame, vec4 texel, float alpha
     return ArealightLobe(space, albedo, arealight_gain_above_surface(space));
 }
 
+// What GGX with Schlick's Fresnel term reflects of light from everywhere, per channel.
+vec3 arealight_specular_albedo(ArealightTableSample table, vec3 f0, float f90) {
+    return f0 * table.albedo + (vec3(f90) - f0) * table.schlick;
+}
+
 // GGX with Schlick's Fresnel term F = f0 + (f90 - f0) (1 - cos)^5, by one lobe between the table's two. A colour counts by
 // the mean of its channels; the albedo is exact in each.
 ArealightLobe arealight_specular_lobe(ArealightFrame frame, ArealightTableSample table, vec3 f0, float f90) {
     vec4 texel = mix(table.matrix, table.schlick_matrix, arealight_schlick_share(table, f0, f90));
-    vec3 albedo = f0 * table.albedo + (vec3(f90) - f0) * table.schlick;
-    return arealight_table_lobe(frame, texel, table.alpha, albedo);
+    return arealight_table_lobe(frame, texel, table.alpha, arealight_specular_albedo(table, f0, f90));
 }
 
 // The same in two lobes, each exact in the reflectance: of f0, and of what grows with (1 - cos)^5. Where f90 is less than f0

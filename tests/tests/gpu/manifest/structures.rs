@@ -80,7 +80,11 @@ fn every_structure_has_the_same_offsets() {
                 coat_normal,
                 coat_roughness,
                 sheen_color,
-                sheen_roughness
+                sheen_roughness,
+                interface_f0,
+                interface_f90,
+                diffuse_roughness,
+                reserved
             ),
         ),
         (

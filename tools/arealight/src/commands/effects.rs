@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::print;
 use arealight::Effects;
-use arealight_scene::{Call, Scene, required_effects};
+use arealight_scene::{RequiredEffect, Scene, required_effects};
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -26,37 +26,37 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     for warning in &scene.warnings {
         eprintln!("warning: {}: {warning}", path.display());
     }
-    let calls = required_effects(&scene);
-    print(&if arguments.json { to_json(arguments, &calls) } else { to_text(&calls) })
+    let required = required_effects(&scene);
+    print(&if arguments.json { to_json(arguments, &required) } else { to_text(&required) })
 }
 
 /// Who needs an effect, if anybody does.
-fn reason(calls: &[Call], effect: Effects) -> Option<&str> {
-    calls.iter().find(|call| call.effect == effect).map(|call| call.reason.as_str())
+fn reason(required: &[RequiredEffect], effect: Effects) -> Option<&str> {
+    required.iter().find(|one| one.effect == effect).map(|one| one.reason.as_str())
 }
 
-fn to_text(calls: &[Call]) -> String {
-    let mut lines = vec![format!("{:16} called by", "effect")];
+fn to_text(required: &[RequiredEffect]) -> String {
+    let mut lines = vec![format!("{:18} needed by", "effect")];
     for effect in Effects::all().iter() {
-        lines.push(format!("{:16} {}", effect.to_string(), reason(calls, effect).unwrap_or("-")));
+        lines.push(format!("{:18} {}", effect.to_string(), reason(required, effect).unwrap_or("-")));
     }
-    let called: Effects = calls.iter().map(|call| call.effect).collect();
-    lines.push(format!("\nThis scene's set: {called}\n"));
+    let set: Effects = required.iter().map(|one| one.effect).collect();
+    lines.push(format!("\nThis scene's set: {set}\n"));
     lines.join("\n")
 }
 
-fn to_json(arguments: &Arguments, calls: &[Call]) -> String {
+fn to_json(arguments: &Arguments, required: &[RequiredEffect]) -> String {
     let effects: Vec<_> = Effects::all()
         .iter()
         .map(|effect| {
-            let reason = reason(calls, effect);
+            let reason = reason(required, effect);
             json!({ "effect": effect.to_string(), "required": reason.is_some(), "reason": reason })
         })
         .collect();
     let summary = json!({
         "scene": arguments.scene,
         "effects": effects,
-        "required": calls.iter().map(|call| call.effect.to_string()).collect::<Vec<_>>(),
+        "required": required.iter().map(|one| one.effect.to_string()).collect::<Vec<_>>(),
     });
     format!("{summary:#}\n")
 }

@@ -341,18 +341,17 @@ impl Summary<'_> {
 fn table(measures: &[Measure]) -> String {
     let width = measures.iter().map(|m| m.family.to_string().len()).max().unwrap_or(0).max("family".len());
     let mut text = format!(
-        "{:width$} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10}  worst case\n",
-        "family", "cases", "unanswered", "RMSE/mean", "median", "95 %", "worst"
+        "{:width$} {:>6} {:>10} {:>10} {:>10} {:>10} {:>10} {:>10}  worst case\n",
+        "family", "cases", "unanswered", "RMSE/mean", "unit error", "median", "95 %", "worst"
     );
     for m in measures {
         let _ = write!(text, "{:width$} {:>6} {:>10}", m.family, m.answered + m.unanswered, m.unanswered);
         if m.answered > 0 {
-            let columns = [m.rmse_over_mean, m.median, m.quantile_95, m.worst].map(number);
-            let _ = write!(
-                text,
-                " {:>10} {:>10} {:>10} {:>10}  {}",
-                columns[0], columns[1], columns[2], columns[3], m.worst_case
-            );
+            let columns = [m.rmse_over_mean, m.mean_unit_error, m.median, m.quantile_95, m.worst];
+            for column in columns {
+                let _ = write!(text, " {:>10}", number(column));
+            }
+            let _ = write!(text, "  {}", m.worst_case);
         }
         text.push('\n');
     }
@@ -378,6 +377,7 @@ mod tests {
             answered,
             unanswered,
             rmse_over_mean: 0.24512,
+            mean_unit_error: 2.5e-4,
             median: 0.0,
             quantile_95: 1.5e-7,
             worst: f64::INFINITY,
@@ -385,8 +385,8 @@ mod tests {
         };
         let text = table(&[one("ggx", 50, 0), one("anisotropic ggx", 0, 7)]);
         let expected = "\
-family                    cases unanswered  RMSE/mean     median       95 %      worst  worst case
-polygon, ggx                 50          0     0.2451     0.0000     1.5e-7        inf  a case
+family                    cases unanswered  RMSE/mean unit error     median       95 %      worst  worst case
+polygon, ggx                 50          0     0.2451     2.5e-4     0.0000     1.5e-7        inf  a case
 polygon, anisotropic ggx      7          7
 ";
         assert_eq!(text, expected);
@@ -399,6 +399,7 @@ polygon, anisotropic ggx      7          7
             answered,
             unanswered: 1,
             rmse_over_mean: 0.0,
+            mean_unit_error: 0.0,
             median: 0.0,
             quantile_95: 0.0,
             worst,

@@ -165,9 +165,9 @@ impl SurfaceChoice {
     fn surfaces(self, scene: &Scene, path: &Path) -> Effects {
         let required = scene.effects() & Effects::SURFACES;
         let Self::Stated(surfaces) = self else { return required };
-        for call in arealight_scene::required_effects(scene) {
-            if (required - surfaces).contains(call.effect) {
-                eprintln!("warning: {}: --surfaces is without {call}", path.display());
+        for effect in arealight_scene::required_effects(scene) {
+            if (required - surfaces).contains(effect.effect) {
+                eprintln!("warning: {}: --surfaces is without {effect}", path.display());
             }
         }
         surfaces
@@ -269,7 +269,8 @@ fn render(
             let samples = arguments.samples_a_subpixel(samples);
             let bar = progress::bar(u64::from(samples), "samples a subpixel");
             let shadows = arguments.shadows.unwrap_or_default() != Shadows::Off;
-            let reference = Reference { samples, shadows, ..Reference::default() };
+            let coupled = surfaces.contains(Effects::COUPLED);
+            let reference = Reference { samples, shadows, coupled, ..Reference::default() };
             let took = renderer.reference(reference, |done| bar.set_position(u64::from(done)))?;
             bar.finish_and_clear();
             took
@@ -367,8 +368,8 @@ impl Summary<'_> {
             scene.lights.len(),
             camera.name
         )];
-        for (index, call) in arealight_scene::required_effects(scene).iter().enumerate() {
-            lines.push(format!("{} {call}", if index == 0 { "effects " } else { "        " }));
+        for (index, effect) in arealight_scene::required_effects(scene).iter().enumerate() {
+            lines.push(format!("{} {effect}", if index == 0 { "effects " } else { "        " }));
         }
         if arguments.surfaces != SurfaceChoice::Required {
             lines.push(format!("surfaces {surfaces}"));
@@ -413,10 +414,10 @@ impl Summary<'_> {
     fn to_json(&self) -> String {
         let Self { arguments, scene, surfaces, camera, device, outcome, output } = self;
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
-        let calls = arealight_scene::required_effects(scene);
-        let effects: Vec<_> = calls
+        let required = arealight_scene::required_effects(scene);
+        let effects: Vec<_> = required
             .iter()
-            .map(|call| json!({ "effect": call.effect.to_string(), "reason": call.reason }))
+            .map(|one| json!({ "effect": one.effect.to_string(), "reason": one.reason }))
             .collect();
         let summary = json!({
             "scene": arguments.scene_name(),

@@ -44,9 +44,6 @@ impl CaseCoat {
     pub(super) fn supported(&self) -> Result<Coat, Unsupported> {
         let Self { weight, alpha, f0, normal, by_albedo } = *self;
         let unsupported = |reason: String| Err(Unsupported { reason });
-        if by_albedo {
-            return unsupported("a coat weighted by its albedo is not supported".into());
-        }
         if f0 != Coat::F0 {
             return unsupported(format!("coat_F0 {f0} is not supported; {} is", Coat::F0));
         }
@@ -55,6 +52,6 @@ impl CaseCoat {
                 "coat_alpha {alpha} is below {MIN_ALPHA}, the smallest that is shaded"
             ));
         }
-        Ok(Coat { weight, alpha, normal })
+        Ok(Coat { weight, alpha, normal, by_albedo })
     }
 }

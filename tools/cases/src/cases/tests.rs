@@ -1,7 +1,7 @@
 //! What a file of cases may say, and what is said about one that is wrong.
 
 use super::*;
-use arealight_oracle::material::Coat;
+use arealight_oracle::material::{Coat, Interface, Surface};
 
 /// There is no image beside these cases.
 fn no_image(path: &str) -> Result<Arc<Texture>, String> {
@@ -41,8 +41,7 @@ fn a_case_becomes_lobes_and_a_light_relative_to_its_point() {
         f0: DVec3::new(0.1, 0.2, 0.3),
         f90: 1.0,
         alpha: 0.25,
-        coat: None,
-        sheen: None,
+        ..Surface::default()
     };
     assert_eq!(supported.surface, surface);
     assert_eq!(supported.light.vertices[2], DVec3::new(1.0, 1.0, 1.0));
@@ -149,24 +148,18 @@ fn a_coat_is_read_and_what_the_library_has_not_has_a_reason() {
     let with = |more: &str| format!(r"{COAT}, {more}");
     let gltf = r#""coat_F0": 0.04, "layering": "gltf""#;
     let surface = read_one(&case(&with(gltf), QUAD)).unwrap().supported(no_image).unwrap().surface;
-    assert_eq!(surface.coat, Some(Coat { weight: 0.5, alpha: 0.01, normal: None }));
+    assert_eq!(surface.coat, Some(Coat { weight: 0.5, alpha: 0.01, normal: None, by_albedo: false }));
     assert_eq!((surface.alpha, surface.f0), (0.25, DVec3::ONE));
     let tilted = with(&format!(r#"{gltf}, "coat_normal": [0, 3, 4]"#));
     let coat = read_one(&case(&tilted, QUAD)).unwrap().supported(no_image).unwrap().surface.coat.unwrap();
     assert_eq!(coat.normal, Some(DVec3::new(0.0, 3.0, 4.0)));
-    for (more, expected) in [
-        (r#""coat_F0": 0.04, "layering": "albedo""#, "a coat weighted by its albedo is not supported"),
-        (r#""coat_F0": 0.05, "layering": "gltf""#, "coat_F0 0.05 is not supported; 0.04 is"),
-        (
-            r#""coat_F0": 0.04, "layering": "gltf", "albedo": [1, 0, 0], "coupling": "gltf""#,
-            "coupling of the Lambert lobe to the Fresnel term is not supported yet",
-        ),
-    ] {
-        assert_eq!(reason(&with(more), QUAD), expected);
-    }
-    // Nothing is coupled of a lobe that is black
-    let metal = with(&format!(r#"{gltf}, "albedo": [0, 0, 0], "coupling": "gltf""#));
-    assert!(read_one(&case(&metal, QUAD)).unwrap().supported(no_image).is_ok());
+    let by_albedo =
+        with(r#""coat_F0": 0.04, "layering": "albedo", "F0": [0.04, 0.1, 0.05], "coupling": "gltf""#);
+    let surface = read_one(&case(&by_albedo, QUAD)).unwrap().supported(no_image).unwrap().surface;
+    assert!(surface.coat.unwrap().by_albedo);
+    assert_eq!(surface.interface, Some(Interface { f0: 0.1, f90: 1.0, by_albedo: false }));
+    let reason = reason(&with(r#""coat_F0": 0.05, "layering": "gltf""#), QUAD);
+    assert_eq!(reason, "coat_F0 0.05 is not supported; 0.04 is");
     for (more, expected) in [
         (r#""coat_F0": 0.04"#, "layering: is missing"),
         (r#""coat_F0": 2, "layering": "gltf""#, "coat_F0: 2 must be from 0 to 1"),

@@ -133,8 +133,9 @@ impl SceneRenderer<'_> {
             view.shadow.write_set(view.sets[1], &resources, &self.shadow_resources(&view))?;
         }
         // doc end
-        view.shade.prepare(&self.shade_frame())?;
-        view.shadow.prepare()?;
+        let frame = self.shade_frame();
+        view.shade.prepare(&frame)?;
+        view.shadow.prepare(frame.lights)?;
         Ok(view)
     }
 

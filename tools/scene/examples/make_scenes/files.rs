@@ -1,5 +1,6 @@
 //! The files of `scenes/`: what the program writes, and what a test holds them to.
 
+use crate::hundred_lamps::Surface;
 use crate::shadows::Floor;
 use crate::{clock, coats, demo, hundred_lamps, lamps, room, screen, shadows, sheen, sweep};
 
@@ -16,6 +17,7 @@ pub fn files() -> [(&'static str, Vec<u8>); 11] {
         ("sheen.glb", sheen::glb()),
         ("shadows.glb", shadows::glb(Floor::Matt)),
         ("shadows-glossy.glb", shadows::glb(Floor::Glossy)),
-        ("hundred-lamps.glb", hundred_lamps::glb()),
+        ("hundred-lamps.glb", hundred_lamps::glb(Surface::Satin)),
+        ("hundred-lamps-metal.glb", hundred_lamps::glb(Surface::Metal)),
     ]
 }

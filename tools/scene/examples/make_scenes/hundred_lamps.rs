@@ -1,4 +1,5 @@
-//! A hundred small rectangles of many sizes, heights and colours above a satin floor with boxes: of some lights of many the shadow matters.
+//! A hundred small rectangles of many sizes, heights and colours above a floor with boxes, of satin or of metal: of some lights of many the shadow
+//! matters.
 
 use crate::shapes::{cuboid, floor, panel};
 use crate::sweep::turn_around;
@@ -11,8 +12,21 @@ pub const ROWS: u32 = 10;
 /// How many boxes stand on the floor.
 pub const BOXES: u32 = 18;
 
-/// Of all surfaces.
-pub const ROUGHNESS: f32 = 0.5;
+/// What all surfaces are of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Surface {
+    Satin,
+    Metal,
+}
+
+impl Surface {
+    pub fn roughness(self) -> f32 {
+        match self {
+            Self::Satin => 0.5,
+            Self::Metal => 0.3,
+        }
+    }
+}
 
 /// Width and depth of the floor.
 const SIDE: f64 = 10.0;
@@ -29,12 +43,16 @@ const RADIANCE: [[f32; 3]; 8] = [
     [1.0, 2.0, 8.0],
 ];
 
-pub fn glb() -> Vec<u8> {
+pub fn glb(surface: Surface) -> Vec<u8> {
     let mut writer = Writer::new();
-    let satin = writer.surface("satin", [0.55, 0.54, 0.52], 0.0, ROUGHNESS);
-    writer.object("floor", &floor(SIDE, SIDE, 1.0).plain(), satin, json!({}));
+    let (name, metalness) = match surface {
+        Surface::Satin => ("satin", 0.0),
+        Surface::Metal => ("metal", 1.0),
+    };
+    let material = writer.surface(name, [0.55, 0.54, 0.52], metalness, surface.roughness());
+    writer.object("floor", &floor(SIDE, SIDE, 1.0).plain(), material, json!({}));
     let mut random = Random(1);
-    boxes(&mut writer, satin, &mut random);
+    boxes(&mut writer, material, &mut random);
     lamps(&mut writer, &mut random);
     writer.camera("above", [0.0, 6.2, 8.2], [0.0, 0.0, 0.45], 0.72, 16.0 / 9.0);
     writer.glb()

@@ -63,8 +63,8 @@ fn islands_are_faces_of_one_light() {
     assert_eq!((names, faces(&scene.lights[0])), (vec!["lamp"], vec![4, 4]));
     assert_eq!(warnings(&scene), [""; 0]);
     assert!(scene.effects().contains(Effects::MESH));
-    let call = required_effects(&scene).into_iter().find(|call| call.effect == Effects::MESH).unwrap();
-    assert_eq!(call.to_string(), "mesh: light 'lamp'");
+    let mesh = required_effects(&scene).into_iter().find(|one| one.effect == Effects::MESH).unwrap();
+    assert_eq!(mesh.to_string(), "mesh: light 'lamp'");
     // The twin: one of them is a polygon without faces
     let scene = load(emitter_with(&panel(1.0, 1.0), json!({})));
     assert!(

@@ -1,5 +1,6 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
+use crate::hundred_lamps::Surface;
 use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
@@ -26,6 +27,9 @@ fn load(name: &str) -> Scene {
     scene
 }
 
+/// What dielectrics of glTF need.
+const LOBES: Effects = Effects::DIFFUSE.union(Effects::GLOSSY).union(Effects::COUPLED);
+
 #[test]
 fn the_files_are_what_the_program_makes() {
     for (name, bytes) in files::files() {
@@ -47,7 +51,7 @@ fn the_sweep_covers_roughness_and_metalness_under_one_rectangle() {
         }
     }
     assert_eq!((scene.lights.len(), scene.lights[0].shape.vertices().len()), (1, 4));
-    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY);
+    assert_eq!(scene.effects(), LOBES);
 }
 
 #[test]
@@ -60,7 +64,7 @@ fn the_coats_lie_on_every_base_and_beside_each_is_the_same_without() {
         assert_eq!((without.base_color, without.roughness), (with.base_color, with.roughness), "{name}");
     }
     let coats = Effects::COAT | Effects::COAT_NORMAL;
-    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | coats);
+    assert_eq!(scene.effects(), LOBES | coats);
     assert_eq!(scene.lights.len(), 4);
 }
 
@@ -109,13 +113,8 @@ fn the_room_has_outlines_of_many_kinds() {
 #[test]
 fn the_demo_shows_what_there_is() {
     let scene = load("demo.glb");
-    let elsewhere = Effects::IMAGES | Effects::SHAPES | Effects::MESH | Effects::COAT | Effects::COAT_NORMAL;
-    let elsewhere = elsewhere | Effects::SHEEN;
-    assert_eq!(
-        scene.effects(),
-        Effects::all() - elsewhere,
-        "screen.glb has textures, coats.glb coats, sheen.glb sheen"
-    );
+    let lights = Effects::TWO_SIDED | Effects::POLYGON;
+    assert_eq!(scene.effects(), LOBES | lights | Effects::SPECULAR_INPUT);
     let letters: Vec<_> = scene.lights.iter().filter(|light| light.name.starts_with("letter")).collect();
     assert_eq!(letters.len(), 3);
     assert!(letters.iter().all(|letter| is_concave(letter)));
@@ -134,8 +133,7 @@ fn the_demo_shows_what_there_is() {
 #[test]
 fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
     let scene = load("screen.glb");
-    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
-    assert_eq!(scene.effects(), lobes | Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED);
+    assert_eq!(scene.effects(), LOBES | Effects::TWO_SIDED | Effects::POLYGON | Effects::TEXTURED);
     let layer = |name: &str| {
         let light = scene.lights.iter().find(|light| light.name == name).unwrap();
         light.texture.as_ref().map(|texture| texture.layer)
@@ -166,10 +164,9 @@ fn the_screen_shows_a_test_card_to_a_floor_of_all_roughnesses() {
 #[test]
 fn the_clock_is_a_disk_that_shows_its_face_upright() {
     let scene = load("clock.glb");
-    let lobes = Effects::DIFFUSE | Effects::GLOSSY;
     assert_eq!(
         scene.effects(),
-        lobes | Effects::TWO_SIDED | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE,
+        LOBES | Effects::TWO_SIDED | Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE,
         "no polygon shows anything"
     );
     let disks: Vec<_> = scene.lights.iter().filter(|light| !light.shape.is_polygonal()).collect();
@@ -208,12 +205,22 @@ fn the_shadows_are_of_one_rectangle_on_two_floors() {
 
 #[test]
 fn the_hundred_lamps_are_quads_above_boxes() {
-    let scene = load("hundred-lamps.glb");
+    for (name, surface) in
+        [("hundred-lamps.glb", Surface::Satin), ("hundred-lamps-metal.glb", Surface::Metal)]
+    {
+        let scene = load(name);
+        let floor = &scene.materials[scene.triangles[0].material as usize].material;
+        let is_metal = surface == Surface::Metal;
+        assert_eq!((floor.roughness, floor.metalness), (surface.roughness(), f32::from(u8::from(is_metal))));
+        check_hundred_lamps(&scene);
+    }
+}
+
+fn check_hundred_lamps(scene: &Scene) {
     assert_eq!(scene.lights.len() as u32, hundred_lamps::ROWS * hundred_lamps::ROWS);
     assert!(scene.lights.iter().all(|light| light.shape.is_convex_quad() && !light.two_sided));
     let (boxes, floor) = (12 * hundred_lamps::BOXES as usize, 2);
     assert_eq!(scene.triangles.iter().filter(|triangle| !triangle.lamp).count(), boxes + floor);
-    assert!(scene.materials.iter().any(|m| m.material.roughness == hundred_lamps::ROUGHNESS));
     // No lamp is in a box: all hang above them
     let heights =
         scene.triangles.iter().filter(|triangle| !triangle.lamp).flat_map(|t| t.positions.map(|p| p.y));

@@ -28,7 +28,8 @@ fn area_lights_may_be_disks() {
     assert_eq!(center, DVec3::new(7.0, 8.0, 9.0));
     assert_eq!((axis_u.length(), axis_v.length(), axis_u.dot(axis_v)), (3.0, 3.0, 0.0));
     assert_eq!(axis_u.cross(axis_v), DVec3::NEG_Z * 9.0);
-    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | Effects::ELLIPSE);
+    let lobes = Effects::DIFFUSE | Effects::GLOSSY | Effects::COUPLED;
+    assert_eq!(scene.effects(), lobes | Effects::ELLIPSE);
     let reasons: Vec<String> = required_effects(&scene).iter().map(ToString::to_string).collect();
     assert!(reasons.contains(&"ellipse: light 'round'".to_owned()), "{reasons:?}");
 }

@@ -40,10 +40,11 @@ pub struct Arguments {
 }
 
 /// The scenes that are built in.
-const SCENES: [(&str, &[u8]); 3] = [
+const SCENES: [(&str, &[u8]); 4] = [
     ("shadows.glb", include_bytes!("../../../../../scenes/shadows.glb")),
     ("shadows-glossy.glb", include_bytes!("../../../../../scenes/shadows-glossy.glb")),
     ("hundred-lamps.glb", include_bytes!("../../../../../scenes/hundred-lamps.glb")),
+    ("hundred-lamps-metal.glb", include_bytes!("../../../../../scenes/hundred-lamps-metal.glb")),
 ];
 
 /// Of them, those that films are made of.

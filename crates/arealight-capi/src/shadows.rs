@@ -1,0 +1,416 @@
+//! The shadow pass, and what blocks its rays.
+
+use crate::device::Arealight;
+use crate::failure::{ArealightResult, Failure, call};
+use crate::lights::{check_size, copy};
+use crate::pass::{
+    ArealightPass, buffer, level, read_frame, read_resources, sampled, set_layout, shade_options, stored,
+};
+use crate::types::{
+    ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightPassOptions, ArealightResources,
+    ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,
+};
+use crate::{arguments, handles};
+use arealight::plan::{self, Output, ShadowFilter, ShadowHistory};
+use arealight::{BlockerError, Blockers};
+use arealight_vk::ash::vk::{self, Handle as _};
+use arealight_vk::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources};
+use bytemuck::cast_slice;
+use glam::Vec3;
+use std::ffi::c_void;
+
+/// Triangles that block shadow rays, in a hierarchy of boxes, for hosts that have none of their own.
+pub struct ArealightBlockers {
+    blockers: Blockers,
+}
+
+/// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with, in any vertex order. It takes a microsecond or
+/// two a triangle. `*out` is the host's to destroy.
+///
+/// # Safety
+/// Pointers are null or valid, with as many items as the count says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_blockers_create(
+    vertices: *const f32,
+    triangle_count: u32,
+    out: *mut *mut ArealightBlockers,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let numbers = unsafe {
+            arguments::write(out, std::ptr::null_mut(), "out")?;
+            arguments::array(vertices, 9 * triangle_count as usize, "vertices")?
+        };
+        let triangle = |numbers: &[f32]| [0, 3, 6].map(|first| Vec3::from_slice(&numbers[first..]));
+        let triangles: Vec<[Vec3; 3]> = numbers.chunks_exact(9).map(triangle).collect();
+        let blockers = Blockers::new(&triangles).map_err(refused)?;
+        // SAFETY: as above.
+        unsafe { arguments::write(out, handles::give(ArealightBlockers { blockers }), "out") }
+    })
+}
+
+fn refused(error: BlockerError) -> Failure {
+    Failure::argument(error.to_string())
+}
+
+/// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only says how large they must be.
+///
+/// # Safety
+/// Pointers are null or valid, with as many bytes as their sizes say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_blockers_read(
+    blockers: *const ArealightBlockers,
+    arrays: *mut ArealightBlockerArrays,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (blockers, mut sizes) = unsafe {
+            (
+                &handles::borrow(blockers, "blockers")?.blockers,
+                *arguments::read(arrays.cast_const(), "arrays")?,
+            )
+        };
+        let parts: [(*mut c_void, u64, &[u8], &str); 2] = [
+            (sizes.nodes, sizes.nodes_size, cast_slice(&blockers.nodes), "arrays.nodes_size"),
+            (sizes.triangles, sizes.triangles_size, cast_slice(&blockers.triangles), "arrays.triangles_size"),
+        ];
+        [sizes.nodes_size, sizes.triangles_size] = parts.map(|(_, _, bytes, _)| bytes.len() as u64);
+        // SAFETY: as above.
+        unsafe { arguments::write(arrays, sizes, "arrays") }?;
+        let given = || parts.into_iter().filter(|(to, ..)| !to.is_null());
+        for (_, size, bytes, field) in given() {
+            check_size(bytes, size, field)?;
+        }
+        for (to, _, bytes, _) in given() {
+            // SAFETY: as above; there is room.
+            unsafe { copy(bytes, to) };
+        }
+        Ok(())
+    })
+}
+
+/// Destroys a hierarchy, whose copies stay. Null is nothing.
+///
+/// # Safety
+/// No other thread uses it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_blockers_destroy(blockers: *mut ArealightBlockers) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { handles::take(blockers, "blockers") }.map(drop))
+}
+
+/// Shadow rays after a shade pass whose ArealightPassOptions have them.
+pub struct ArealightShadowPass {
+    pass: ShadowPass,
+}
+
+/// Makes a shadow pass, after shade passes of `options`; its rays meet ArealightShadowResources.blocker_nodes. `*out` is the host's to
+/// destroy.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_create(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    shadows: *const ArealightShadowOptions,
+    out: *mut *mut ArealightShadowPass,
+) -> ArealightResult {
+    // SAFETY: the same contract; the pass is the host's to destroy.
+    call(|| unsafe {
+        create(arealight, options, shadows, out, |arealight, options, shadows| {
+            Ok(ShadowPass::new(arealight.context(), options, shadows)?)
+        })
+    })
+}
+
+/// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of `arealight export` with its own answer to what
+/// blocks a ray, such as an acceleration structure. What that reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`.
+/// `words` is SPIR-V, `size` its bytes.
+///
+/// # Safety
+/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long as the pass.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_create_with_module(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    shadows: *const ArealightShadowOptions,
+    words: *const u32,
+    size: usize,
+    host_set_layout: u64,
+    out: *mut *mut ArealightShadowPass,
+) -> ArealightResult {
+    // SAFETY: the same contract; the pass is the host's to destroy.
+    call(|| unsafe {
+        create(arealight, options, shadows, out, |arealight, options, shadows| {
+            arguments::refuse_null([(host_set_layout == 0, "host_set_layout")])?;
+            if !size.is_multiple_of(4) {
+                return Err(Failure::argument(format!("size: {size} bytes are no whole words of SPIR-V")));
+            }
+            let words = arguments::array(words, size / 4, "words")?.to_vec();
+            let layout = vk::DescriptorSetLayout::from_raw(host_set_layout);
+            Ok(ShadowPass::with_module(arealight.context(), options, shadows, words, layout)?)
+        })
+    })
+}
+
+/// # Safety
+/// Pointers are null or valid.
+unsafe fn create(
+    arealight: *const Arealight,
+    options: *const ArealightPassOptions,
+    shadows: *const ArealightShadowOptions,
+    out: *mut *mut ArealightShadowPass,
+    make: impl FnOnce(&Arealight, plan::ShadeOptions, ShadowOptions) -> Result<ShadowPass, Failure>,
+) -> Result<(), Failure> {
+    // SAFETY: the same contract, here and below.
+    let (arealight, options, shadows) = unsafe {
+        arguments::write(out, std::ptr::null_mut(), "out")?;
+        (
+            handles::borrow(arealight, "arealight")?,
+            arguments::read(options, "options")?,
+            arguments::read(shadows, "shadows")?,
+        )
+    };
+    let pass = make(arealight, shade_options(options)?, shadow_options(shadows)?)?;
+    // SAFETY: as above.
+    unsafe { arguments::write(out, handles::give(ArealightShadowPass { pass }), "out") }
+}
+
+fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {
+    Ok(ShadowOptions {
+        filter: level(options.filter, &[ShadowFilter::Off, ShadowFilter::Gather], "filter")?,
+        history: level(
+            options.history,
+            &[ShadowHistory::Off, ShadowHistory::Camera, ShadowHistory::MotionVectors],
+            "history",
+        )?,
+        output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
+    })
+}
+
+/// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a pass without shadow rays.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_shadow_picks_size(
+    pass: *const ArealightPass,
+    width: u32,
+    height: u32,
+    out: *mut u64,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let size = unsafe { handles::borrow(pass, "pass") }?.shade_pass().picks_size([width, height]);
+        // SAFETY: as above.
+        unsafe { arguments::write(out, size, "out") }
+    })
+}
+
+/// How many bytes ArealightShadowResources.history needs, for images of `width` x `height` pixels.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_history_size(
+    width: u32,
+    height: u32,
+    out: *mut u64,
+) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { arguments::write(out, plan::shadow_history_size([width, height]), "out") })
+}
+
+/// What descriptor sets of the pass are made with.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_set_layout(
+    pass: *const ArealightShadowPass,
+    out: *mut ArealightSetLayout,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let pass = &unsafe { handles::borrow(pass, "pass") }?.pass;
+        let layout = set_layout(pass.set_layout(), &pass.pool_sizes(1));
+        // SAFETY: as above.
+        unsafe { arguments::write(out, layout, "out") }
+    })
+}
+
+/// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of the shade pass before.
+///
+/// # Safety
+/// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_write_set(
+    pass: *const ArealightShadowPass,
+    arealight: *const Arealight,
+    set: u64,
+    shade: *const ArealightResources,
+    resources: *const ArealightShadowResources,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (pass, arealight, shade, resources) = unsafe {
+            (
+                &handles::borrow(pass, "pass")?.pass,
+                handles::borrow(arealight, "arealight")?,
+                arguments::read(shade, "shade")?,
+                arguments::read(resources, "resources")?,
+            )
+        };
+        arguments::refuse_null([(set == 0, "set")])?;
+        let (shade, resources) = (read_resources(arealight, shade)?, read_shadow_resources(resources));
+        // SAFETY: the caller vouches for the set and the resources.
+        Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &shade, &resources) }?)
+    })
+}
+
+fn read_shadow_resources(resources: &ArealightShadowResources) -> ShadowResources {
+    let given = |range: ArealightBuffer| (range.buffer != 0).then(|| buffer(range));
+    let blockers = given(resources.blocker_nodes).zip(given(resources.blocker_triangles));
+    ShadowResources {
+        shadow: stored(resources.shadow),
+        radiance: (resources.radiance.view != 0).then(|| stored(resources.radiance)),
+        history: given(resources.history),
+        motion: (resources.motion.view != 0).then(|| sampled(resources.motion)),
+        blockers: blockers.map(|(nodes, triangles)| BlockerResources { nodes, triangles }),
+    }
+}
+
+/// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what arealight_shadow_pass_record
+/// would take a moment for otherwise.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_prepare(
+    pass: *const ArealightShadowPass,
+    frame: *const ArealightFrame,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers.
+        let (pass, frame) =
+            unsafe { (&handles::borrow(pass, "pass")?.pass, read_frame(arguments::read(frame, "frame")?)?) };
+        Ok(pass.prepare(frame.lights)?)
+    })
+}
+
+/// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or three with a history, with barriers
+/// between them. The barrier for what the shade pass wrote is the host's, and so is one after. `resources` are those that the set was written
+/// with.
+///
+/// # Safety
+/// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was recorded earlier on the same queue.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_record(
+    pass: *const ArealightShadowPass,
+    command_buffer: *mut c_void,
+    set: u64,
+    resources: *const ArealightShadowResources,
+    frame: *const ArealightShadowFrame,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (pass, resources, given) = unsafe {
+            (
+                &handles::borrow(pass, "pass")?.pass,
+                arguments::read(resources, "resources")?,
+                arguments::read(frame, "frame")?,
+            )
+        };
+        arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
+        // SAFETY: as above.
+        let shade = unsafe { read_frame(arguments::read(given.frame, "frame.frame")?) }?;
+        let frame = ShadowFrame {
+            shade: &shade,
+            host_set: (given.host_set != 0).then(|| vk::DescriptorSet::from_raw(given.host_set)),
+            origin_shift: Vec3::from_array(given.origin_shift),
+        };
+        let (commands, set) =
+            (vk::CommandBuffer::from_raw(command_buffer as u64), vk::DescriptorSet::from_raw(set));
+        // SAFETY: the caller vouches for the command buffer and the set.
+        Ok(unsafe { pass.record(commands, set, &read_shadow_resources(resources), &frame) }?)
+    })
+}
+
+/// Destroys a pass, before or after the object that it was made from. Null is nothing.
+///
+/// # Safety
+/// No commands of the pass are pending, the device is alive, and no other thread uses the pass.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_shadow_pass_destroy(pass: *mut ArealightShadowPass) -> ArealightResult {
+    // SAFETY: the same contract.
+    call(|| unsafe { handles::take(pass, "pass") }.map(drop))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constants as c;
+
+    #[test]
+    fn constants_are_those_of_the_vocabulary() {
+        let made = |filter, history| {
+            let ShadowOptions { filter, history, .. } =
+                shadow_options(&ArealightShadowOptions { filter, history, output: 0 }).unwrap();
+            (filter, history)
+        };
+        assert_eq!(
+            made(c::AREALIGHT_SHADOW_FILTER_GATHER, c::AREALIGHT_SHADOW_HISTORY_CAMERA),
+            (ShadowFilter::Gather, ShadowHistory::Camera)
+        );
+        assert_eq!(
+            made(c::AREALIGHT_SHADOW_FILTER_OFF, c::AREALIGHT_SHADOW_HISTORY_MOTION),
+            (ShadowFilter::Off, ShadowHistory::MotionVectors)
+        );
+        let zero = ArealightShadowOptions::default();
+        for (wrong, field) in [
+            (ArealightShadowOptions { filter: 2, ..zero }, "options.filter"),
+            (ArealightShadowOptions { history: 3, ..zero }, "options.history"),
+            (ArealightShadowOptions { output: 2, ..zero }, "options.output"),
+        ] {
+            let message = shadow_options(&wrong).err().unwrap().message;
+            assert!(message.starts_with(field), "{message}");
+        }
+    }
+
+    #[test]
+    fn blockers_are_copied_where_there_is_room() {
+        let vertices = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let mut blockers = std::ptr::null_mut();
+        let mut sizes = ArealightBlockerArrays {
+            nodes: std::ptr::null_mut(),
+            triangles: std::ptr::null_mut(),
+            nodes_size: 0,
+            triangles_size: 0,
+        };
+        // SAFETY: the pointers are valid, and the arrays as large as they say.
+        unsafe {
+            let wrong = [f32::NAN; 9];
+            assert_eq!(
+                arealight_blockers_create(wrong.as_ptr(), 1, &raw mut blockers),
+                ArealightResult::ErrorArgument
+            );
+            assert!(blockers.is_null());
+            assert_eq!(
+                arealight_blockers_create(vertices.as_ptr(), 1, &raw mut blockers),
+                ArealightResult::Ok
+            );
+            assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::Ok);
+            assert_eq!((sizes.nodes_size, sizes.triangles_size), (32, 48));
+            let mut triangles = [7.0_f32; 12];
+            sizes.triangles = triangles.as_mut_ptr().cast();
+            sizes.triangles_size = 44;
+            assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::ErrorTooSmall);
+            assert_eq!((sizes.triangles_size, triangles[0]), (48, 7.0));
+            assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::Ok);
+            assert_eq!(triangles, [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+            assert_eq!(arealight_blockers_destroy(blockers), ArealightResult::Ok);
+            assert_eq!(arealight_blockers_read(blockers, &raw mut sizes), ArealightResult::ErrorArgument);
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! Shadows of a host in C are the recorder's, to the last bit.
+
+use arealight::plan::{ShadeOptions, ShadowFilter};
+use arealight_capi::{
+    AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
+    ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
+    ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass,
+    ArealightShadowResources, arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
+    arealight_pack_lights, arealight_pass_create, arealight_pass_destroy, arealight_pass_record,
+    arealight_pass_shadow_picks_size, arealight_pass_write_set, arealight_shadow_pass_create,
+    arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
+    arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
+};
+use arealight_engine::host::{Buffer, Image, Usage};
+use arealight_oracle::material::Material;
+use arealight_tests::TestEngine;
+use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_ARRAYS, c_lamp, good, refused, set_layout};
+use arealight_tests::one_pixel::lamp;
+use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
+use arealight_vk::ShadowPass;
+use ash::vk::{self, Handle as _};
+use glam::{Vec3, Vec4};
+use std::ffi::c_void;
+use std::ptr::null_mut;
+
+/// A wall before one half of the lamp.
+fn patch() -> ShadowPatch {
+    let corner = |x: f32, y: f32| Vec3::new(x, y, 0.5);
+    ShadowPatch {
+        material: Material { roughness: 0.5, ..Material::default() },
+        view: Vec3::new(0.0, -1.0, 1.0),
+        lights: vec![lamp()],
+        blockers: vec![
+            [corner(0.0, -4.0), corner(4.0, -4.0), corner(4.0, 4.0)],
+            [corner(0.0, -4.0), corner(4.0, 4.0), corner(0.0, 4.0)],
+        ],
+    }
+}
+
+/// The hierarchy's nodes and triangles, as a host in C gets them.
+fn blocker_arrays(triangles: &[[Vec3; 3]]) -> [Vec<u32>; 2] {
+    let mut blockers = null_mut();
+    let mut arrays =
+        ArealightBlockerArrays { nodes: null_mut(), triangles: null_mut(), nodes_size: 0, triangles_size: 0 };
+    // SAFETY: the pointers are valid, and the arrays as large as they say.
+    unsafe {
+        let (vertices, count) = (triangles.as_ptr().cast(), triangles.len() as u32);
+        good(arealight_blockers_create(vertices, count, &raw mut blockers));
+        good(arealight_blockers_read(blockers, &raw mut arrays));
+        let mut made = [arrays.nodes_size, arrays.triangles_size].map(|size| vec![0_u32; size as usize / 4]);
+        [arrays.nodes, arrays.triangles] = made.each_mut().map(|array| array.as_mut_ptr().cast());
+        good(arealight_blockers_read(blockers, &raw mut arrays));
+        good(arealight_blockers_destroy(blockers));
+        made
+    }
+}
+
+/// Both passes of a host in C.
+struct CPasses<'a> {
+    engine: &'a TestEngine,
+    library: &'a CLibrary<'a>,
+    shade: *mut ArealightPass,
+    shadow: *mut ArealightShadowPass,
+}
+
+/// An image as C has it.
+fn image(image: &Image, usage: Usage) -> ArealightImage {
+    ArealightImage { view: image.view().as_raw(), layout: usage.layout.as_raw().cast_unsigned(), reserved: 0 }
+}
+
+/// All of a buffer as C has it.
+fn whole(buffer: &Buffer) -> ArealightBuffer {
+    ArealightBuffer { buffer: buffer.handle().as_raw(), offset: 0, range: AREALIGHT_WHOLE_SIZE }
+}
+
+impl<'a> CPasses<'a> {
+    fn new(engine: &'a TestEngine, library: &'a CLibrary<'a>, shadow_rays: u32) -> Self {
+        let options = ArealightPassOptions { shadow_rays, ..ArealightPassOptions::default() };
+        let shadows =
+            ArealightShadowOptions { filter: AREALIGHT_SHADOW_FILTER_GATHER, history: 0, output: 0 };
+        let (mut shade, mut shadow) = (null_mut(), null_mut());
+        // SAFETY: the pointers are valid.
+        unsafe {
+            let arealight = library.arealight;
+            good(arealight_pass_create(arealight, &raw const options, &raw mut shade));
+            good(arealight_shadow_pass_create(
+                arealight,
+                &raw const options,
+                &raw const shadows,
+                &raw mut shadow,
+            ));
+        }
+        Self { engine, library, shade, shadow }
+    }
+
+    fn shadow_layout(&self) -> ArealightSetLayout {
+        let mut layout = set_layout(self.shade);
+        // SAFETY: the pointers are valid.
+        good(unsafe { arealight_shadow_pass_set_layout(self.shadow, &raw mut layout) });
+        layout
+    }
+
+    /// What the patch shows, with shadows.
+    fn run(&self, patch: &ShadowPatch, seed: u32) -> Vec<Vec4> {
+        let (engine, host) = (self.engine, self.engine.host());
+        let lights: Vec<_> = patch.lights.iter().map(c_lamp).collect();
+        let mut packed = NO_ARRAYS;
+        // SAFETY: the lights and the arrays are as they say, here and below.
+        let pack = |packed: &mut _| unsafe {
+            good(arealight_pack_lights(lights.as_ptr(), lights.len() as u32, [0.0; 3].as_ptr(), packed));
+        };
+        pack(&mut packed);
+        let mut arrays =
+            [packed.lights_size, packed.vertices_size].map(|size| vec![0_u32; size as usize / 4]);
+        [packed.lights, packed.vertices] = arrays.each_mut().map(|array| array.as_mut_ptr().cast());
+        pack(&mut packed);
+        let upload = |array: &Vec<u32>| host.storage_buffer("of C", array).unwrap();
+        let [lights, vertices] = arrays.each_ref().map(upload);
+        let [nodes, triangles] = blocker_arrays(&patch.blockers).each_ref().map(upload);
+        let mut picks_size = 0;
+        // SAFETY: the pointers are valid.
+        good(unsafe { arealight_pass_shadow_picks_size(self.shade, SIDE, SIDE, &raw mut picks_size) });
+        let picks = upload(&vec![0; picks_size as usize / 4]);
+
+        let material = &patch.material;
+        let inputs = [
+            filled(engine, [0.0, 0.0, 0.0, 1.0]),
+            filled(engine, [0.0, 0.0, 1.0, material.roughness]),
+            filled(engine, material.base_color.extend(material.metalness).to_array()),
+        ];
+        let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
+        let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
+        let resources = ArealightResources {
+            lights: whole(&lights),
+            light_vertices: whole(&vertices),
+            position: image(&inputs[0], Usage::COMPUTE_READ),
+            normal: image(&inputs[1], Usage::COMPUTE_READ),
+            base_color: image(&inputs[2], Usage::COMPUTE_READ),
+            radiance: image(&radiance, Usage::COMPUTE_WRITE),
+            shadow_picks: whole(&picks),
+            ..ArealightResources::default()
+        };
+        let of_shadows = ArealightShadowResources {
+            shadow: image(&shadow, Usage::COMPUTE_WRITE),
+            radiance: image(&shadowed, Usage::COMPUTE_WRITE),
+            blocker_nodes: whole(&nodes),
+            blocker_triangles: whole(&triangles),
+            ..ArealightShadowResources::default()
+        };
+        let frame = ArealightFrame {
+            width: SIDE,
+            height: SIDE,
+            camera: patch.view.to_array(),
+            lights: packed.summary,
+            seed,
+            position_from_clip: std::ptr::null(),
+            tile_lists: ArealightBuffer::default(),
+        };
+        let shadow_frame = ArealightShadowFrame {
+            frame: &raw const frame,
+            host_set: 0,
+            origin_shift: [0.0; 3],
+            reserved: 0,
+        };
+        let (shade_set, _shade_pool) = self.library.set(&set_layout(self.shade));
+        let (shadow_set, _shadow_pool) = self.library.set(&self.shadow_layout());
+        let (shade_set, shadow_set) = (shade_set.as_raw(), shadow_set.as_raw());
+        // SAFETY: the sets are new, and what they point to lives until submissions were waited for.
+        unsafe {
+            let arealight = self.library.arealight;
+            let resources = &raw const resources;
+            good(arealight_pass_write_set(self.shade, arealight, shade_set, resources));
+            let without =
+                ArealightShadowResources { blocker_nodes: ArealightBuffer::default(), ..of_shadows };
+            let write = |of_shadows: &ArealightShadowResources| {
+                arealight_shadow_pass_write_set(self.shadow, arealight, shadow_set, resources, of_shadows)
+            };
+            refused(write(&without), ArealightResult::ErrorArgument, "blockers");
+            good(write(&of_shadows));
+            good(arealight_shadow_pass_prepare(self.shadow, &raw const frame));
+            host.submit(|commands| {
+                let commands = commands.as_raw() as *mut c_void;
+                good(arealight_pass_record(self.shade, commands, shade_set, &raw const frame));
+            })
+            .unwrap();
+            host.submit(|commands| {
+                let record = |commands, frame| {
+                    let resources = &raw const of_shadows;
+                    arealight_shadow_pass_record(self.shadow, commands, shadow_set, resources, frame)
+                };
+                let commands = commands.as_raw() as *mut c_void;
+                let no_frame = ArealightShadowFrame { frame: std::ptr::null(), ..shadow_frame };
+                let refusal = record(commands, &raw const no_frame);
+                refused(refusal, ArealightResult::ErrorArgument, "frame.frame: is null");
+                good(record(commands, &raw const shadow_frame));
+            })
+            .unwrap();
+        }
+        let texels: Vec<[f32; 4]> = shadowed.download(Usage::COMPUTE_WRITE).unwrap();
+        texels.into_iter().map(Vec4::from_array).collect()
+    }
+}
+
+impl Drop for CPasses<'_> {
+    fn drop(&mut self) {
+        // SAFETY: nothing is pending.
+        unsafe {
+            good(arealight_shadow_pass_destroy(self.shadow));
+            good(arealight_pass_destroy(self.shade));
+        }
+    }
+}
+
+#[test]
+fn c_draws_the_shadows_that_rust_does_to_the_last_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (engine, patch) = (&engine, patch());
+    let options = ShadeOptions { shadow_rays: 2, ..ShadeOptions::default() };
+    let rust = patch.run(&PatchPasses::new(engine, options, ShadowFilter::Gather));
+
+    let library = CLibrary::new(engine);
+    let memory = DeviceMemory::new(engine, &library.table_memory());
+    library.upload(&memory);
+    let passes = CPasses::new(engine, &library, 2);
+    let c = passes.run(&patch, 0);
+    let colors: Vec<Vec3> = c.iter().map(|texel| texel.truncate()).collect();
+    assert_eq!(colors, rust.radiance);
+
+    // Some rays are hidden, and not all
+    let part = colors[0].y / rust.unshadowed[0].y;
+    assert!(part > 0.1 && part < 0.9, "{part}");
+
+    // The twins: other random numbers, and nothing that blocks
+    assert_ne!(passes.run(&patch, 1), c);
+    let free = passes.run(&ShadowPatch { blockers: vec![[Vec3::ZERO; 3]], ..patch.clone() }, 0);
+    let lit: Vec<Vec3> = free.iter().map(|texel| texel.truncate()).collect();
+    assert_eq!(lit, rust.unshadowed);
+}

@@ -1,0 +1,225 @@
+//! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin, and where they are hard.
+
+use arealight::{Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight_engine::EvalPoint;
+use arealight_oracle::material::{Coat, Interface, Surface};
+use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
+use arealight_tests::{Comparison, Random, TestEngine, point, rounding};
+use glam::{DVec3, Vec3};
+use std::sync::LazyLock;
+
+const COUNT: usize = 2000;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+/// How layers share light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    /// A dielectric, coupled by the Fresnel term.
+    Coupled,
+    /// The same with a rough diffuse lobe.
+    Rough,
+    /// With a coat, all layers by albedo.
+    ByAlbedo,
+}
+
+const KINDS: [Kind; 3] = [Kind::Coupled, Kind::Rough, Kind::ByAlbedo];
+
+fn layered(random: &mut Random, kind: Kind) -> Surface {
+    let by_albedo = kind == Kind::ByAlbedo;
+    let f0 = random.between(0.0, 0.5);
+    Surface {
+        diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
+        f0: DVec3::splat(f0),
+        f90: 1.0,
+        alpha: random.between(0.05, 1.0),
+        diffuse_roughness: if kind == Kind::Rough { random.between(0.0, 1.0) } else { 0.0 },
+        interface: Some(Interface { f0, f90: random.between(0.0, 1.0), by_albedo }),
+        coat: by_albedo.then(|| Coat {
+            weight: random.between(0.2, 1.0),
+            alpha: random.between(0.05, 1.0),
+            normal: None,
+            by_albedo: true,
+        }),
+        ..Surface::default()
+    }
+}
+
+/// Points under polygons of 3 to 8 vertices anywhere, above, across and below their horizons.
+fn points(seed: u64, kind: Kind) -> Vec<EvalPoint> {
+    let mut random = Random::new(seed);
+    let one = |i| {
+        let surface = layered(&mut random, kind);
+        let cos_view = random.between(0.0, 1.0);
+        let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
+        let center = random.direction();
+        let size = random.between(0.1, 1.5);
+        let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
+        point(surface, view, vertices, i % 3 == 0)
+    };
+    (0..COUNT).map(one).collect()
+}
+
+/// Three lobes, divided by their parts above the surface where both horizons clip, of which the least is .6. The view's cosine, whose
+/// rounding the albedos follow within alpha of the horizon (table.glsl), counts once more for what the interface takes.
+fn bound(surface: &Surface) -> f64 {
+    let coat = surface.coat.map_or(0.0, |coat| 2.0 * rounding(coat.alpha));
+    (3.0 * rounding(surface.alpha) + coat) / 0.6
+}
+
+fn qualities() -> [Quality; 4] {
+    let quality = Quality::default();
+    [
+        quality,
+        Quality { horizon: Horizon::Both, ..quality },
+        Quality { fresnel: Fresnel::Split, ..quality },
+        Quality { lobes: Lobes::Formula, ..quality },
+    ]
+}
+
+#[test]
+fn layers_follow_their_float64_twin() {
+    let Some(engine) = TestEngine::new() else { return };
+    for kind in KINDS {
+        let points = points(1, kind);
+        for quality in qualities() {
+            let answers = engine.eval(&points, quality).unwrap();
+            let mut comparison = Comparison::new(format!("{kind:?}, {quality:?}"));
+            let mut other = 0;
+            for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+                let light = RelativeLight::new(&given.light, given.position);
+                let twin =
+                    |surface: &Surface| ltc_on(quality, &TABLE, surface, given.normal, given.view, &light);
+                let (expected, bound) = (twin(&given.surface), bound(&given.surface));
+                for channel in 0..3 {
+                    let place = || format!("point {index}, channel {channel}: {given:?}");
+                    comparison.add(answer[channel].into(), expected[channel], bound, place);
+                }
+                // The twin's twin: an interface that reflects a little more is another
+                let more = given.surface.interface.map(|i| Interface { f90: i.f90 + 0.1, ..i });
+                let more = twin(&Surface { interface: more, ..given.surface });
+                other += usize::from((more - answer.as_dvec3()).abs().max_element() > bound);
+            }
+            comparison.assert_all();
+            assert!(other > COUNT / 10, "{other} points notice another interface");
+        }
+    }
+}
+
+#[test]
+fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(4);
+    let mut shapes = || {
+        let center = random.direction() * 2.0;
+        let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
+        let light = |shape| Light { shape, radiance: Vec3::ONE, two_sided: true, ..Light::default() };
+        let ends = TubeEnds::Round;
+        [
+            light(LightShape::Disk { center, axis_u: axis_u * 0.7, axis_v }),
+            light(LightShape::Sphere { center, radius: 0.6 }),
+            light(LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius: 0.2, ends }),
+        ]
+    };
+    // Surfaces of both kinds in one list, each by what it asks for
+    let surfaces = KINDS.into_iter().flat_map(|kind| points(5, kind).into_iter().take(70));
+    let points: Vec<EvalPoint> = surfaces
+        .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
+            shapes().map(|light| EvalPoint { surface, position, normal, view, light })
+        })
+        .collect();
+    let quality = Quality::default();
+    let answers = engine.eval_shapes(&points, quality).unwrap();
+    let mut comparison = Comparison::new("layers under shapes");
+    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+        let EvalPoint { surface, normal, view, light, .. } = given;
+        let expected = shape_ltc_on(quality, &TABLE, surface, *normal, *view, light).unwrap();
+        for channel in 0..3 {
+            // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md)
+            let place = || format!("point {index}, channel {channel}: {given:?}");
+            comparison.add(answer[channel].into(), expected[channel], bound(surface) + 1e-5, place);
+        }
+    }
+    comparison.assert_all();
+}
+
+#[test]
+fn an_interface_that_reflects_nothing_is_none_to_the_bit() {
+    let Some(engine) = TestEngine::new() else { return };
+    let with = points(7, Kind::Coupled);
+    let bits = |interface: fn(Interface) -> Option<Interface>| -> Vec<[u32; 3]> {
+        let changed: Vec<EvalPoint> = with
+            .iter()
+            .map(|given| {
+                let interface = given.surface.interface.and_then(interface);
+                EvalPoint { surface: Surface { interface, ..given.surface }, ..given.clone() }
+            })
+            .collect();
+        let answers = engine.eval(&changed, Quality::default()).unwrap();
+        answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
+    };
+    let none = bits(|_| None);
+    assert_eq!(bits(|i| Some(Interface { f0: 0.0, f90: 0.0, ..i })), none);
+    // The twin: one that reflects
+    assert_ne!(bits(Some), none);
+}
+
+#[test]
+fn radiance_is_continuous_where_the_view_passes_the_normal() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut random = Random::new(8);
+    let vertices = random.polygon(DVec3::new(0.5, 0.2, 0.8), 5, 0.2, 0.6);
+    for kind in KINDS {
+        let surface = layered(&mut random, kind);
+        // Views on a circle about the normal, and the normal itself
+        let at = |tilt: f64| -> Vec<f32> {
+            let points: Vec<EvalPoint> = (0..64)
+                .map(|i| {
+                    let (sin, cos) = (f64::from(i) * 0.1).sin_cos();
+                    let view = DVec3::new(cos * tilt, sin * tilt, 1.0);
+                    point(surface, view, vertices.clone(), false)
+                })
+                .collect();
+            engine.eval(&points, Quality::default()).unwrap().iter().map(|answer| answer.x).collect()
+        };
+        let spread = |values: Vec<f32>| {
+            let most = values.iter().copied().fold(f32::MIN, f32::max);
+            most - values.iter().copied().fold(f32::MAX, f32::min)
+        };
+        // Next to the normal all are alike to rounding; the twin: at an angle they are not
+        assert!(spread(at(1e-6)) < 1e-5, "{}", spread(at(1e-6)));
+        assert!(spread(at(1.5)) > 1e-3);
+    }
+}
+
+#[test]
+fn hard_surfaces_give_finite_radiance_and_no_more_than_they_get() {
+    let Some(engine) = TestEngine::new() else { return };
+    let mut points: Vec<EvalPoint> = KINDS.into_iter().flat_map(|kind| points(9, kind)).collect();
+    let hard = [0.0, 1.0, -1.0, 2.0, f64::NAN, f64::INFINITY];
+    let mut random = Random::new(11);
+    let mut choose = || hard[(random.unit() * hard.len() as f64) as usize % hard.len()];
+    for given in &mut points {
+        let interface = given.surface.interface.as_mut().unwrap();
+        (interface.f0, interface.f90) = (choose(), choose());
+        given.surface.f0 = DVec3::splat(0.04);
+        if given.surface.diffuse_roughness > 0.0 {
+            given.surface.diffuse_roughness = choose();
+        }
+    }
+    // What is within its range is bounded by the light, of radiance 1: two lobes and a coat
+    for (given, answer) in points.iter().zip(engine.eval(&points, Quality::default()).unwrap()) {
+        let interface = given.surface.interface.unwrap();
+        if (0.0..=1.0).contains(&interface.f0) && (0.0..=1.0).contains(&interface.f90) {
+            assert!(
+                answer.is_finite() && answer.min_element() >= 0.0 && answer.max_element() < 1.3,
+                "{given:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn effects_of_layers_are_of_surfaces() {
+    assert!(Effects::SURFACES.contains(Effects::MODEL | Effects::DIFFUSE_ROUGHNESS));
+}
