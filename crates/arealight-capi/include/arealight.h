@@ -77,6 +77,9 @@
 // Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
 #define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
+// Some surface has sheen: ArealightResources.sheen is read.
+#define AREALIGHT_EFFECT_SHEEN 524288
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -389,7 +392,7 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _COUPLED and
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN, _COUPLED and
     // _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
@@ -479,6 +482,8 @@ typedef struct ArealightResources {
     // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
     // normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     struct ArealightImage coat;
+    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
+    struct ArealightImage sheen;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -1041,7 +1046,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 272);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 288);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -1050,12 +1055,13 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, normal) == 88);
 AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, coat) == 136);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 152);
-AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 200);
-AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 224);
-AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 248);
+AREALIGHT_ASSERT(offsetof(ArealightResources, sheen) == 152);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 200);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 216);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 240);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 264);
 AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);

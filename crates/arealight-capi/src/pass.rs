@@ -247,6 +247,7 @@ pub(crate) fn read_resources(
         base_color: sampled(resources.base_color),
         specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
         coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
+        sheen: (resources.sheen.view != 0).then(|| sampled(resources.sheen)),
         radiance: stored(resources.radiance),
         glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
         picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),

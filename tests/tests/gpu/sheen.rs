@@ -19,18 +19,19 @@ static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 /// A base below sheen, and every third below a coat above that.
 fn with_sheen(random: &mut Random, index: usize) -> Surface {
-    let coat = Coat { weight: 0.7, alpha: random.between(0.05, 1.0), normal: None };
+    let coat = Coat { weight: 0.7, alpha: random.between(0.05, 1.0), normal: None, by_albedo: false };
     Surface {
         diffuse_albedo: DVec3::new(0.8, 0.3, 0.1),
         f0: DVec3::new(0.04, 0.5, 0.9),
         f90: 1.0,
         alpha: random.between(0.2, 1.0),
-        coat: (index % 3 == 0).then_some(coat),
+        coat: (index.is_multiple_of(3)).then_some(coat),
         sheen: Some(Sheen {
             color: DVec3::new(random.unit(), random.unit(), random.unit()),
             // Below the smallest and beyond the largest, too
             roughness: random.between(0.0, 1.1),
         }),
+        ..Surface::default()
     }
 }
 
@@ -50,7 +51,7 @@ fn points(seed: u64) -> Vec<EvalPoint> {
         let center = random.direction();
         let size = random.between(0.1, 1.5);
         let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
-        point(surface, view, vertices, i % 3 == 0)
+        point(surface, view, vertices, i.is_multiple_of(3))
     };
     (0..COUNT).map(one).collect()
 }

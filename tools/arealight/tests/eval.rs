@@ -153,9 +153,9 @@ fn anisotropic_surfaces_are_answered_by_every_method() {
 #[test]
 fn layered_materials_are_answered_by_every_method() {
     let device = device();
-    // A coat's albedo is itself an integral, to 1e-6. Fitted lobes are held to the means below: where next to nothing is reflected they
+    // A layer's albedo is itself an integral, of sheen to 1e-4. Fitted lobes are held to the means below: where next to nothing is reflected they
     // err by as much
-    for (method, tolerance) in [("truth", "1e-5"), ("oracle", "1"), ("gpu", "1")] {
+    for (method, tolerance) in [("truth", "1e-4"), ("oracle", "1"), ("gpu", "1")] {
         if method == "gpu" && !device {
             continue;
         }
@@ -165,10 +165,15 @@ fn layered_materials_are_answered_by_every_method() {
         assert!(output.status.success(), "{method}: {}", text(&output.stderr));
         let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
         // Twice what another design gives there
-        for (family, (material, count, bound)) in
-            [("coat", 14, 4.8e-3), ("ggx over diffuse", 6, 2.6e-3), ("rough diffuse", 13, 0.62e-3)]
-                .into_iter()
-                .enumerate()
+        for (family, (material, count, bound)) in [
+            ("coat", 14, 4.8e-3),
+            ("ggx over diffuse", 6, 2.6e-3),
+            ("rough diffuse", 13, 0.62e-3),
+            ("sheen", 6, 1.3e-3),
+            ("sheen_over", 6, 7.4e-3),
+        ]
+        .into_iter()
+        .enumerate()
         {
             let family = &summary["families"][family];
             assert_eq!(
@@ -183,28 +188,6 @@ fn layered_materials_are_answered_by_every_method() {
     let truth = reference("materials-truth.json");
     let output =
         eval(&[&reference("materials.json"), "--on", "oracle", "--against", &truth, "--tolerance", "1e-3"]);
-    assert_eq!(output.status.code(), Some(1));
-}
-
-#[test]
-fn sheen_is_answered_by_every_method() {
-    let device = device();
-    for (method, tolerance) in [("truth", "1e-6"), ("oracle", "0.15"), ("gpu", "0.15")] {
-        if method == "gpu" && !device {
-            continue;
-        }
-        let truth = reference("sheen-truth.json");
-        let arguments = ["--on", method, "--against", &truth, "--json", "--tolerance"];
-        let output = eval(&[&[reference("sheen.json").as_str()], &arguments[..], &[tolerance]].concat());
-        assert!(output.status.success(), "{method}: {}", text(&output.stderr));
-        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let family = &summary["families"][0];
-        assert_eq!((&family["material"], &family["answered"]), (&"sheen".into(), &6.into()), "{summary:#}");
-    }
-    // The twin: the fitted lobe is not the truth
-    let truth = reference("sheen-truth.json");
-    let output =
-        eval(&[&reference("sheen.json"), "--on", "oracle", "--against", &truth, "--tolerance", "1e-3"]);
     assert_eq!(output.status.code(), Some(1));
 }
 

@@ -5,7 +5,7 @@ use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{Case, CaseMaterial, read_cases};
 use arealight_cases::measure::relative_error;
 use arealight_oracle::cubature::Settings;
-use arealight_oracle::material::{Coat, Interface, Surface};
+use arealight_oracle::material::{Coat, Interface, Sheen, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, truth};
 use glam::DVec3;
 use std::sync::LazyLock;
@@ -47,7 +47,8 @@ fn coats() -> Vec<Known> {
 
 fn dielectrics() -> Vec<Known> {
     known(6, |material| {
-        let &CaseMaterial::Ggx { albedo, coupled: true, coat: None, alpha, .. } = material else {
+        let &CaseMaterial::Ggx { albedo, coupled: true, coat: None, sheen: None, alpha, .. } = material
+        else {
             return false;
         };
         alpha.x == alpha.y && albedo.is_some()
@@ -60,11 +61,16 @@ fn rough_diffuse() -> Vec<Known> {
 
 /// How many cases have another truth with a changed surface.
 fn noticed(cases: &[Known], change: impl Fn(&Surface) -> Surface) -> usize {
+    // Both programs integrate adaptively; the reference's own estimates reach 7e-7
+    noticed_by(1e-5, cases, change)
+}
+
+/// How many have one that differs by more than a tolerance.
+fn noticed_by(tolerance: f64, cases: &[Known], change: impl Fn(&Surface) -> Surface) -> usize {
     let differs = |case: &&Known| {
         let radiance =
             truth(&change(&case.surface), case.normal, case.view, &case.light, &Settings::default()).radiance;
-        // Both programs integrate adaptively; the reference's own estimates reach 7e-7
-        relative_error(radiance.into(), case.radiance.into()) > 1e-5
+        relative_error(radiance.into(), case.radiance.into()) > tolerance
     };
     cases.iter().filter(differs).count()
 }
@@ -162,4 +168,38 @@ fn the_fitted_rough_diffuse_lobe_is_near_to_the_truth() {
     // The twin: Lambert's lobe
     let (lambert, _) = fitted(&cases, |surface| Surface { diffuse_roughness: 0.0, ..*surface });
     assert!(lambert > 5.0 * unit, "{lambert:e} against {unit:e}");
+}
+
+fn sheen() -> [Vec<Known>; 2] {
+    let alone = known(6, |material| matches!(material, CaseMaterial::Sheen(_)));
+    [alone, known(6, |material| matches!(material, CaseMaterial::Ggx { sheen: Some(_), .. }))]
+}
+
+fn with_sheen(surface: &Surface, change: impl Fn(Sheen) -> Sheen) -> Surface {
+    Surface { sheen: surface.sheen.map(change), ..*surface }
+}
+
+#[test]
+fn the_truth_of_sheen_agrees_with_the_reference() {
+    // The albedo's own rule, by which a base is weighed, is good to 1e-4
+    for (cases, tolerance) in sheen().into_iter().zip([1e-6, 1e-4]) {
+        assert_eq!(noticed_by(tolerance, &cases, same), 0);
+        // The twin: a little rougher
+        let rougher = |sheen: Sheen| Sheen { roughness: sheen.roughness * 1.02, ..sheen };
+        assert_eq!(noticed_by(tolerance, &cases, |surface| with_sheen(surface, rougher)), 6);
+    }
+}
+
+#[test]
+fn the_fitted_sheen_is_near_to_the_truth() {
+    // Twice what a lobe fitted at each point has: .65e-3 alone and 3.7e-3 above a base
+    for (cases, bound) in sheen().into_iter().zip([1.3e-3, 7.4e-3]) {
+        let (unit, _) = fitted(&cases, same);
+        println!("sheen: mean unit error {unit:.2e}");
+        assert!(unit < bound, "{unit:e}");
+        // The twin: without sheen
+        let (without, _) =
+            fitted(&cases, |surface| with_sheen(surface, |sheen| Sheen { color: DVec3::ZERO, ..sheen }));
+        assert!(without > 2.0 * unit, "{without:e} against {unit:e}");
+    }
 }

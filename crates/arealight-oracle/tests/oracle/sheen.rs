@@ -94,14 +94,7 @@ fn a_white_base_below_sheen_sends_what_it_gets() {
     for roughness in [0.0, 0.07, 0.3, 0.6, 1.0] {
         for theta in [0.0_f64, 0.5, 1.2, 1.5, 1.57] {
             let sheen = Sheen { color: DVec3::new(1.0, 0.5, 0.0), roughness };
-            let base = Surface {
-                diffuse_albedo: DVec3::ONE,
-                f0: DVec3::ZERO,
-                f90: 0.0,
-                alpha: 1.0,
-                coat: None,
-                sheen: Some(sheen),
-            };
+            let base = Surface { diffuse_albedo: DVec3::ONE, sheen: Some(sheen), ..Surface::default() };
             for horizon in [Horizon::Cosine, Horizon::Both] {
                 let quality = Quality { horizon, ..Quality::default() };
                 let sent = from_everywhere(quality, &base, view_at(theta));

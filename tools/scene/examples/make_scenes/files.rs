@@ -5,7 +5,7 @@ use crate::shadows::Floor;
 use crate::{clock, coats, demo, hundred_lamps, lamps, room, screen, shadows, sheen, sweep};
 
 /// Each file's name and bytes.
-pub fn files() -> [(&'static str, Vec<u8>); 11] {
+pub fn files() -> [(&'static str, Vec<u8>); 12] {
     [
         ("sweep.glb", sweep::glb()),
         ("room.glb", room::glb()),

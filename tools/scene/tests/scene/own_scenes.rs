@@ -1,7 +1,7 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
 use crate::hundred_lamps::Surface;
-use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sweep, test_card};
+use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sheen, sweep, test_card};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -80,7 +80,7 @@ fn sheen_lies_on_every_cloth_and_beside_each_is_the_same_without() {
         let textures = (with.sheen_color_texture.is_some(), with.sheen_roughness_texture.is_some());
         assert_eq!(textures, (name == "striped", name == "brushed"));
     }
-    assert_eq!(scene.effects(), Effects::DIFFUSE | Effects::GLOSSY | Effects::SHEEN);
+    assert_eq!(scene.effects(), LOBES | Effects::SHEEN);
 }
 
 /// Whether an outline turns both ways.
