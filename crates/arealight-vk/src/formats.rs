@@ -156,6 +156,7 @@ mod tests {
         base_color: Format::R8G8B8A8_SRGB,
         specular: Format::R8G8B8A8_UNORM,
         coat: Format::R16G16B16A16_SFLOAT,
+        sheen: Format::R16G16B16A16_SFLOAT,
         radiance: Format::R32G32B32A32_SFLOAT,
     };
 
