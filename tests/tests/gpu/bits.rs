@@ -132,7 +132,8 @@ fn buffers() -> Buffers {
             coat_weight: 0.5 * glossy,
             coat_normal: surface.vector(&mut random),
             coat_roughness: surface.number(&mut random),
-            sheen_color: [glossy; 3],
+            // Charlie reflects more than it gets where it is seen at grazing angles
+            sheen_color: [0.0; 3],
             sheen_roughness: surface.number(&mut random),
             interface_f0: 0.0,
             interface_f90: glossy,

@@ -72,8 +72,8 @@ fn what_is_out_of_range_or_unknown_is_said() {
         ),
         (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
         (
-            json!({ "extensions": { "KHR_materials_sheen": { "sheenRoughnessFactor": 1 } } }),
-            "KHR_materials_sheen is not supported: ignored",
+            json!({ "extensions": { "KHR_materials_iridescence": { "iridescenceFactor": 1 } } }),
+            "KHR_materials_iridescence is not supported: ignored",
         ),
         (
             json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1.5 } } }),
