@@ -48,8 +48,7 @@ const int COAT_REFLECTION_PAIR = 7;
 
 // The cell of the table that a roughness and a view are looked up in.
 ArealightGpuLobeHorizon lobe_horizon(float roughness, float cosine) {
-    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
-    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
+    roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
     vec2 place = vec2(roughness, sqrt(max(1.0 - cosine, 0.0))) * float(constants.horizon_cells);
     // Of whole numbers, so that NaN is a cell too
     uvec2 cell = min(uvec2(place), uvec2(constants.horizon_cells - 1u));

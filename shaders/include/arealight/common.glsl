@@ -51,6 +51,11 @@ vec3 arealight_normalize_or(vec3 v, vec3 fallback) {
     return square >= 1.0 ? scaled * inversesqrt(square) : fallback;
 }
 
+// A perceptual roughness within [smallest, 1]; NaN counts as the smallest.
+float arealight_clamped_roughness(float roughness, float smallest) {
+    return roughness > smallest ? min(roughness, 1.0) : smallest;
+}
+
 // 2^-e for a positive finite x = m 2^e with 1 <= m < 2: an exact power of two, so that scaling by it rounds
 // nothing. x outside [1e-37, 1e37] is clamped.
 float arealight_power_of_two_scale(float x) {

@@ -39,6 +39,35 @@ bool arealight_has_lobe(int lobe) {
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_SPLITS_FRESNEL);
 }
 
+// Puts the specular lobes of a surface into `point`. Their albedos, without Fresnel term and of Schlick's weight.
+ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
+    if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
+        ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
+        if (AREALIGHT_SPLITS_FRESNEL) {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_f0_lobe(stretched, surface.f0);
+            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_anisotropic_schlick_lobe(stretched, surface.f0, surface.f90);
+        } else {
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
+        }
+        return stretched.table;
+    }
+    ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
+    if (AREALIGHT_SPLITS_FRESNEL) {
+        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
+        point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);
+    } else {
+        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
+    }
+    return table;
+}
+
+// What the lobes below a layer keep.
+void arealight_dim_base(inout ArealightPoint point, float base) {
+    point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= base;
+    point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= base;
+    point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= base;
+}
+
 // Prepares a surface: its frame, and one lookup in the table (or the formula) where it has a specular lobe.
 ArealightPoint arealight_point(ArealightSurface surface) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
@@ -46,43 +75,21 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     point.position = surface.position;
     point.to_frame = arealight_frame_matrix(frame);
     point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
-    if (AREALIGHT_HAS_SPECULAR && AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
-        ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
-        if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
-            vec3 reflected = arealight_specular_albedo(stretched.table, vec3(surface.interface_f0), surface.interface_f90);
-            point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
-        }
-        if (AREALIGHT_SPLITS_FRESNEL) {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_f0_lobe(stretched, surface.f0);
-            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_anisotropic_schlick_lobe(stretched, surface.f0, surface.f90);
-        } else {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
-        }
-    } else if (AREALIGHT_HAS_SPECULAR) {
-        ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
+    if (AREALIGHT_HAS_SPECULAR) {
+        ArealightTableSample table = arealight_put_specular_lobes(point, frame, surface);
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
             vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
         }
-        if (AREALIGHT_SPLITS_FRESNEL) {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
-            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);
-        } else {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
-        }
     }
     if (AREALIGHT_HAS_SHEEN) {
         ArealightLayer sheen = arealight_sheen_layer(frame, surface.sheen);
-        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= sheen.base;
-        point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= sheen.base;
-        point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= sheen.base;
+        arealight_dim_base(point, sheen.base);
         point.lobes[AREALIGHT_LOBE_SHEEN] = sheen.lobe;
     }
     if (AREALIGHT_HAS_COAT) {
         ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
-        point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= coat.base;
-        point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= coat.base;
-        point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= coat.base;
+        arealight_dim_base(point, coat.base);
         point.lobes[AREALIGHT_LOBE_COAT] = coat.lobe;
     }
     return point;

@@ -92,10 +92,9 @@ mat3 arealight_isotropic_map(ArealightAxisView view, ArealightAxisView reference
 // Perceptual roughness along the tangent and across it as it is looked up: both from 0.01 to 1 (NaN counts as 0.01), and no farther
 // apart than AREALIGHT_LEAST_ROUGHNESS_RATIO.
 vec2 arealight_axis_roughness(ArealightSurface surface) {
-    vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     float smallest = sqrt(AREALIGHT_MIN_ALPHA);
-    roughness.x = roughness.x > smallest ? min(roughness.x, 1.0) : smallest;
-    roughness.y = roughness.y > smallest ? min(roughness.y, 1.0) : smallest;
+    vec2 roughness = vec2(arealight_clamped_roughness(surface.anisotropy.roughness, smallest),
+                          arealight_clamped_roughness(surface.roughness, smallest));
     return max(roughness, AREALIGHT_LEAST_ROUGHNESS_RATIO * max(roughness.x, roughness.y));
 }
 
@@ -172,23 +171,19 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     return result;
 }
 
-ArealightLobe arealight_stretched_lobe(mat3 space, vec3 albedo) {
-    return ArealightLobe(space, albedo, arealight_gain_above_surface(space));
-}
-
 // As arealight_specular_lobe, arealight_specular_f0_lobe and arealight_specular_schlick_lobe.
 ArealightLobe arealight_anisotropic_lobe(ArealightStretchedSample stretched, vec3 f0, float f90) {
     float share = arealight_schlick_share(stretched.table, f0, f90);
     mat3 space = stretched.space + share * (stretched.schlick_space - stretched.space);
-    return arealight_stretched_lobe(space, f0 * stretched.table.albedo + (vec3(f90) - f0) * stretched.table.schlick);
+    return arealight_lobe(space, arealight_specular_albedo(stretched.table, f0, f90));
 }
 
 ArealightLobe arealight_anisotropic_f0_lobe(ArealightStretchedSample stretched, vec3 f0) {
-    return arealight_stretched_lobe(stretched.space, f0 * stretched.table.albedo);
+    return arealight_lobe(stretched.space, f0 * stretched.table.albedo);
 }
 
 ArealightLobe arealight_anisotropic_schlick_lobe(ArealightStretchedSample stretched, vec3 f0, float f90) {
-    return arealight_stretched_lobe(stretched.schlick_space, (vec3(f90) - f0) * stretched.table.schlick);
+    return arealight_lobe(stretched.schlick_space, (vec3(f90) - f0) * stretched.table.schlick);
 }
 
 #endif

@@ -73,9 +73,7 @@ float arealight_formula_quadratic(float c[6], float x, float y) {
 // Cost, counted in optimised SPIR-V: 99 multiply-adds, 7 more multiplications, 4 divisions; no sampler, no memory.
 // Source: a least squares on the table, weighted by the curvature of the loss of the table's own fit: docs/fit.md.
 ArealightTableSample arealight_formula_sample(ArealightFrame frame, float roughness) {
-    // Clamp so that NaN becomes the smallest roughness
-    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
-    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
+    roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
     float alpha = roughness * roughness;
     float cosine = clamp(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW, 1.0);
 

@@ -29,4 +29,9 @@ float arealight_gain_above_surface(mat3 space) {
     return 1.0 / max(share, 1e-6);
 }
 
+// A lobe of this space and albedo.
+ArealightLobe arealight_lobe(mat3 space, vec3 albedo) {
+    return ArealightLobe(space, albedo, arealight_gain_above_surface(space));
+}
+
 #endif

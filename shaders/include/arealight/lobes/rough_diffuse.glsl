@@ -18,7 +18,7 @@ float arealight_rough_diffuse_single_albedo(float cos_view, float roughness) {
 // albedo is exact in each, to 4e-4. Against the true integral over quads of unit radiance: mean error 0.8e-3 for an albedo of 0.8, 0.15e-3 for
 // 0.18; Lambert's lobe errs 9.4e-3 and 2.7e-3.
 ArealightLobe arealight_rough_diffuse_lobe(ArealightFrame frame, vec3 albedo, float roughness) {
-    roughness = roughness > 0.0 ? min(roughness, 1.0) : 0.0;
+    roughness = arealight_clamped_roughness(roughness, 0.0);
     float m = frame.cos_view;
     float s = frame.sin_view;
 
@@ -35,7 +35,7 @@ ArealightLobe arealight_rough_diffuse_lobe(ArealightFrame frame, vec3 albedo, fl
     float z_of_x = roughness * s * (0.4851 + m * (0.2321 * m - 0.5456) - 0.0134 * roughness);
     float z = 1.0 + roughness * s * s * (0.1475 + m * (0.0799 * m - 0.1680) - 0.1455 * roughness);
     mat3 space = mat3(mix(x, 1.0, part), 0.0, z_of_x * (1.0 - part), 0.0, 1.0, 0.0, x_of_z * (1.0 - part), 0.0, mix(z, 0.79, part));
-    return ArealightLobe(space, reflected, arealight_gain_above_surface(space));
+    return arealight_lobe(space, reflected);
 }
 
 #endif

@@ -73,13 +73,11 @@ mat3 arealight_sheen_space(ArealightFrame frame, float roughness, float cos_view
 // Mean error of the reflected radiance, for a colour of 1 and random quads of unit radiance, roughness 0.1 to 1: 1.3e-3. No
 // sampler, no memory. Source: docs/decisions/0019-sheen.md.
 ArealightLayer arealight_sheen_layer(ArealightFrame frame, ArealightSheen sheen) {
-    // Clamp so that NaN becomes the smallest roughness
-    float roughness = sheen.roughness > AREALIGHT_SHEEN_MIN_ROUGHNESS ? min(sheen.roughness, 1.0) : AREALIGHT_SHEEN_MIN_ROUGHNESS;
+    float roughness = arealight_clamped_roughness(sheen.roughness, AREALIGHT_SHEEN_MIN_ROUGHNESS);
     float cos_view = max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW);
     float albedo = arealight_sheen_albedo(roughness, cos_view);
     mat3 space = arealight_sheen_space(frame, roughness, cos_view);
-    ArealightLobe lobe = ArealightLobe(space, sheen.color * albedo, arealight_gain_above_surface(space));
-    return ArealightLayer(lobe, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
+    return ArealightLayer(arealight_lobe(space, sheen.color * albedo), max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
 #endif

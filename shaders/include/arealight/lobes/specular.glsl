@@ -14,8 +14,7 @@ ArealightTableSample arealight_specular_sample(ArealightFrame frame, float rough
 }
 
 ArealightLobe arealight_table_lobe(ArealightFrame frame, vec4 texel, float alpha, vec3 albedo) {
-    mat3 space = arealight_table_space(frame, texel, alpha);
-    return ArealightLobe(space, albedo, arealight_gain_above_surface(space));
+    return arealight_lobe(arealight_table_space(frame, texel, alpha), albedo);
 }
 
 // What GGX with Schlick's Fresnel term reflects of light from everywhere, per channel.

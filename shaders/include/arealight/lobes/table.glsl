@@ -57,9 +57,7 @@ vec2 arealight_ggx_grazing_dip(float roughness, float cos_view) {
 // Against the truth, GGX's albedo is within 1.5e-3 and that of Schlick's weight within 2e-3, with 64 nodes a side, at every
 // roughness and view.
 ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness) {
-    // Clamp so that NaN becomes the smallest roughness
-    float smallest = sqrt(AREALIGHT_MIN_ALPHA);
-    roughness = roughness > smallest ? min(roughness, 1.0) : smallest;
+    roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
 
     // Axes: roughness and sqrt(1 - cos), the latter without cancellation near the normal
     int size = arealight_bridge_table_size();
