@@ -6,17 +6,18 @@
 
 mod coat;
 mod fields;
+mod material;
 
-use arealight::{Light, LightFault, LightShape, LightTexture, MIN_ALPHA, TextureMap, TubeEnds};
-use arealight_oracle::material::{Anisotropy, Interface, Sheen, Surface};
+use arealight::{Light, LightFault, LightShape, LightTexture, TextureMap, TubeEnds};
+use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ShownImage};
-use arealight_oracle::sheen::MIN_ROUGHNESS;
 use arealight_oracle::texture::Texture;
 use arealight_oracle::visibility::Blocker;
 pub use coat::CaseCoat;
 pub(crate) use fields::json;
 use fields::{Fields, member};
 use glam::{DVec2, DVec3};
+pub use material::CaseMaterial;
 use std::sync::Arc;
 
 /// Why a file of cases or answers cannot be used.
@@ -70,35 +71,6 @@ pub struct Case {
     pub blockers: Vec<Blocker>,
     /// Fields of the file that the format does not know.
     pub unknown_fields: Vec<String>,
-}
-
-/// What the surface of a case is made of.
-#[derive(Debug, Clone, PartialEq)]
-pub enum CaseMaterial {
-    /// A Lambert lobe, or a rough one.
-    Diffuse {
-        /// Albedo, not negative; of a rough lobe at most 1.
-        albedo: DVec3,
-        /// Roughness of EON in [0, 1]; 0 is Lambert's lobe.
-        roughness: f64,
-    },
-    /// A GGX lobe, and perhaps a Lambert lobe added to it.
-    Ggx {
-        /// Alpha along the tangent and across it, in (0, 1]; equal for an isotropic lobe.
-        alpha: DVec2,
-        /// Schlick's reflectance at normal incidence; `None` for no Fresnel term, F = 1.
-        f0: Option<DVec3>,
-        /// Albedo of the Lambert lobe.
-        albedo: Option<DVec3>,
-        /// Whether the Lambert lobe gets what the GGX lobe's Fresnel term leaves, as in glTF.
-        coupled: bool,
-        /// What lies above both.
-        coat: Option<CaseCoat>,
-        /// What lies above both, below the coat.
-        sheen: Option<Sheen>,
-    },
-    /// Sheen above nothing.
-    Sheen(Sheen),
 }
 
 /// The light of a case.
@@ -249,7 +221,7 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
         normal: fields.direction("normal")?,
         tangent: fields.optional("tangent", Fields::direction)?,
         view: fields.direction("view")?,
-        material: read_material(&fields)?,
+        material: CaseMaterial::read(&fields)?,
         light: read_light(&light_fields)?,
         blockers: fields
             .optional("occluders", |f, field| f.list(field, Fields::triangle_at))?
@@ -257,54 +229,6 @@ fn read_case(index: usize, value: &serde_json::Value) -> Result<Case, CaseError>
         unknown_fields: [fields.unread(), light_fields.unread()].concat(),
     };
     Ok(case)
-}
-
-fn read_material(fields: &Fields) -> Result<CaseMaterial, CaseError> {
-    match fields.optional("bsdf", Fields::text)?.unwrap_or("ggx") {
-        "diffuse" => {
-            Ok(CaseMaterial::Diffuse { albedo: fields.color("albedo", f64::INFINITY)?, roughness: 0.0 })
-        }
-        "eon" => Ok(CaseMaterial::Diffuse {
-            albedo: fields.color("albedo", 1.0)?,
-            roughness: fields.share("diffuse_roughness")?,
-        }),
-        "sheen" => Ok(CaseMaterial::Sheen(read_sheen(fields)?)),
-        bsdf @ ("ggx" | "coat" | "sheen_over") => {
-            let alpha = if fields.has("alpha_x") || fields.has("alpha_y") {
-                if fields.has("alpha") {
-                    return Err(fields.error("alpha", "give either alpha, or alpha_x and alpha_y"));
-                }
-                DVec2::new(fields.alpha("alpha_x")?, fields.alpha("alpha_y")?)
-            } else {
-                DVec2::splat(fields.alpha("alpha")?)
-            };
-            if let Some(masking) = fields.optional("G", Fields::text)?
-                && masking != "correlated"
-            {
-                return Err(fields.error("G", &format!("\"{masking}\" is not known; \"correlated\" is")));
-            }
-            let f0 = fields.optional("F0", |f, field| f.color(field, 1.0))?;
-            let albedo = fields.optional("albedo", |f, field| f.color(field, f64::INFINITY))?;
-            let coupled = match fields.optional("coupling", Fields::text)? {
-                None => false,
-                Some("gltf") => true,
-                Some(other) => {
-                    return Err(fields.error("coupling", &format!("\"{other}\" is not known; \"gltf\" is")));
-                }
-            };
-            let coat = if bsdf == "coat" { Some(CaseCoat::read(fields)?) } else { None };
-            let sheen = if bsdf == "sheen_over" { Some(read_sheen(fields)?) } else { None };
-            Ok(CaseMaterial::Ggx { alpha, f0, albedo, coupled, coat, sheen })
-        }
-        other => {
-            let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\", \"diffuse\" and \"eon\" are";
-            Err(fields.error("bsdf", &format!("\"{other}\" is not known; {known}")))
-        }
-    }
-}
-
-fn read_sheen(fields: &Fields) -> Result<Sheen, CaseError> {
-    Ok(Sheen { color: fields.color("sheen_color", 1.0)?, roughness: fields.alpha("sheen_roughness")? })
 }
 
 fn read_light(fields: &Fields) -> Result<CaseLight, CaseError> {
@@ -372,7 +296,7 @@ fn vertex_off_plane(vertices: &[DVec3]) -> Option<(usize, f64)> {
 
 /// Lights, lobes and fields that can be answered.
 impl Case {
-    /// The case as something that can be answered now: isotropic GGX and Lambert lobes under polygons. See
+    /// The case as something that can be answered now: a surface of its lobes under a polygon. See
     /// [`Case::supported_shape`] for other lights.
     ///
     /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called for every
@@ -390,7 +314,7 @@ impl Case {
             CaseShape::Polygon { vertices, texture } => (vertices, texture),
             shape => return unsupported(format!("light.type \"{}\" is no polygon", shape.name())),
         };
-        let surface = self.surface()?;
+        let surface = self.material.surface(self.tangent)?;
         let mut light = RelativeLight {
             vertices: vertices.iter().map(|v| *v - self.position).collect(),
             radiance: self.light.radiance,
@@ -463,7 +387,7 @@ impl Case {
         light.validate().map_err(|error| Unsupported { reason: format!("{error}") })?;
         Ok(ShapeCase {
             name: self.name.clone(),
-            surface: self.surface()?,
+            surface: self.material.surface(self.tangent)?,
             normal: self.normal,
             view: self.view,
             light,
@@ -477,51 +401,6 @@ impl Case {
             None => Ok(()),
         }
     }
-
-    /// The lobes.
-    fn surface(&self) -> Result<Surface, Unsupported> {
-        let unsupported = |reason: String| Err(Unsupported { reason });
-        match &self.material {
-            CaseMaterial::Sheen(sheen) | CaseMaterial::Ggx { sheen: Some(sheen), .. }
-                if sheen.roughness < MIN_ROUGHNESS =>
-            {
-                let roughness = sheen.roughness;
-                unsupported(format!(
-                    "sheen_roughness {roughness} is below {MIN_ROUGHNESS}, the smallest that is shaded"
-                ))
-            }
-            CaseMaterial::Sheen(sheen) => Ok(Surface { sheen: Some(*sheen), ..Surface::default() }),
-            &CaseMaterial::Diffuse { albedo: diffuse_albedo, roughness: diffuse_roughness } => {
-                Ok(Surface { diffuse_albedo, diffuse_roughness, ..Surface::default() })
-            }
-            CaseMaterial::Ggx { alpha, .. } if alpha.min_element() < MIN_ALPHA => {
-                let least = alpha.min_element();
-                unsupported(format!("alpha {least} is below {MIN_ALPHA}, the smallest that is shaded"))
-            }
-            CaseMaterial::Ggx { alpha, .. } if alpha.x != alpha.y && self.tangent.is_none() => {
-                unsupported("alpha_x and alpha_y differ, and there is no tangent".into())
-            }
-            CaseMaterial::Ggx { alpha, f0, albedo, coat, sheen, coupled } => Ok(Surface {
-                diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
-                f0: f0.unwrap_or(DVec3::ONE),
-                f90: 1.0,
-                alpha: alpha.y,
-                diffuse_roughness: 0.0,
-                interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
-                coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
-                sheen: *sheen,
-                anisotropy: self
-                    .tangent
-                    .filter(|_| alpha.x != alpha.y)
-                    .map(|tangent| Anisotropy { tangent, alpha: alpha.x }),
-            }),
-        }
-    }
-}
-
-/// The interface of a surface whose Lambert lobe is coupled as glTF has it.
-fn interface(f0: DVec3) -> Interface {
-    Interface { f0: f0.max_element(), f90: 1.0, by_albedo: false }
 }
 
 impl CaseTexture {
