@@ -1,5 +1,7 @@
 //! A comparison that cannot pass by comparing nothing.
 
+use glam::{DVec3, Vec3};
+
 /// What float32 may lose of a form factor in the lobe of `alpha`; Lambert's is as wide as 1. Vertices, frame and
 /// matrix are rounded about sixteen times, each by 2^-24 of a direction, and the lobe turns a direction's error
 /// into 1/alpha of itself; beside that stands the edge sum's own 1e-6.
@@ -35,6 +37,14 @@ impl Comparison {
                 "{}: {actual:e} is not {expected:e}: {difference:e} apart, {bound:e} allowed",
                 place()
             ));
+        }
+    }
+
+    /// Compares each channel of a colour; `place` says of what.
+    pub fn add_color(&mut self, actual: Vec3, expected: DVec3, bound: f64, place: impl Fn() -> String) {
+        for channel in 0..3 {
+            let place = || format!("channel {channel} of {}", place());
+            self.add(actual[channel].into(), expected[channel], bound, place);
         }
     }
 

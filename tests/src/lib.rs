@@ -8,6 +8,7 @@ pub mod frame;
 pub mod kernel;
 mod levels;
 pub mod lobe;
+pub mod materials;
 pub mod one_pixel;
 mod points;
 mod property;
@@ -19,7 +20,7 @@ pub mod spirv;
 pub use cases::Cases;
 pub use compare::{Comparison, rounding};
 pub use levels::{FORM_FACTORS, Level, Path};
-pub use points::{Random, black_surface, glossy_surface, lambert_surface, point};
+pub use points::{Random, glossy_surface, lambert_surface, point};
 pub use property::Property;
 
 use arealight_engine::Engine;

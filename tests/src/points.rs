@@ -56,19 +56,14 @@ impl Random {
     }
 }
 
-/// A surface without any lobe.
-pub fn black_surface() -> Surface {
-    Surface { diffuse_albedo: DVec3::ZERO, f0: DVec3::ZERO, f90: 0.0, alpha: 1.0, ..Surface::default() }
-}
-
 /// A white Lambert surface: with a radiance of one, the answer is the form factor.
 pub fn lambert_surface() -> Surface {
-    Surface { diffuse_albedo: DVec3::ONE, ..black_surface() }
+    Surface { diffuse_albedo: DVec3::ONE, ..Surface::default() }
 }
 
 /// A mirror-coloured GGX surface, without Fresnel's darkening.
 pub fn glossy_surface(alpha: f64) -> Surface {
-    Surface { f0: DVec3::ONE, f90: 1.0, alpha, ..black_surface() }
+    Surface { f0: DVec3::ONE, f90: 1.0, alpha, ..Surface::default() }
 }
 
 /// A point at the world's origin, its normal along z, with a light of radiance one.

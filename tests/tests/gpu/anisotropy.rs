@@ -1,28 +1,14 @@
 //! Anisotropic GGX on the GPU: against the float64 twin, against isotropic GGX, and where it is hard.
 
-use arealight::{Fresnel, Horizon, LightTable, Lobes, Quality};
+use arealight::Lobes;
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Anisotropy, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc_on};
-use arealight_tests::{Comparison, Random, TestEngine, point, rounding};
+use arealight_tests::materials::{lobe_qualities, under_polygon};
+use arealight_tests::{Random, TestEngine, point, rounding};
 use glam::DVec3;
 use std::f64::consts::TAU;
-use std::sync::LazyLock;
 
 const COUNT: usize = 2000;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
-
-fn qualities() -> impl Iterator<Item = Quality> {
-    let (by_f0, cosine) = (Quality::default(), Horizon::Cosine);
-    [
-        by_f0,
-        Quality { horizon: Horizon::Both, ..by_f0 },
-        Quality { fresnel: Fresnel::Split, horizon: cosine, ..by_f0 },
-        Quality { lobes: Lobes::Formula, horizon: cosine, ..by_f0 },
-    ]
-    .into_iter()
-}
 
 fn stretched(alpha: f64, along: f64, tangent: DVec3) -> Surface {
     Surface {
@@ -48,43 +34,26 @@ fn points(seed: u64) -> Vec<EvalPoint> {
         let cos_view = random.between(0.02, 1.0);
         let (sin, cos) = random.between(0.0, TAU).sin_cos();
         let view = (DVec3::new(cos, sin, 0.0) * (1.0 - cos_view * cos_view).sqrt()).with_z(cos_view);
-        let center = random.direction();
-        let size = random.between(0.1, 1.5);
-        let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
-        point(surface, view, vertices, i % 3 == 0)
+        under_polygon(&mut random, i, surface, view)
     };
     (0..COUNT).map(one).collect()
-}
-
-fn twin(quality: Quality, given: &EvalPoint) -> DVec3 {
-    let light = RelativeLight::new(&given.light, given.position);
-    ltc_on(quality, &TABLE, &given.surface, given.normal, given.view, &light)
 }
 
 #[test]
 fn stretched_lobes_follow_their_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
     let points = points(1);
-    for quality in qualities() {
-        let answers = engine.eval(&points, quality).unwrap();
-        let mut comparison = Comparison::new(format!("{quality:?}"));
-        let mut other = 0;
-        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-            let expected = twin(quality, given);
-            let least = given.surface.alpha.min(given.surface.anisotropy.unwrap().alpha);
-            // Two lobes, over their part above the surface; the least squares lose five bits of the matrices' seventeen that count
-            let bound = 2.0 * rounding(least) / 0.6 + 2e-5;
-            for channel in 0..3 {
-                let place = || format!("point {index}, channel {channel}: {given:?}");
-                comparison.add(answer[channel].into(), expected[channel], bound, place);
-            }
-            // The twin's twin: a lobe that is a little longer is another
-            let longer = with_anisotropy(given, |a| Some(Anisotropy { alpha: a.alpha * 1.1, ..a }));
-            let difference = twin(quality, &longer) - answer.as_dvec3();
-            other += usize::from(difference.abs().max_element() > bound);
-        }
-        comparison.assert_all();
-        assert!(other > COUNT / 10, "{other} points notice another alpha");
+    // Two lobes, over their part above the surface; the least squares lose five bits of the matrices' seventeen that count
+    let bound = |given: &EvalPoint| {
+        let least = given.surface.alpha.min(given.surface.anisotropy.unwrap().alpha);
+        2.0 * rounding(least) / 0.6 + 2e-5
+    };
+    for quality in lobe_qualities() {
+        // The twin's twin: a lobe that is a little longer is another
+        engine.assert_follows_polygon_twin("stretched lobes", quality, &points, bound, |surface| {
+            let anisotropy = surface.anisotropy.map(|a| Anisotropy { alpha: a.alpha * 1.1, ..a });
+            Surface { anisotropy, ..*surface }
+        });
     }
 }
 
@@ -98,7 +67,7 @@ fn of_equal_roughnesses_they_are_isotropic() {
         points.iter().map(equal).collect()
     };
     let isotropic: Vec<EvalPoint> = points.iter().map(|p| with_anisotropy(p, |_| None)).collect();
-    for quality in qualities() {
+    for quality in lobe_qualities() {
         let expected = engine.eval(&isotropic, quality).unwrap();
         let differ = |points: &[EvalPoint]| {
             let answers = engine.eval(points, quality).unwrap();
@@ -110,19 +79,6 @@ fn of_equal_roughnesses_they_are_isotropic() {
         // The twin: a little longer they are not
         assert!(differ(&set(0.9)) > COUNT / 10, "{quality:?}");
     }
-}
-
-/// The inside of a box about the point.
-fn box_faces() -> Vec<Vec<DVec3>> {
-    let corner = |axis: usize, side: f64, u: f64, v: f64| {
-        let mut corner = DVec3::splat(side);
-        (corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (u, v * side);
-        corner
-    };
-    let face = |axis, side| {
-        [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(u, v)| corner(axis, side, u, v)).to_vec()
-    };
-    (0..3).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect()
 }
 
 /// Roughnesses from mirrors on, tangents that are none, views on all sides.
@@ -154,19 +110,9 @@ fn hard_surfaces() -> impl Iterator<Item = (Surface, DVec3)> {
 #[test]
 fn a_stretched_lobe_sends_no_more_than_it_gets() {
     let Some(engine) = TestEngine::new() else { return };
-    let mut points = Vec::new();
-    for (surface, view) in hard_surfaces() {
-        points.extend(box_faces().into_iter().map(|face| point(surface, view, face, false)));
-    }
-    for quality in qualities() {
-        let answers = engine.eval(&points, quality).unwrap();
-        assert!(answers.iter().all(|answer| answer.is_finite()), "{quality:?}");
-        let sums: Vec<f32> =
-            answers.chunks_exact(6).map(|faces| faces.iter().map(|face| face.x).sum()).collect();
-        for (sum, faces) in sums.iter().zip(points.chunks_exact(6)) {
-            // Six faces and a lobe of each, 1e-6 every one; and the lobe's gain
-            assert!((0.0..=1.0 + 2e-5).contains(sum), "{quality:?}: {sum} of {:?}", faces[0]);
-        }
+    let surfaces: Vec<(Surface, DVec3)> = hard_surfaces().collect();
+    for quality in lobe_qualities() {
+        let sums = engine.light_from_everywhere(&surfaces, quality);
         // The twin: the box is lit from all sides, and only rough lobes lose much
         let bright = sums.iter().filter(|sum| **sum > 0.9).count();
         assert!(bright > sums.len() / 3, "{quality:?}: {bright} of {}", sums.len());
@@ -193,7 +139,7 @@ fn nothing_jumps_where_the_view_crosses_the_normal() {
         }
     }
     // The formula's isotropic lobes are not round at the normal themselves: entries are off by 1e-2 and more
-    for quality in qualities().filter(|quality| quality.lobes == Lobes::Table) {
+    for quality in lobe_qualities().into_iter().filter(|quality| quality.lobes == Lobes::Table) {
         let answers = engine.eval(&points, quality).unwrap();
         let spreads: Vec<f32> = answers
             .chunks_exact(AZIMUTHS)

@@ -1,16 +1,13 @@
 //! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin, and where they are hard.
 
-use arealight::{Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight::{Effects, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Interface, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
-use arealight_tests::{Comparison, Random, TestEngine, point, rounding};
-use glam::{DVec3, Vec3};
-use std::sync::LazyLock;
+use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
+use arealight_tests::{Random, TestEngine, point, rounding};
+use glam::DVec3;
 
 const COUNT: usize = 2000;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 /// How layers share light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,10 +49,7 @@ fn points(seed: u64, kind: Kind) -> Vec<EvalPoint> {
         let surface = layered(&mut random, kind);
         let cos_view = random.between(0.0, 1.0);
         let view = DVec3::new((1.0 - cos_view * cos_view).sqrt(), 0.0, cos_view);
-        let center = random.direction();
-        let size = random.between(0.1, 1.5);
-        let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
-        point(surface, view, vertices, i % 3 == 0)
+        under_polygon(&mut random, i, surface, view)
     };
     (0..COUNT).map(one).collect()
 }
@@ -67,41 +61,18 @@ fn bound(surface: &Surface) -> f64 {
     (3.0 * rounding(surface.alpha) + coat) / 0.6
 }
 
-fn qualities() -> [Quality; 4] {
-    let quality = Quality::default();
-    [
-        quality,
-        Quality { horizon: Horizon::Both, ..quality },
-        Quality { fresnel: Fresnel::Split, ..quality },
-        Quality { lobes: Lobes::Formula, ..quality },
-    ]
-}
-
 #[test]
 fn layers_follow_their_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
     for kind in KINDS {
         let points = points(1, kind);
-        for quality in qualities() {
-            let answers = engine.eval(&points, quality).unwrap();
-            let mut comparison = Comparison::new(format!("{kind:?}, {quality:?}"));
-            let mut other = 0;
-            for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-                let light = RelativeLight::new(&given.light, given.position);
-                let twin =
-                    |surface: &Surface| ltc_on(quality, &TABLE, surface, given.normal, given.view, &light);
-                let (expected, bound) = (twin(&given.surface), bound(&given.surface));
-                for channel in 0..3 {
-                    let place = || format!("point {index}, channel {channel}: {given:?}");
-                    comparison.add(answer[channel].into(), expected[channel], bound, place);
-                }
-                // The twin's twin: an interface that reflects a little more is another
-                let more = given.surface.interface.map(|i| Interface { f90: i.f90 + 0.1, ..i });
-                let more = twin(&Surface { interface: more, ..given.surface });
-                other += usize::from((more - answer.as_dvec3()).abs().max_element() > bound);
-            }
-            comparison.assert_all();
-            assert!(other > COUNT / 10, "{other} points notice another interface");
+        for quality in lobe_qualities() {
+            let bound = |given: &EvalPoint| bound(&given.surface);
+            // The twin's twin: an interface that reflects a little more is another
+            engine.assert_follows_polygon_twin(&format!("{kind:?}"), quality, &points, bound, |surface| {
+                let interface = surface.interface.map(|i| Interface { f90: i.f90 + 0.1, ..i });
+                Surface { interface, ..*surface }
+            });
         }
     }
 }
@@ -110,37 +81,15 @@ fn layers_follow_their_float64_twin() {
 fn disks_spheres_and_tubes_light_layers_as_their_float64_twins() {
     let Some(engine) = TestEngine::new() else { return };
     let mut random = Random::new(4);
-    let mut shapes = || {
-        let center = random.direction() * 2.0;
-        let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
-        let light = |shape| Light { shape, radiance: Vec3::ONE, two_sided: true, ..Light::default() };
-        let ends = TubeEnds::Round;
-        [
-            light(LightShape::Disk { center, axis_u: axis_u * 0.7, axis_v }),
-            light(LightShape::Sphere { center, radius: 0.6 }),
-            light(LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius: 0.2, ends }),
-        ]
-    };
-    // Surfaces of both kinds in one list, each by what it asks for
+    // Surfaces of every kind in one list, each by what it asks for
     let surfaces = KINDS.into_iter().flat_map(|kind| points(5, kind).into_iter().take(70));
     let points: Vec<EvalPoint> = surfaces
         .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
-            shapes().map(|light| EvalPoint { surface, position, normal, view, light })
+            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
         })
         .collect();
-    let quality = Quality::default();
-    let answers = engine.eval_shapes(&points, quality).unwrap();
-    let mut comparison = Comparison::new("layers under shapes");
-    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-        let EvalPoint { surface, normal, view, light, .. } = given;
-        let expected = shape_ltc_on(quality, &TABLE, surface, *normal, *view, light).unwrap();
-        for channel in 0..3 {
-            // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md)
-            let place = || format!("point {index}, channel {channel}: {given:?}");
-            comparison.add(answer[channel].into(), expected[channel], bound(surface) + 1e-5, place);
-        }
-    }
-    comparison.assert_all();
+    // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md)
+    engine.assert_follows_shape_twin("layers under shapes", &points, |given| bound(&given.surface) + 1e-5);
 }
 
 #[test]
@@ -155,8 +104,7 @@ fn an_interface_that_reflects_nothing_is_none_to_the_bit() {
                 EvalPoint { surface: Surface { interface, ..given.surface }, ..given.clone() }
             })
             .collect();
-        let answers = engine.eval(&changed, Quality::default()).unwrap();
-        answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
+        engine.eval_bits(&changed, Quality::default())
     };
     let none = bits(|_| None);
     assert_eq!(bits(|i| Some(Interface { f0: 0.0, f90: 0.0, ..i })), none);

@@ -1,21 +1,18 @@
 //! Sheen on the GPU: against the float64 twin, against none, in its image of a G-buffer, and under tiles.
 
 use arealight::plan::{GBufferLayout, ShadeOptions, TileOptions};
-use arealight::{Effects, Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight::{Effects, Horizon, Light, LightShape, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Material, Sheen, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
 use arealight_tests::frame::{scene, with_renderer};
+use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
 use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
-use arealight_tests::{Comparison, Random, TestEngine, point, rounding};
+use arealight_tests::{Random, TestEngine, point, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
 use std::f64::consts::FRAC_PI_2;
-use std::sync::LazyLock;
 
 const COUNT: usize = 2000;
-
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 /// A base below sheen, and every third below a coat above that.
 fn with_sheen(random: &mut Random, index: usize) -> Surface {
@@ -48,22 +45,9 @@ fn points(seed: u64) -> Vec<EvalPoint> {
             _ => random.between(0.0, FRAC_PI_2),
         };
         let view = DVec3::new(theta.sin(), 0.0, theta.cos());
-        let center = random.direction();
-        let size = random.between(0.1, 1.5);
-        let vertices = random.polygon(center, 3 + i % 6, size * 0.3, size);
-        point(surface, view, vertices, i.is_multiple_of(3))
+        under_polygon(&mut random, i, surface, view)
     };
     (0..COUNT).map(one).collect()
-}
-
-fn qualities() -> [Quality; 4] {
-    let exact = Quality::default();
-    [
-        exact,
-        Quality { horizon: Horizon::Both, ..exact },
-        Quality { fresnel: Fresnel::Split, horizon: Horizon::Cosine, ..exact },
-        Quality { lobes: Lobes::Formula, horizon: Horizon::Cosine, ..exact },
-    ]
 }
 
 /// What float32 may lose of the lobes: of the base, of a coat, and of sheen. Its exponential multiplies an exponent's rounding, which is
@@ -77,46 +61,19 @@ fn bound(surface: &Surface) -> f64 {
 fn sheen_follows_its_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
     let points = points(1);
-    for quality in qualities() {
-        let answers = engine.eval(&points, quality).unwrap();
-        let mut comparison = Comparison::new(format!("sheen, {quality:?}"));
-        let mut other = 0;
-        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-            let light = RelativeLight::new(&given.light, given.position);
-            let twin = |surface: &Surface| ltc_on(quality, &TABLE, surface, given.normal, given.view, &light);
-            let (expected, bound) = (twin(&given.surface), bound(&given.surface));
-            for channel in 0..3 {
-                let place = || format!("point {index}, channel {channel}: {given:?}");
-                comparison.add(answer[channel].into(), expected[channel], bound, place);
-            }
-            // The twin's twin: sheen that is a little rougher is another
-            let rougher =
-                given.surface.sheen.map(|sheen| Sheen { roughness: sheen.roughness * 1.1, ..sheen });
-            let rougher = twin(&Surface { sheen: rougher, ..given.surface });
-            other += usize::from((rougher - answer.as_dvec3()).abs().max_element() > bound);
-        }
-        comparison.assert_all();
-        assert!(other > COUNT / 10, "{other} points notice another roughness");
+    for quality in lobe_qualities() {
+        // The twin's twin: sheen that is a little rougher is another
+        engine.assert_follows_polygon_twin(
+            "sheen",
+            quality,
+            &points,
+            |given| bound(&given.surface),
+            |surface| {
+                let sheen = surface.sheen.map(|sheen| Sheen { roughness: sheen.roughness * 1.1, ..sheen });
+                Surface { sheen, ..*surface }
+            },
+        );
     }
-}
-
-/// Lights of each shape about as large as they are far.
-fn shapes(random: &mut Random) -> [Light; 3] {
-    let center = random.direction() * 2.0;
-    let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
-    let light = |shape| Light {
-        name: "test".into(),
-        shape,
-        radiance: Vec3::ONE,
-        two_sided: true,
-        ..Light::default()
-    };
-    let ends = TubeEnds::Round;
-    [
-        light(LightShape::Disk { center, axis_u: axis_u * 0.7, axis_v }),
-        light(LightShape::Sphere { center, radius: 0.6 }),
-        light(LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius: 0.2, ends }),
-    ]
 }
 
 #[test]
@@ -129,23 +86,11 @@ fn disks_spheres_and_tubes_light_sheen_as_their_float64_twins() {
         .flat_map(|EvalPoint { surface, position, normal, view, .. }| {
             // One kind of pipeline: no coats
             let surface = Surface { coat: None, ..surface };
-            shapes(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
+            shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
         })
         .collect();
-    let quality = Quality::default();
-    let answers = engine.eval_shapes(&points, quality).unwrap();
-    let mut comparison = Comparison::new("sheen under shapes");
-    for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
-        let EvalPoint { surface, normal, view, light, .. } = given;
-        let expected = shape_ltc_on(quality, &TABLE, surface, *normal, *view, light).unwrap();
-        for channel in 0..3 {
-            // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to 2.9 multiply
-            let bound = bound(surface) + 3e-5;
-            let place = || format!("point {index}, channel {channel}: {given:?}");
-            comparison.add(answer[channel].into(), expected[channel], bound, place);
-        }
-    }
-    comparison.assert_all();
+    // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to 2.9 multiply
+    engine.assert_follows_shape_twin("sheen under shapes", &points, |given| bound(&given.surface) + 3e-5);
 }
 
 #[test]
@@ -158,16 +103,12 @@ fn black_sheen_is_none_to_the_bit() {
         };
         points(4).iter().map(change).collect()
     };
-    let bits = |points: &[EvalPoint], quality| -> Vec<[u32; 3]> {
-        let answers = engine.eval(points, quality).unwrap();
-        answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
-    };
     let black = uncoated(|sheen| Some(Sheen { color: DVec3::ZERO, ..sheen }));
-    for quality in qualities() {
-        let without = bits(&uncoated(|_| None), quality);
-        assert_eq!(bits(&black, quality), without, "{quality:?}");
+    for quality in lobe_qualities() {
+        let without = engine.eval_bits(&uncoated(|_| None), quality);
+        assert_eq!(engine.eval_bits(&black, quality), without, "{quality:?}");
         // The twin: of any colour it is seen
-        let with = bits(&uncoated(Some), quality);
+        let with = engine.eval_bits(&uncoated(Some), quality);
         let same = with.iter().zip(&without).filter(|(with, without)| with == without).count();
         assert!(same < COUNT / 2, "{same} points are the same");
     }

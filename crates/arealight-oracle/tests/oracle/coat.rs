@@ -1,6 +1,6 @@
 //! Clear coats: how the layers share light.
 
-use crate::common::{box_around, view_at};
+use crate::common::{from_everywhere, view_at};
 use arealight::{Horizon, LightTable, MIN_ALPHA, Quality};
 use arealight_oracle::frame::SurfaceFrame;
 use arealight_oracle::material::{Coat, Surface};
@@ -13,22 +13,6 @@ static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 fn coated(coat: Coat) -> Surface {
     Surface { diffuse_albedo: DVec3::ONE, coat: Some(coat), ..Surface::default() }
-}
-
-/// Light of unit radiance from every direction.
-fn from_everywhere(mut answer: impl FnMut(&RelativeLight) -> DVec3) -> f64 {
-    box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5))
-        .into_iter()
-        .map(|face| {
-            let light = RelativeLight {
-                vertices: face.to_vec(),
-                radiance: DVec3::ONE,
-                two_sided: false,
-                image: None,
-            };
-            answer(&light).x
-        })
-        .sum()
 }
 
 /// Coats of any roughness and tilt, also such that the view is below their horizon.
@@ -53,7 +37,7 @@ fn a_white_surface_below_a_coat_sends_no_more_than_it_gets() {
         let share = coat.share(SurfaceFrame::new(coat.normal.unwrap(), view).cos_view());
         for horizon in [Horizon::Cosine, Horizon::Both] {
             let quality = Quality { horizon, ..Quality::default() };
-            let sent = from_everywhere(|light| ltc_on(quality, &TABLE, &surface, DVec3::Z, view, light));
+            let sent = from_everywhere(|light| ltc_on(quality, &TABLE, &surface, DVec3::Z, view, light)).x;
             assert!(sent <= 1.0 + 1e-9, "{horizon:?}, {coat:?}, {view}: {sent}");
             // What the coat keeps from the base it reflects itself, but for what its roughness loses, and what it would send below
             // the surface
@@ -66,7 +50,8 @@ fn a_white_surface_below_a_coat_sends_no_more_than_it_gets() {
         let both = ltc(&TABLE, &coated(coat), DVec3::Z, view, light);
         let share = coat.share(view.z);
         both + share * ltc(&TABLE, &Surface { coat: None, ..coated(coat) }, DVec3::Z, view, light)
-    });
+    })
+    .x;
     assert!(added > 1.1, "{added}");
 }
 

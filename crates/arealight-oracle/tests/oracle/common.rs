@@ -1,6 +1,7 @@
 //! What the tests draw their inputs from.
 
 use arealight_oracle::cubature::angles;
+use arealight_oracle::shading::RelativeLight;
 use glam::{DMat3, DVec3};
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -82,6 +83,19 @@ pub fn box_around(low: DVec3, high: DVec3) -> Vec<[DVec3; 4]> {
         }
     }
     faces
+}
+
+/// The answer to light of unit radiance from every direction: the sum over the faces of a box about the point.
+pub fn from_everywhere(answer: impl FnMut(&RelativeLight) -> DVec3) -> DVec3 {
+    let faces = box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5)).into_iter();
+    let light = |face: [DVec3; 4]| RelativeLight {
+        vertices: face.to_vec(),
+        radiance: DVec3::ONE,
+        two_sided: false,
+        image: None,
+    };
+    let lights: Vec<RelativeLight> = faces.map(light).collect();
+    lights.iter().map(answer).sum()
 }
 
 /// Well spread points of the unit square (Roberts 2018, from the plastic number).

@@ -1,6 +1,6 @@
 //! A diffuse lobe below an interface, and a rough one: albedos, errors, and limits.
 
-use crate::common::{box_around, view_at};
+use crate::common::{from_everywhere, view_at};
 use arealight::LightTable;
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::frame::SurfaceFrame;
@@ -23,17 +23,20 @@ fn light(vertices: Vec<DVec3>) -> RelativeLight {
     RelativeLight { vertices, radiance: DVec3::ONE, two_sided: true, image: None }
 }
 
+/// What a surface reflects of light from everywhere: the fitted lobes, and the truth.
+fn albedos(surface: &Surface, view: DVec3) -> [f64; 2] {
+    let fitted = from_everywhere(|light| ltc(&TABLE, surface, DVec3::Z, view, light));
+    let settings = Settings::default();
+    let exact = from_everywhere(|light| truth(surface, DVec3::Z, view, light, &settings).radiance);
+    [fitted.x, exact.x]
+}
+
 #[test]
 fn its_albedo_is_what_the_fresnel_term_leaves() {
     for theta in [0.0, 0.3, 0.9, 1.3, 1.5, FRAC_PI_2 - 1e-4] {
         for (f0, f90) in [(0.04, 1.0), (0.0, 1.0), (0.5, 0.5), (0.2, 0.05), (1.0, 1.0), (0.0, 0.0)] {
             let surface = below(f0, f90);
-            let (mut fitted, mut exact) = (0.0, 0.0);
-            for face in box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5)) {
-                let light = RelativeLight { two_sided: false, ..light(face.to_vec()) };
-                fitted += ltc(&TABLE, &surface, DVec3::Z, view_at(theta), &light).x;
-                exact += truth(&surface, DVec3::Z, view_at(theta), &light, &Settings::default()).radiance.x;
-            }
+            let [fitted, exact] = albedos(&surface, view_at(theta));
             // The polynomial's own error, 1.2e-5, times f90 - f0
             assert!((fitted - exact).abs() < 2e-5, "{theta}, {f0}, {f90}: {fitted} {exact}");
             assert!((-1e-9..=1.0 + 1e-9).contains(&fitted));
@@ -135,12 +138,7 @@ fn a_rough_lobe_of_white_reflects_all_and_its_albedo_is_the_truth_s() {
     for theta in [0.0, 0.3, 0.9, 1.3, 1.5] {
         for (albedo, roughness) in [(1.0, 1.0), (1.0, 0.3), (0.8, 0.5), (0.2, 1.0), (0.2, 0.05), (0.0, 1.0)] {
             let surface = rough(albedo, roughness);
-            let (mut fitted, mut exact) = (0.0, 0.0);
-            for face in box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5)) {
-                let light = RelativeLight { two_sided: false, ..light(face.to_vec()) };
-                fitted += ltc(&TABLE, &surface, DVec3::Z, view_at(theta), &light).x;
-                exact += truth(&surface, DVec3::Z, view_at(theta), &light, &Settings::default()).radiance.x;
-            }
+            let [fitted, exact] = albedos(&surface, view_at(theta));
             // The single bounce's polynomial: 4e-4
             assert!((fitted - exact).abs() < 5e-4, "{theta}, {albedo}, {roughness}: {fitted} {exact}");
             if albedo == 1.0 {

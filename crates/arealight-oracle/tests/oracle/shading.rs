@@ -1,6 +1,6 @@
 //! The truth against sampling and closed forms, and the table's answer against cubature of its own lobe.
 
-use crate::common::{box_around, direction, lengths_through, square_points, star, view_angle, view_at};
+use crate::common::{direction, from_everywhere, lengths_through, square_points, star, view_angle, view_at};
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::frame::SurfaceFrame;
@@ -135,23 +135,15 @@ fn light_from_everywhere_gives_the_albedo() {
         let view = view_at(theta);
         let hemisphere = Region::sphere().clipped(DVec3::Z);
         let albedo = lobe_integrals(Ggx { alpha }, view, &hemisphere, &Settings::default()).value;
-        let faces = box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5));
-        let sum = |surface: Surface| -> DVec3 {
-            let one = |face: &[DVec3; 4]| {
-                truth(&surface, DVec3::Z, view, &light(face.to_vec(), false), &Settings::default()).radiance
-            };
-            faces.iter().map(one).sum()
-        };
+        let surface = glossy(alpha, 0.04);
+        let settings = Settings::default();
+        let found = from_everywhere(|light| truth(&surface, DVec3::Z, view, light, &settings).radiance).x;
         let expected = 0.04 * albedo[0] + 0.96 * albedo[1];
-        let found = sum(glossy(alpha, 0.04)).x;
         assert!((found - expected).abs() < 1e-7, "alpha {alpha}, theta {theta}: {found} and {expected}");
         // The table's lobes are normalised, so from everywhere it sends its magnitude
         let table = table();
         let sample = table.lookup(alpha.sqrt(), theta.cos());
-        let one = |face: &[DVec3; 4]| {
-            ltc(&table, &glossy(alpha, 0.04), DVec3::Z, view, &light(face.to_vec(), false)).x
-        };
-        let found: f64 = faces.iter().map(one).sum();
+        let found = from_everywhere(|light| ltc(&table, &surface, DVec3::Z, view, light)).x;
         let expected = 0.04 * sample.albedo + 0.96 * sample.schlick;
         assert!((found - expected).abs() < 1e-13, "alpha {alpha}, theta {theta}: {found} and {expected}");
     }

@@ -1,9 +1,9 @@
 //! Sheen: its formulas against the true BRDF, what it leaves to the base, and where it is hard.
 
-use crate::common::{box_around, view_at};
+use crate::common::{from_everywhere, view_at};
 use arealight::{Horizon, LightTable, Quality};
 use arealight_oracle::material::{Sheen, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc_on};
+use arealight_oracle::shading::ltc_on;
 use arealight_oracle::sheen::{Charlie, MIN_ROUGHNESS, SheenLobe};
 use glam::DVec3;
 use std::sync::LazyLock;
@@ -73,22 +73,6 @@ fn roughness_is_clamped_and_nan_counts_as_the_smallest() {
     assert_ne!(at(0.08), at(MIN_ROUGHNESS));
 }
 
-/// Light of unit radiance from every direction.
-fn from_everywhere(quality: Quality, surface: &Surface, view: DVec3) -> DVec3 {
-    box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5))
-        .into_iter()
-        .map(|face| {
-            let light = RelativeLight {
-                vertices: face.to_vec(),
-                radiance: DVec3::ONE,
-                two_sided: false,
-                image: None,
-            };
-            ltc_on(quality, &TABLE, surface, DVec3::Z, view, &light)
-        })
-        .sum()
-}
-
 #[test]
 fn a_white_base_below_sheen_sends_what_it_gets() {
     for roughness in [0.0, 0.07, 0.3, 0.6, 1.0] {
@@ -97,7 +81,8 @@ fn a_white_base_below_sheen_sends_what_it_gets() {
             let base = Surface { diffuse_albedo: DVec3::ONE, sheen: Some(sheen), ..Surface::default() };
             for horizon in [Horizon::Cosine, Horizon::Both] {
                 let quality = Quality { horizon, ..Quality::default() };
-                let sent = from_everywhere(quality, &base, view_at(theta));
+                let view = view_at(theta);
+                let sent = from_everywhere(|light| ltc_on(quality, &TABLE, &base, DVec3::Z, view, light));
                 // Charlie itself sends more than it gets where its albedo is above 1: nothing is left for the base
                 let albedo = SheenLobe::new(roughness, theta.cos()).albedo;
                 let left = (1.0 - albedo).max(0.0);

@@ -1,0 +1,143 @@
+//! What the tests of materials share: shading points, and comparisons with the float64 twins.
+
+use crate::{Comparison, Random, TestEngine, point};
+use arealight::{Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight_engine::EvalPoint;
+use arealight_oracle::material::Surface;
+use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
+use glam::{DVec3, Vec3};
+use std::sync::LazyLock;
+
+static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
+/// The ways to a surface's lobes: both horizons, a lobe for each part of the Fresnel term, formulas.
+pub fn lobe_qualities() -> [Quality; 4] {
+    let quality = Quality::default();
+    [
+        quality,
+        Quality { horizon: Horizon::Both, ..quality },
+        Quality { fresnel: Fresnel::Split, ..quality },
+        Quality { lobes: Lobes::Formula, ..quality },
+    ]
+}
+
+/// A point under a polygon of 3 to 8 vertices anywhere, above, across or below its horizon; every third has two sides.
+pub fn under_polygon(random: &mut Random, index: usize, surface: Surface, view: DVec3) -> EvalPoint {
+    let center = random.direction();
+    let size = random.between(0.1, 1.5);
+    let vertices = random.polygon(center, 3 + index % 6, size * 0.3, size);
+    point(surface, view, vertices, index.is_multiple_of(3))
+}
+
+/// A disk, a sphere and a tube about as large as they are far.
+pub fn shape_lights(random: &mut Random) -> [Light; 3] {
+    let center = random.direction() * 2.0;
+    let (axis_u, axis_v) = center.normalize_or(DVec3::Z).any_orthonormal_pair();
+    let light = |shape| Light { shape, radiance: Vec3::ONE, two_sided: true, ..Light::default() };
+    let ends = TubeEnds::Round;
+    [
+        light(LightShape::Disk { center, axis_u: axis_u * 0.7, axis_v }),
+        light(LightShape::Sphere { center, radius: 0.6 }),
+        light(LightShape::Tube { p0: center - axis_u, p1: center + axis_u, radius: 0.2, ends }),
+    ]
+}
+
+/// The inside of a box about the point.
+fn box_faces() -> Vec<Vec<DVec3>> {
+    let corner = |axis: usize, side: f64, u: f64, v: f64| {
+        let mut corner = DVec3::splat(side);
+        (corner[(axis + 1) % 3], corner[(axis + 2) % 3]) = (u, v * side);
+        corner
+    };
+    let face = |axis, side| {
+        [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(u, v)| corner(axis, side, u, v)).to_vec()
+    };
+    (0..3).flat_map(|axis| [face(axis, 1.0), face(axis, -1.0)]).collect()
+}
+
+/// The answer of the fitted lobes in float64 to a point under a polygon.
+pub fn polygon_twin(quality: Quality, given: &EvalPoint) -> DVec3 {
+    let light = RelativeLight::new(&given.light, given.position);
+    ltc_on(quality, &TABLE, &given.surface, given.normal, given.view, &light)
+}
+
+impl TestEngine {
+    /// Compares points under polygons with their float64 twins. The twin's twin: of more than a tenth of them it notices a `change` of
+    /// the surface.
+    ///
+    /// # Panics
+    /// Where they differ by more than `bound`, or the device fails.
+    pub fn assert_follows_polygon_twin(
+        &self,
+        what: &str,
+        quality: Quality,
+        points: &[EvalPoint],
+        bound: impl Fn(&EvalPoint) -> f64,
+        change: impl Fn(&Surface) -> Surface,
+    ) {
+        let answers = self.eval(points, quality).unwrap();
+        let mut comparison = Comparison::new(format!("{what}, {quality:?}"));
+        let mut noticed = 0;
+        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+            let (expected, bound) = (polygon_twin(quality, given), bound(given));
+            comparison.add_color(*answer, expected, bound, || format!("point {index}: {given:?}"));
+            let other = EvalPoint { surface: change(&given.surface), ..given.clone() };
+            let difference = polygon_twin(quality, &other) - answer.as_dvec3();
+            noticed += usize::from(difference.abs().max_element() > bound);
+        }
+        comparison.assert_all();
+        assert!(noticed > points.len() / 10, "{what}, {quality:?}: {noticed} points notice another surface");
+    }
+
+    /// Compares points under disks, spheres and tubes with their float64 twins.
+    ///
+    /// # Panics
+    /// Where they differ by more than `bound`, or the device fails.
+    pub fn assert_follows_shape_twin(
+        &self,
+        what: &str,
+        points: &[EvalPoint],
+        bound: impl Fn(&EvalPoint) -> f64,
+    ) {
+        let quality = Quality::default();
+        let answers = self.eval_shapes(points, quality).unwrap();
+        let mut comparison = Comparison::new(what);
+        for (index, (given, answer)) in points.iter().zip(&answers).enumerate() {
+            let EvalPoint { surface, normal, view, light, .. } = given;
+            let expected = shape_ltc_on(quality, &TABLE, surface, *normal, *view, light).unwrap();
+            comparison.add_color(*answer, expected, bound(given), || format!("point {index}: {given:?}"));
+        }
+        comparison.assert_all();
+    }
+
+    /// The answers' bits.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn eval_bits(&self, points: &[EvalPoint], quality: Quality) -> Vec<[u32; 3]> {
+        let answers = self.eval(points, quality).unwrap();
+        answers.iter().map(|answer| answer.to_array().map(f32::to_bits)).collect()
+    }
+
+    /// What surfaces send of white light from everywhere, in the first channel. It is no more than they get.
+    ///
+    /// # Panics
+    /// Where it is, or is not finite, or the device fails.
+    pub fn light_from_everywhere(&self, surfaces: &[(Surface, DVec3)], quality: Quality) -> Vec<f32> {
+        let faces = box_faces();
+        let under = |&(surface, view): &(Surface, DVec3)| {
+            faces.iter().map(move |face| point(surface, view, face.clone(), false))
+        };
+        let points: Vec<EvalPoint> = surfaces.iter().flat_map(under).collect();
+        let answers = self.eval(&points, quality).unwrap();
+        assert!(answers.iter().all(|answer| answer.is_finite()), "{quality:?}");
+        let sums: Vec<f32> =
+            answers.chunks_exact(faces.len()).map(|faces| faces.iter().map(|face| face.x).sum()).collect();
+        assert_eq!(sums.len(), surfaces.len());
+        for (sum, given) in sums.iter().zip(surfaces) {
+            // Six faces and a lobe of each, 1e-6 every one; and the lobe's gain
+            assert!((0.0..=1.0 + 2e-5).contains(sum), "{quality:?}: {sum} of {given:?}");
+        }
+        sums
+    }
+}
