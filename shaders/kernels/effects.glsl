@@ -34,10 +34,10 @@ const uint EFFECT_COUPLED_BY_ALBEDO = 65536u;
 const uint EFFECT_COAT_BY_ALBEDO = 131072u;
 // Some diffuse lobe is rough.
 const uint EFFECT_DIFFUSE_ROUGHNESS = 262144u;
-// Some surface's specular lobe is stretched along a tangent.
-const uint EFFECT_ANISOTROPY = 1048576u;
 // Some surface has sheen.
 const uint EFFECT_SHEEN = 524288u;
+// Some surface's specular lobe is stretched along a tangent.
+const uint EFFECT_ANISOTROPY = 1048576u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;

@@ -74,11 +74,11 @@
 // Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
 #define AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS 262144
 
-// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
-#define AREALIGHT_EFFECT_ANISOTROPY 1048576
-
 // Some surface has sheen: ArealightResources.sheen is read.
 #define AREALIGHT_EFFECT_SHEEN 524288
+
+// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
+#define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0

@@ -197,6 +197,10 @@ fn faces_origin(vertices: &[DVec3]) -> bool {
 /// `view` is a unit vector in the surface frame. The lobe is found however narrow it is, down to
 /// [`arealight::MIN_ALPHA`].
 pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settings) -> Estimate<2> {
+    integrals_of(lobe, view, region, settings)
+}
+
+fn integrals_of(lobe: impl Microfacets, view: DVec3, region: &Region, settings: &Settings) -> Estimate<2> {
     integrate_lobe(lobe, view, region, settings, |direction, value| {
         [value, value * Ggx::schlick_weight(view, direction)]
     })
@@ -205,10 +209,7 @@ pub fn lobe_integrals(lobe: Ggx, view: DVec3, region: &Region, settings: &Settin
 /// What a GGX lobe with Schlick's Fresnel term reflects of light from everywhere.
 fn hemisphere_albedo(lobe: impl Microfacets, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
     let hemisphere = Region::sphere().clipped(DVec3::Z);
-    let parts = integrate_lobe(lobe, view, &hemisphere, settings, |direction, value| {
-        [value, value * Ggx::schlick_weight(view, direction)]
-    });
-    let [lobe, schlick] = parts.value;
+    let [lobe, schlick] = integrals_of(lobe, view, &hemisphere, settings).value;
     f0 * lobe + (f90 - f0) * schlick
 }
 

@@ -35,17 +35,10 @@ impl Engine {
     pub fn eval(&self, points: &[EvalPoint], quality: Quality) -> Result<Vec<Vec3>, EngineError> {
         // Points get a pipeline that has no more than they need
         let needed = |point: &EvalPoint| (point.light.effects() & POLYGONAL) | layer_effects(&point.surface);
-        let mut radiance = vec![Vec3::ZERO; points.len()];
-        for (needed, indices) in subsets(&points.iter().collect::<Vec<_>>(), needed) {
-            let effects = (Effects::all() - POLYGONAL - LAYERS) | needed;
-            let subset: Vec<&EvalPoint> = indices.iter().map(|&index| &points[index]).collect();
-            let dispatch = plan::eval(effects, quality, 0);
-            let answers = self.eval_by(dispatch.kernel, &dispatch.specialization, &subset)?;
-            for (&index, answer) in indices.iter().zip(answers) {
-                radiance[index] = answer;
-            }
-        }
-        Ok(radiance)
+        answers_by(&points.iter().collect::<Vec<_>>(), needed, |needed, subset| {
+            let dispatch = plan::eval((Effects::all() - POLYGONAL - LAYERS) | needed, quality, 0);
+            self.eval_by(dispatch.kernel, &dispatch.specialization, subset)
+        })
     }
 
     /// As [`Engine::eval`], by a kernel of one's own that has the bindings and constants of
@@ -113,11 +106,12 @@ pub fn gpu_case(point: &EvalPoint, light: u32) -> GpuCase {
     surface_case(&point.surface, point.normal, point.view, light)
 }
 
-/// The indices of the points that need the same effects.
-pub(crate) fn subsets(
+/// The answers of points, in their order, which `answer` gives for all that need the same effects at once.
+pub(crate) fn answers_by(
     points: &[&EvalPoint],
     needed: impl Fn(&EvalPoint) -> Effects,
-) -> Vec<(Effects, Vec<usize>)> {
+    answer: impl Fn(Effects, &[&EvalPoint]) -> Result<Vec<Vec3>, EngineError>,
+) -> Result<Vec<Vec3>, EngineError> {
     let mut subsets: Vec<(Effects, Vec<usize>)> = Vec::new();
     for (index, point) in points.iter().enumerate() {
         let needed = needed(point);
@@ -126,7 +120,14 @@ pub(crate) fn subsets(
             None => subsets.push((needed, vec![index])),
         }
     }
-    subsets
+    let mut answers = vec![Vec3::ZERO; points.len()];
+    for (needed, indices) in subsets {
+        let subset: Vec<&EvalPoint> = indices.iter().map(|&index| points[index]).collect();
+        for (&index, answer) in indices.iter().zip(answer(needed, &subset)?) {
+            answers[index] = answer;
+        }
+    }
+    Ok(answers)
 }
 
 /// What surfaces may need beyond two isotropic lobes, added.

@@ -1,6 +1,6 @@
 //! Shading points one by one under disks, spheres and tubes.
 
-use crate::eval::{EvalPoint, LAYERS, POLYGONAL, layer_effects, subsets, surface_case};
+use crate::eval::{EvalPoint, LAYERS, POLYGONAL, answers_by, layer_effects, surface_case};
 use crate::{Engine, EngineError};
 use arealight::gpu::GpuShape;
 use arealight::{Effects, PackedLights, Quality};
@@ -45,15 +45,11 @@ impl Engine {
         points: &[&EvalPoint],
         quality: Quality,
     ) -> Result<Vec<Vec3>, EngineError> {
-        let mut radiance = vec![Vec3::ZERO; points.len()];
-        for (layers, indices) in subsets(points, |point| layer_effects(&point.surface)) {
-            let subset: Vec<&EvalPoint> = indices.iter().map(|&index| points[index]).collect();
-            let answers = self.eval_shapes_with(layers, kind, &subset, quality)?;
-            for (&index, answer) in indices.iter().zip(answers) {
-                radiance[index] = answer;
-            }
-        }
-        Ok(radiance)
+        answers_by(
+            points,
+            |point| layer_effects(&point.surface),
+            |layers, subset| self.eval_shapes_with(layers, kind, subset, quality),
+        )
     }
 
     /// The radiance of points whose surfaces have these layers.

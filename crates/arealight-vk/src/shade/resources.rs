@@ -73,17 +73,16 @@ impl ShadeResources {
         has_tiles: bool,
         bindings: usize,
     ) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
-        if self.specular.is_none() && options.reads_specular() {
-            let message = "is missing, but the pass reads it: see ShadeOptions::reads_specular".into();
-            return Err(Error::InvalidArgument { field: "specular", message });
-        }
-        if self.coat.is_none() && options.reads_coat() {
-            let message = "is missing, but the pass reads it: see ShadeOptions::reads_coat".into();
-            return Err(Error::InvalidArgument { field: "coat", message });
-        }
-        if self.sheen.is_none() && options.reads_sheen() {
-            let message = "is missing, but the pass reads it: see ShadeOptions::reads_sheen".into();
-            return Err(Error::InvalidArgument { field: "sheen", message });
+        let read = [
+            ("specular", self.specular, options.reads_specular()),
+            ("coat", self.coat, options.reads_coat()),
+            ("sheen", self.sheen, options.reads_sheen()),
+        ];
+        if let Some((field, ..)) =
+            read.into_iter().find(|(_, resource, is_read)| *is_read && resource.is_none())
+        {
+            let message = format!("is missing, but the pass reads it: see ShadeOptions::reads_{field}");
+            return Err(Error::InvalidArgument { field, message });
         }
         if self.picks.is_none() && options.shadow_rays > 0 {
             let message =
