@@ -58,15 +58,24 @@ vec3 crossing(ArealightQuad quad, int above) {
         }
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
-    return arealight_closed(arcs + arealight_arc(last, exit), exit.xy, entry.xy);
+    arcs += arealight_arc(last, exit);
+    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z);
 }
 
-// z of the arc between unit vectors at an acute angle with the cosine x.
+// z of the arc between unit vectors at an acute angle with the cosine x, weighted as arealight_horizon_arc weights it.
 vec3 acute_arc(vec3 a, vec3 b, float x) {
-    return vec3(0.0, 0.0, arealight_acute_weight(cross(a, b).z, x));
+    float s = cross(a, b).z;
+    return vec3(0.0, 0.0, s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
+                          / (1.0 + x * (1.3370004 + x * 0.38739931)));
 }
 
-// arealight_quad_above behind a test whether edges are acute.
+// The arcs around a quad that is wholly above the horizon, as in arealight_quad_vector.
+vec3 arcs_above(ArealightQuad quad) {
+    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+    return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
+}
+
+// The same behind a test whether edges are acute.
 vec3 above_by_edges(ArealightQuad quad, int path) {
     vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
     vec4 x = vec4(dot(a, b), dot(b, c), dot(c, d), dot(d, a));
@@ -84,7 +93,7 @@ vec3 above_by_edges(ArealightQuad quad, int path) {
 vec3 arcs_by(int path, ArealightQuad quad) {
     switch (path) {
     case PATH_ABOVE:
-        return arealight_quad_above(quad);
+        return arcs_above(quad);
     case PATH_CROSSING_1:
         return crossing(quad, 1);
     case PATH_CROSSING_2:
@@ -117,7 +126,7 @@ vec3 exact(ArealightPoint point, uint index) {
         // Scalar units do this beside the rest; by itself it would be what the compiler's estimate tells
         radiance.x = arealight_is_finite(quad) ? side : 0.0;
         ArealightLocalQuad local;
-        arealight_quad_to_local(point.to_frame, point.to_frame * offset, quad, local);
+        local.quad = arealight_quad_in_frame(point.to_frame, point.to_frame * offset, quad);
         ArealightLobe diffuse = point.lobes[AREALIGHT_LOBE_DIFFUSE];
         ArealightLobe specular = point.lobes[AREALIGHT_LOBE_SPECULAR];
         radiance += lamps[index].radiance * (diffuse.albedo * lobe_form_factor(DIFFUSE, diffuse.space, local)

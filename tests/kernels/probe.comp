@@ -72,12 +72,12 @@ ProbeResults ggx_of(vec3 view, vec3 light, float alpha, vec2 u) {
                         vec4(0.0));
 }
 
-// The arc between two directions, the same by the weight of acute angles, and where it crosses the horizon.
+// The arc between two directions, and where it crosses the horizon.
 ProbeResults arc_of(vec3 from, vec3 to) {
     vec3 a = arealight_unit(from);
     vec3 b = arealight_unit(to);
     vec2 crossing = a.z > 0.0 ? arealight_crossing(a, b) : arealight_crossing(b, a);
-    return ProbeResults(vec4(a, arealight_arc(a, b).z), vec4(b, arealight_acute_weight(cross(a, b).z, dot(a, b))),
+    return ProbeResults(vec4(a, arealight_arc(a, b).z), vec4(b, 0.0),
                         vec4(crossing, 0.0, 0.0), vec4(0.0));
 }
 

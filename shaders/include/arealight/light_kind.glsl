@@ -32,11 +32,9 @@ float arealight_form_factor(vec3 vector) {
     return bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
 }
 
-// What is left of a lobe above the surface keeps its albedo; rounding of a small part may not exceed it.
-float arealight_gained(float form_factor, float gain) {
-    return AREALIGHT_CLIPS_AT_SURFACE ? min(form_factor * gain, 1.0) : form_factor;
-}
-
+// What AREALIGHT_LIGHT_KIND makes of them:
+// arealight_lobe_weight: of one lobe, its form factor times the image's mean. What is left of a lobe above the surface keeps its albedo
+// (gain); rounding of a small part may not exceed it, which arealight_form_factor sees to.
 // arealight_reflected: of a light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off.
 // arealight_radiance: outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
 //
@@ -49,8 +47,8 @@ float arealight_gained(float form_factor, float gain) {
         }                                                                                           \
         mat3 space = point.lobes[lobe].space;                                                       \
         vec3 vector = arealight_vector_form_factor(space, local);                                   \
-        float form_factor = arealight_gained(arealight_form_factor(vector), point.lobes[lobe].gain); \
-        return form_factor * arealight_image_average(space, local, vector);                            \
+        float gain = AREALIGHT_CLIPS_AT_SURFACE ? point.lobes[lobe].gain : 1.0;                     \
+        return arealight_form_factor(gain * vector) * arealight_image_average(space, local, vector); \
     }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \

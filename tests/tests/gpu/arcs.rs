@@ -68,11 +68,11 @@ impl Expression<'_> {
     }
 }
 
-/// The expression that a function of a GLSL source returns.
-fn returned(source: &str, function: &str) -> String {
+/// The expression behind `before` in a function of a GLSL source.
+fn expression_of(source: &str, function: &str, before: &str) -> String {
     let (_, body) = source.split_once(&format!(" {function}(")).expect("the function");
     let (body, _) = body.split_once("\n}").expect("its end");
-    let (_, statement) = body.split_once("return ").expect("what it returns");
+    let (_, statement) = body.split_once(before).expect("the statement");
     statement.split_once(';').expect("a statement").0.to_owned()
 }
 
@@ -96,13 +96,13 @@ fn largest_error(
 
 /// Asserts the error of a function, and that one part in a thousand of one coefficient would show.
 fn assert_error(
-    (source, function): (&str, &str),
+    (source, function, before): (&str, &str, &str),
     bound: f64,
     end: f64,
     variables: impl Fn(f64) -> Vec<(&'static str, f64)> + Copy,
     exact: impl Fn(f64) -> f64 + Copy,
 ) {
-    let expression = returned(source, function);
+    let expression = expression_of(source, function, before);
     let error = largest_error(&expression, end, variables, exact);
     println!("{function}: {error:.2e} (stated {bound:.1e})");
     assert!(error <= bound, "{function}: {error:e}, stated {bound:e}");
@@ -115,13 +115,19 @@ fn assert_error(
 fn the_weight_of_an_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("y", 2.0 * (0.5 * theta).cos())];
     // Up to where the weight is a million
-    assert_error((ARC_GLSL, "arealight_arc_weight"), 7e-8, std::f64::consts::PI - 3e-6, variables, ratio);
+    assert_error((ARC_GLSL, "arealight_arc", "return "), 7e-8, std::f64::consts::PI - 3e-6, variables, ratio);
 }
 
 #[test]
 fn the_weight_of_an_acute_arc_has_the_error_that_it_states() {
     let variables = |theta: f64| vec![("s", 1.0), ("x", theta.cos())];
-    assert_error((ARC_GLSL, "arealight_acute_weight"), 7e-8, std::f64::consts::FRAC_PI_2, variables, ratio);
+    assert_error(
+        (ARC_GLSL, "arealight_horizon_arc", "float acute = "),
+        7e-8,
+        std::f64::consts::FRAC_PI_2,
+        variables,
+        ratio,
+    );
 }
 
 #[test]
@@ -135,6 +141,6 @@ fn the_excess_of_an_arc_has_the_error_that_it_states() {
         vec![("scaled", half.sin().powi(2)), ("y", 2.0 * half.cos())]
     };
     let exact = move |theta: f64| ratio(shifted(theta)) - 1.0;
-    let function = (DIFFERENCE_GLSL, "arealight_arc_excess");
+    let function = (DIFFERENCE_GLSL, "arealight_arc_excess", "return ");
     assert_error(function, 1.5e-7, std::f64::consts::PI - 2e-3, variables, exact);
 }

@@ -33,6 +33,7 @@ mod probe;
 mod properties;
 mod prune;
 mod pyramid;
+mod quad_path;
 mod recorder;
 mod resize;
 mod shading;

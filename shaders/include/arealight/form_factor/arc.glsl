@@ -28,49 +28,35 @@ vec3 arealight_unit(vec3 v) {
     return v * inversesqrt(max(dot(v, v), AREALIGHT_LEAST_SQUARE));
 }
 
-// s theta / sin(theta) of an arc with y = 2 cos(theta / 2), from sqrt(AREALIGHT_LEAST_SQUARE) to 2: relative error 7e-8
-// before rounding.
-vec3 arealight_arc_weight(vec3 s, float y) {
-    return s * (3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
-         / (y + y * y * (0.66850024 + y * 0.096849829));
-}
-
-// s theta / sin(theta) of an angle of at most a right one with the cosine x: relative error 7e-8 before rounding.
-float arealight_acute_weight(float s, float x) {
-    return s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
-         / (1.0 + x * (1.3370004 + x * 0.38739931));
-}
-
 // The angle from a to b, unit vectors, times the unit normal of their plane, radians. Error 5e-7 of one radian or of the angle,
-// whichever is larger; for ends within 2e-3 of opposite as if one of them had moved by 2^-24.
+// whichever is larger; for ends within 2e-3 of opposite as if one of them had moved by 2^-24. The weight of s is within 7e-8 of
+// 2 G(y / 2) / y before rounding, for y from sqrt(AREALIGHT_LEAST_SQUARE) to 2.
 vec3 arealight_arc(vec3 a, vec3 b) {
     vec3 middle = a + b;
-    return arealight_arc_weight(cross(a, middle), sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE));
-}
-
-// The arc along the horizon from a to b, unit vectors on it: z is the angle, in [-pi, pi], an obtuse one on the side that
-// `side` has the sign of. It is pi less the acute one: here rounding of y would turn the arc, not move its end.
-vec3 arealight_horizon_arc_by_side(vec2 a, vec2 b, float sine, float side) {
-    float cosine = dot(a, b);
-    float acute = arealight_acute_weight(sine, abs(cosine));
-    return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
-}
-
-// The same, of an angle in (-pi, pi).
-vec3 arealight_horizon_arc(vec2 a, vec2 b) {
-    float sine = a.x * b.y - a.y * b.x;
-    return arealight_horizon_arc_by_side(a, b, sine, sine);
+    vec3 s = cross(a, middle);
+    float y = sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE);
+    return s * (3.1415925 + y * (1.1001613 + y * (0.028413607 - y * 0.00084628159)))
+         / (y + y * y * (0.66850024 + y * 0.096849829));
 }
 
 // What rounding makes of the sine of a half turn: that of vectors that both moved by 2 x 2^-24.
 const float AREALIGHT_HALF_TURN = 2.4e-7;
 
-// Closes the sum of an outline's arcs along the horizon, from a to b. Where rounding alone tells on which side, the point is in
-// the light's plane, before the light or behind it. The smaller of the two sums is the form factor of one of them; the larger one,
-// where rounding put `arcs` on the other side, of neither.
-vec3 arealight_closed(vec3 arcs, vec2 a, vec2 b) {
-    float sine = a.x * b.y - a.y * b.x;
-    return arcs + arealight_horizon_arc_by_side(a, b, sine, abs(sine) > AREALIGHT_HALF_TURN ? sine : -arcs.z);
+// The arc along the horizon from a to b, unit vectors on it: z is the angle, in [-pi, pi]. An obtuse angle is pi less the acute one, for
+// which the weight is within 7e-8 of G: here rounding of y would turn the arc, not move its end. Of a half turn rounding alone tells the
+// side; it is the one that `half_turn` has the sign of.
+//
+// Where this closes the sum of an outline's other arcs, -z of that sum is the sign to give: a half turn has the point in the light's
+// plane, before the light or behind it. The smaller of the two sums is the form factor of one of them; the larger one, where rounding put
+// the other arcs on the other side, of neither.
+vec3 arealight_horizon_arc(vec2 a, vec2 b, float half_turn) {
+    float cosine = dot(a, b);
+    float s = a.x * b.y - a.y * b.x;
+    float x = abs(cosine);
+    float acute = s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
+                / (1.0 + x * (1.3370004 + x * 0.38739931));
+    float side = abs(s) > AREALIGHT_HALF_TURN ? s : half_turn;
+    return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }
 
 // The direction in which the edge from `above` to `below`, points of any length on either side of the horizon, meets it: a

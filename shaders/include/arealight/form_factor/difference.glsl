@@ -82,7 +82,8 @@ vec3 arealight_difference_arc(ArealightVertex a, ArealightVertex b) {
 
 // The arc along the horizon. Seen from a distance no angle is obtuse; else chords are the directions themselves.
 vec3 arealight_difference_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b) {
-    return anchor.distant ? arealight_difference_arc(a, b) : arealight_horizon_arc(a.unit.xy, b.unit.xy);
+    float sine = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
+    return anchor.distant ? arealight_difference_arc(a, b) : arealight_horizon_arc(a.unit.xy, b.unit.xy, sine);
 }
 
 // The vertex at `place` on the horizon, from the anchor's base.

@@ -51,7 +51,7 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
 // The vector form factor of all edges. Seen from the front z is positive.
 vec3 arealight_outline_vector(ArealightOutline outline) {
     vec2 turn = outline.turn * inversesqrt(dot(outline.turn, outline.turn) + AREALIGHT_LEAST_SQUARE);
-    return AREALIGHT_PER_ARC * arealight_closed(outline.arcs, vec2(1.0, 0.0), turn);
+    return AREALIGHT_PER_ARC * (outline.arcs + arealight_horizon_arc(vec2(1.0, 0.0), turn, -outline.arcs.z));
 }
 
 // A polygon clipped at the surface's horizon first, vertex by vertex: they come in the shading frame, whose horizon is the

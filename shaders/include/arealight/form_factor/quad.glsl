@@ -71,12 +71,6 @@ ArealightCutQuad arealight_cut_at_horizon(ArealightQuad quad) {
     return ArealightCutQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit, exit, c_above);
 }
 
-// The arcs around a quad that is wholly above the horizon.
-vec3 arealight_quad_above(ArealightQuad quad) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
-    return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
-}
-
 // The arcs around what is above the horizon of a quad that crosses it: from where the outline comes up to a, on to b and c as
 // far as they are above, to where it goes down, and back along the horizon.
 vec3 arealight_quad_crossing(ArealightQuad quad) {
@@ -98,7 +92,8 @@ vec3 arealight_quad_crossing(ArealightQuad quad) {
         }
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
-    return arealight_closed(arcs + arealight_arc(last, exit), exit.xy, entry.xy);
+    arcs += arealight_arc(last, exit);
+    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z);
 }
 
 // The vector form factor of a convex quad. Seen from its front z is positive.
@@ -106,7 +101,8 @@ vec3 arealight_quad_vector(ArealightQuad quad) {
     vec3 arcs = vec3(0.0);
     if (arealight_highest(quad) > 0.0) {
         if (arealight_lowest(quad) > 0.0) {
-            arcs = arealight_quad_above(quad);
+            vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+            arcs = arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
         } else {
             arcs = arealight_quad_crossing(quad);
         }

@@ -137,9 +137,9 @@ vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeI
     for (float y = 0.0; y < count; y += 1.0) {
         for (float x = 0.0; x < count; x += 1.0) {
             ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
-            ArealightLocalQuad in_frame;
-            if (arealight_quad_to_local(local.to_frame, local.center, part.quad, in_frame)) {
-                in_frame.side = 1.0;
+            ArealightQuad quad_in_frame = arealight_quad_in_frame(local.to_frame, local.center, part.quad);
+            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false, local.center, 1.0);
+            if (arealight_cut_local(in_frame, local.to_frame, part.quad)) {
                 vec3 vector = arealight_vector_form_factor(space, in_frame);
                 float form_factor = arealight_form_factor(abs(vector));
                 sum += form_factor * vec4(arealight_part_color(image, part, vector), 1.0);

@@ -42,20 +42,9 @@ ArealightQuad arealight_moved(ArealightQuad quad, vec3 by) {
     return ArealightQuad(quad.a + by, quad.b + by, quad.c + by, quad.d + by);
 }
 
-// Cuts a quad that crosses the surface's horizon into a quad and, where three vertices are above, a triangle.
-void arealight_cut_quad(inout ArealightLocalQuad local) {
-    ArealightCutQuad cut = arealight_cut_at_horizon(local.quad);
-    local.quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
-    local.triangle = ArealightQuad(cut.entry, cut.c, cut.exit, cut.exit);
-    local.has_triangle = cut.has_c;
-}
-
-// Takes a quad whose center is at `center` in the shading frame there, and clips it at the surface's horizon where that is on. False
-// where nothing is left.
-bool arealight_quad_to_local(mat3 to_frame, vec3 center, ArealightQuad quad, out ArealightLocalQuad local) {
-    local.center = center;
-    local.quad = arealight_quad_in_frame(to_frame, center, quad);
-    local.has_triangle = false;
+// Cuts a quad at the surface's horizon with AREALIGHT_SURFACE_HORIZON, and takes its vertices from its center again with
+// AREALIGHT_DIFFERENCE. False where nothing is left. `quad`: the same in the world.
+bool arealight_cut_local(inout ArealightLocalQuad local, mat3 to_frame, ArealightQuad quad) {
     bool is_cut = false;
     if (AREALIGHT_CLIPS_AT_SURFACE) {
         if (arealight_highest(local.quad) <= 0.0) {
@@ -63,12 +52,15 @@ bool arealight_quad_to_local(mat3 to_frame, vec3 center, ArealightQuad quad, out
         }
         is_cut = arealight_lowest(local.quad) < 0.0;
         if (is_cut) {
-            arealight_cut_quad(local);
+            ArealightCutQuad cut = arealight_cut_at_horizon(local.quad);
+            local.quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
+            local.triangle = ArealightQuad(cut.entry, cut.c, cut.exit, cut.exit);
+            local.has_triangle = cut.has_c;
         }
     }
     if (AREALIGHT_USES_DIFFERENCE) {
-        local.quad = is_cut ? arealight_moved(local.quad, -center) : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
-        local.triangle = arealight_moved(local.triangle, -center);
+        local.quad = is_cut ? arealight_moved(local.quad, -local.center) : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
+        local.triangle = arealight_moved(local.triangle, -local.center);
     }
     return true;
 }
@@ -78,24 +70,27 @@ bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out Area
     local.side = arealight_lit_side(offset, light.normal, AREALIGHT_HAS_TWO_SIDED && light.two_sided);
     bool lit = local.side != 0.0 && arealight_is_finite(light.quad);
     if (lit) {
-        lit = arealight_quad_to_local(point.to_frame, point.to_frame * offset, light.quad, local);
+        local.center = point.to_frame * offset;
+        local.quad = arealight_quad_in_frame(point.to_frame, local.center, light.quad);
+        local.has_triangle = false;
+        if (AREALIGHT_CLIPS_AT_SURFACE || AREALIGHT_USES_DIFFERENCE) {
+            lit = arealight_cut_local(local, point.to_frame, light.quad);
+        }
     }
     return lit;
 }
 
-// The vector form factor of a quad as ArealightLocalQuad has it.
-vec3 arealight_quad_part(mat3 space, vec3 center, ArealightQuad quad) {
-    ArealightQuad in_space = arealight_transformed(space, quad);
-    if (AREALIGHT_USES_DIFFERENCE) {
-        return arealight_difference_quad(space * center, in_space, arealight_horizon_width(space));
-    }
-    return arealight_quad_vector(in_space);
+// The vector form factor in a space with AREALIGHT_DIFFERENCE, of a quad whose vertices are from `center`.
+vec3 arealight_far_quad_vector(mat3 space, vec3 center, ArealightQuad quad) {
+    return arealight_difference_quad(space * center, arealight_transformed(space, quad), arealight_horizon_width(space));
 }
 
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
-    vec3 vector = arealight_quad_part(space, local.center, local.quad);
+    vec3 vector = AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.quad)
+                                            : arealight_quad_vector(arealight_transformed(space, local.quad));
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
-        vector += arealight_quad_part(space, local.center, local.triangle);
+        vector += AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.triangle)
+                                            : arealight_quad_vector(arealight_transformed(space, local.triangle));
     }
     return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
 }
