@@ -89,7 +89,7 @@ vec3 point_of(ArealightGpuLight light, vec2 random, out float area) {
 vec3 reflected(ArealightSurface surface, vec3 view, vec3 light) {
     float alpha = max(surface.roughness * surface.roughness, AREALIGHT_MIN_ALPHA);
     vec3 diffuse = surface.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
-    return diffuse + arealight_ggx_evaluate(view, light, alpha, surface.f0, surface.f90);
+    return diffuse + arealight_ggx_evaluate(view, light, vec2(alpha), surface.f0, surface.f90);
 }
 
 vec3 estimate(ArealightSurface surface, ArealightFrame frame, vec3 origin, Choice choice, vec2 random) {

@@ -22,6 +22,12 @@ impl Markers {
         end: "<!-- end: arealight bench compiled --model -->",
     };
 
+    /// Of [`crate::materials`].
+    pub const MATERIALS: Self = Self {
+        begin: "<!-- begin: arealight bench materials -->",
+        end: "<!-- end: arealight bench materials -->",
+    };
+
     /// Of [`crate::shadow_motion`].
     pub const SHADOWS_IN_MOTION: Self = Self {
         begin: "<!-- begin: arealight bench shadows --motion -->",

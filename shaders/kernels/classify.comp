@@ -23,9 +23,10 @@ layout(constant_id = 14) const uint CULL = 0u;
 #define SHAPES_BINDING 9
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
-#define TILE_LISTS_BINDING 14
+#define ANISOTROPY_BINDING 13
+#define TILE_LISTS_BINDING 15
 #define TILE_LISTS_ACCESS
-#define LOBE_HORIZONS_BINDING 15
+#define LOBE_HORIZONS_BINDING 16
 #define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
@@ -38,8 +39,8 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 
 const bool HAS_DIFFUSE = (EFFECTS & EFFECT_DIFFUSE) != 0u;
 const bool HAS_GLOSSY = (EFFECTS & EFFECT_GLOSSY) != 0u;
-// Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula, nor for anisotropic lobes.
-const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA && !AREALIGHT_HAS_ANISOTROPY;
+// Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula.
+const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA;
 // Likewise that of the coat's.
 const bool HAS_COAT_HORIZON = AREALIGHT_HAS_COAT && !AREALIGHT_USES_FORMULA;
 

@@ -176,8 +176,9 @@ void reduce_pixels(ivec2 pixel) {
             reflection = vec3(lobe.envelope.x, -lobe.envelope.y, arealight_max_component(albedo));
         }
     }
-    // Of sheen's lobe nothing is known
-    spread = has_sheen ? TILE_FAR : spread;
+    // Of the lobe of sheen nothing is known, nor of one of two roughnesses: the table's cells do not hold for it
+    bool is_stretched = AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness;
+    spread = has_sheen || is_stretched ? TILE_FAR : spread;
     tile_reduce(POSITION_PAIR, has_surface ? vec4(position, known_distance) : vec4(-TILE_FAR),
                 has_surface ? vec4(-position, spread) : vec4(-TILE_FAR));
 
@@ -200,7 +201,7 @@ bool tile_is_known() {
     return tile_distance() < TILE_FAR;
 }
 
-// Whether the horizons of every pixel's glossy lobe are known, and none has sheen.
+// Whether the horizons of every pixel's glossy lobe are known: none is stretched, and none has sheen.
 bool tile_has_lobe() {
     return HAS_HORIZON || (AREALIGHT_HAS_SHEEN && !HAS_GLOSSY) ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
 }

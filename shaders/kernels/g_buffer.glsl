@@ -1,12 +1,13 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING and SHEEN_BINDING where it shades
-// coats and sheen, and G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING, SHEEN_BINDING and
+// ANISOTROPY_BINDING where it shades coats, sheen, and lobes of two roughnesses or rough diffuse ones, and G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
 // its own.
 
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
+#include "octahedron.glsl"
 
 // How surfaces are stored: the same as arealight::plan::GBufferLayout, which says what each image holds.
 const int G_BUFFER_AREALIGHT = 0;
@@ -27,9 +28,10 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
 
-// Of the host: declares the images of the next three bindings, of COAT_BINDING and of SHEEN_BINDING as it likes, and defines
+// Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING and ANISOTROPY_BINDING as it likes, and defines
 // arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its
-// sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY alone. It lies in an include folder of the host's compiler.
+// sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY, its diffuse roughness with
+// AREALIGHT_HAS_ROUGH_DIFFUSE alone. It lies in an include folder of the host's compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -51,15 +53,9 @@ layout(set = 0, binding = COAT_BINDING) uniform texture2D g_coat;
 #ifdef SHEEN_BINDING
 layout(set = 0, binding = SHEEN_BINDING) uniform texture2D g_sheen;
 #endif
-
-// A direction, of any length, from its place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
-vec3 from_octahedron(vec2 place) {
-    vec3 direction = vec3(place, 1.0 - abs(place.x) - abs(place.y));
-    float below = max(-direction.z, 0.0);
-    direction.x += direction.x >= 0.0 ? -below : below;
-    direction.y += direction.y >= 0.0 ? -below : below;
-    return direction;
-}
+#ifdef ANISOTROPY_BINDING
+layout(set = 0, binding = ANISOTROPY_BINDING) uniform texture2D g_anisotropy;
+#endif
 
 // The coat that a pixel sees, in every layout: its weight, its roughness, and its own normal's place on the octahedron.
 ArealightCoat load_coat(ivec2 pixel) {
@@ -85,6 +81,20 @@ ArealightSheen load_sheen(ivec2 pixel) {
     return sheen;
 }
 
+// Sets what a pixel has of two roughnesses, in every layout: the tangent's place on the octahedron, the perceptual roughness along it,
+// 0 where it is the surface's, and the roughness of the diffuse lobe.
+void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
+    surface.diffuse_roughness = 0.0;
+    surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
+#ifdef ANISOTROPY_BINDING
+    if (AREALIGHT_HAS_ANISOTROPY || AREALIGHT_HAS_ROUGH_DIFFUSE) {
+        vec4 texel = texelFetch(g_anisotropy, pixel, 0);
+        surface.diffuse_roughness = texel.a;
+        surface.anisotropy = ArealightAnisotropy(from_octahedron(texel.rg), texel.b > 0.0 ? texel.b : surface.roughness);
+    }
+#endif
+}
+
 // The surface that a pixel sees from `camera`, at `position`.
 ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     vec4 normal = texelFetch(g_normal, pixel, 0);
@@ -97,7 +107,6 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.position = position;
     surface.view = camera - position;
     surface.coat = load_coat(pixel);
-    surface.diffuse_roughness = 0.0;
     surface.sheen = load_sheen(pixel);
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
@@ -117,7 +126,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
         surface.roughness = normal.w;
         arealight_surface_from_metalness(surface, base_color.rgb, base_color.a, specular.rgb, specular.a);
     }
-    surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
+    load_anisotropy(pixel, surface);
     return surface;
 }
 

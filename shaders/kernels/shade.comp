@@ -32,8 +32,9 @@ layout(constant_id = 15) const int SHADOW_RAYS = 0;
 #define GLOSSY_BINDING 10
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
-#define PICKS_BINDING 13
-#define TILE_LISTS_BINDING 14
+#define ANISOTROPY_BINDING 13
+#define PICKS_BINDING 14
+#define TILE_LISTS_BINDING 15
 #define TILE_LISTS_ACCESS readonly
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;

@@ -20,13 +20,14 @@ layout(constant_id = 15) const int SHADOW_RAYS = 1;
 #define SHAPES_BINDING 8
 #define COAT_BINDING 9
 #define SHEEN_BINDING 10
-#define PICKS_BINDING 11
-#define SHADOW_BINDING 12
-#define RADIANCE_BINDING 13
-#define BLOCKER_NODES_BINDING 14
-#define BLOCKER_TRIANGLES_BINDING 15
-#define HISTORY_BINDING 16
-#define MOTION_BINDING 17
+#define ANISOTROPY_BINDING 11
+#define PICKS_BINDING 12
+#define SHADOW_BINDING 13
+#define RADIANCE_BINDING 14
+#define BLOCKER_NODES_BINDING 15
+#define BLOCKER_TRIANGLES_BINDING 16
+#define HISTORY_BINDING 17
+#define MOTION_BINDING 18
 
 layout(push_constant, std430) uniform ShadowConstants {
     mat4 position_from_clip;

@@ -63,12 +63,12 @@ ProbeResults table_of(vec3 normal, vec3 view, float roughness) {
                         vec4(transform[2], table.alpha), table.schlick_matrix);
 }
 
-ProbeResults ggx_of(vec3 view, vec3 light, float alpha, vec2 u) {
+ProbeResults ggx_of(vec3 view, vec3 light, vec2 alpha, vec2 u) {
     vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
     return ProbeResults(vec4(arealight_ggx_evaluate(view, light, alpha, vec3(0.04, 0.5, 1.0), 0.9),
                              arealight_ggx_density(view, light, alpha)),
                         vec4(half_vector, arealight_ggx_distribution(half_vector, alpha)),
-                        vec4(arealight_ggx_sample(view, alpha, u), arealight_ggx_visibility(view.z, light.z, alpha)),
+                        vec4(arealight_ggx_sample(view, alpha, u), arealight_ggx_visibility(view, light, alpha)),
                         vec4(0.0));
 }
 
@@ -95,7 +95,7 @@ void main() {
     } else if (FUNCTION == FUNCTION_TABLE) {
         result = table_of(given.a.xyz, given.b.xyz, given.a.w);
     } else if (FUNCTION == FUNCTION_GGX) {
-        result = ggx_of(given.a.xyz, given.b.xyz, given.a.w, given.c.xy);
+        result = ggx_of(given.a.xyz, given.b.xyz, vec2(given.a.w), given.c.xy);
     } else if (FUNCTION == FUNCTION_ARC) {
         result = arc_of(given.a.xyz, given.b.xyz);
     } else {

@@ -291,6 +291,7 @@ impl<'a> CLibrary<'a> {
             specular: image(&pixel.specular, Usage::COMPUTE_READ),
             coat: image(&pixel.coat, Usage::COMPUTE_READ),
             sheen: image(&pixel.sheen, Usage::COMPUTE_READ),
+            anisotropy: image(&pixel.anisotropy, Usage::COMPUTE_READ),
             light_textures,
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()

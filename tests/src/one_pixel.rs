@@ -29,6 +29,8 @@ pub struct OnePixel<'a> {
     pub coat: Image,
     /// At `g_sheen`.
     pub sheen: Image,
+    /// At `g_anisotropy`.
+    pub anisotropy: Image,
     /// Of a host that reads them in its own way.
     pub module: Option<Vec<u32>>,
 }
@@ -49,6 +51,7 @@ impl<'a> OnePixel<'a> {
             specular: sampled(engine, float, [0.8_f32, 0.6, 0.4, 0.25]),
             coat: sampled(engine, float, [0.0_f32; 4]),
             sheen: sampled(engine, float, [0.0_f32; 4]),
+            anisotropy: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
     }
@@ -106,6 +109,7 @@ impl<'a> OnePixel<'a> {
                 specular: Some(sampled(&self.specular)),
                 coat: Some(sampled(&self.coat)),
                 sheen: Some(sampled(&self.sheen)),
+                anisotropy: Some(sampled(&self.anisotropy)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),

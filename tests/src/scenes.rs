@@ -2,7 +2,7 @@
 
 use arealight_oracle::material::Material;
 use arealight_scene::{Scene, SceneMaterial, Triangle};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// Of Lambert's lobe alone.
 pub fn lambert(albedo: f32) -> Material {
@@ -37,6 +37,9 @@ pub fn without_textures(material: Material) -> SceneMaterial {
         coat_normal_scale: 1.0,
         sheen_color_texture: None,
         sheen_roughness_texture: None,
+        anisotropy_strength: 0.0,
+        anisotropy_rotation: 0.0,
+        anisotropy_texture: None,
         alpha_cutoff: None,
         double_sided: true,
     }
@@ -51,6 +54,7 @@ pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
             positions: *positions,
             normals: [normal; 3],
             uvs: [Vec2::ZERO; 3],
+            tangents: [Vec4::ZERO; 3],
             material: 0,
             lamp: false,
         }

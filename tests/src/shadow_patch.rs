@@ -21,6 +21,8 @@ pub const SIDE: u32 = 64;
 pub struct ShadowPatch {
     /// The surface's material.
     pub material: Material,
+    /// What `g_anisotropy` has of it.
+    pub anisotropy: [f32; 4],
     /// From the point to the camera.
     pub view: Vec3,
     /// What shines.
@@ -142,8 +144,9 @@ impl ShadowPatch {
             filled(engine, material.dielectric_f0.extend(material.dielectric_f90).to_array()),
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
             filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
+            filled(engine, self.anisotropy),
         ];
-        let [position, normal, base_color, specular, coat, sheen] = images
+        let [position, normal, base_color, specular, coat, sheen, anisotropy] = images
             .each_ref()
             .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
         let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
@@ -181,6 +184,7 @@ impl ShadowPatch {
                 specular: Some(specular),
                 coat: Some(coat),
                 sheen: Some(sheen),
+                anisotropy: Some(anisotropy),
                 radiance: of(&radiance),
                 picks: Some(buffer(&picks)),
                 lobe_horizons,

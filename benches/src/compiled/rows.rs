@@ -142,6 +142,8 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
         quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
         quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
+        quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
+        quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),

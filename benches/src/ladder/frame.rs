@@ -150,7 +150,7 @@ impl<'a> Frame<'a> {
         let has_published =
             matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
-        let [position, normal, base_color, specular, coat, sheen] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
         match binding {
             "table_image" if has_published => self.published.resource(),
             "table_image" => self.engine.table(),
@@ -164,6 +164,7 @@ impl<'a> Frame<'a> {
             "g_specular" => specular,
             "g_coat" => coat,
             "g_sheen" => sheen,
+            "g_anisotropy" => anisotropy,
             "radiance_image" | "glossy_image" => {
                 Resource::StorageImage { view: self.g_buffer.radiance.view() }
             }

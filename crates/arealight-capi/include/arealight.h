@@ -71,13 +71,13 @@
 // What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
 
-// Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
+// Some diffuse lobe is rough: ArealightResources.anisotropy is read.
 #define AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS 262144
 
 // Some surface has sheen: ArealightResources.sheen is read.
 #define AREALIGHT_EFFECT_SHEEN 524288
 
-// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
+// Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
 #define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
 // Form factors to float32's own precision, 1e-6.
@@ -392,8 +392,8 @@ typedef struct ArealightPackedLights {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN, _COUPLED and
-    // _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
+    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED and _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;
@@ -484,6 +484,10 @@ typedef struct ArealightResources {
     struct ArealightImage coat;
     // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
     struct ArealightImage sheen;
+    // Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron,
+    // perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
+    // without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+    struct ArealightImage anisotropy;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -1046,7 +1050,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 288);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 304);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -1056,12 +1060,13 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, base_color) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, coat) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightResources, sheen) == 152);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 200);
-AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 216);
-AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 240);
-AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 264);
+AREALIGHT_ASSERT(offsetof(ArealightResources, anisotropy) == 168);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 200);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 216);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 232);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 256);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 280);
 AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);

@@ -32,11 +32,11 @@ pub const AREALIGHT_EFFECT_COUPLED: u32 = 32768;
 pub const AREALIGHT_EFFECT_COUPLED_BY_ALBEDO: u32 = 65536;
 /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_BY_ALBEDO: u32 = 131072;
-/// Some diffuse lobe is rough: for a module of the host's own, which says how rough. No layout of G-buffers has it.
+/// Some diffuse lobe is rough: ArealightResources.anisotropy is read.
 pub const AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS: u32 = 262144;
 /// Some surface has sheen: ArealightResources.sheen is read.
 pub const AREALIGHT_EFFECT_SHEEN: u32 = 524288;
-/// Some surface's specular lobe has two roughnesses, which a G-buffer of your own holds.
+/// Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
 pub const AREALIGHT_EFFECT_ANISOTROPY: u32 = 1048576;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;

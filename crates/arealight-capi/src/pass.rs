@@ -248,6 +248,7 @@ pub(crate) fn read_resources(
         specular: (resources.specular.view != 0).then(|| sampled(resources.specular)),
         coat: (resources.coat.view != 0).then(|| sampled(resources.coat)),
         sheen: (resources.sheen.view != 0).then(|| sampled(resources.sheen)),
+        anisotropy: (resources.anisotropy.view != 0).then(|| sampled(resources.anisotropy)),
         radiance: stored(resources.radiance),
         glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
         picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),

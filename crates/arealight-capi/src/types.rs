@@ -89,8 +89,8 @@ pub struct ArealightUpload {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN, _COUPLED and
-    /// _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
+    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED and _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,
@@ -270,6 +270,10 @@ pub struct ArealightResources {
     pub coat: ArealightImage,
     /// Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
     pub sheen: ArealightImage,
+    /// Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron,
+    /// perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
+    /// without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+    pub anisotropy: ArealightImage,
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     /// describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,

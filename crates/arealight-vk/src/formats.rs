@@ -19,6 +19,7 @@ use ash::vk::Format;
 ///     specular: Format::UNDEFINED, // not read without Effects::SPECULAR_INPUT
 ///     coat: Format::UNDEFINED, // not read without Effects::COAT
 ///     sheen: Format::UNDEFINED, // not read without Effects::SHEEN
+///     anisotropy: Format::UNDEFINED, // nor this without Effects::ANISOTROPY or DIFFUSE_ROUGHNESS
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
 /// let options = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
@@ -40,6 +41,8 @@ pub struct ShadeFormats {
     pub coat: Format,
     /// Of [`crate::ShadeResources::sheen`], where [`ShadeOptions::reads_sheen`]: with four channels.
     pub sheen: Format,
+    /// Of [`crate::ShadeResources::anisotropy`], where [`ShadeOptions::reads_anisotropy`]: signed or float, with four channels.
+    pub anisotropy: Format,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
 }
@@ -101,7 +104,7 @@ const COAT: &[Format] = &[
     Format::R16G16B16A16_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
 ];
-const COAT_NORMAL: &[Format] = &[
+const DIRECTION: &[Format] = &[
     Format::R8G8B8A8_SNORM,
     Format::R16G16B16A16_SNORM,
     Format::R16G16B16A16_SFLOAT,
@@ -127,7 +130,7 @@ impl ShadeFormats {
             GBufferLayout::Unity => NORMAL_UNITY,
             GBufferLayout::Octahedral => OCTAHEDRAL,
         };
-        let coat = if options.surfaces.contains(Effects::COAT_NORMAL) { COAT_NORMAL } else { COAT };
+        let coat = if options.surfaces.contains(Effects::COAT_NORMAL) { DIRECTION } else { COAT };
         let images = [
             ("position", self.position, position, true),
             ("normal", self.normal, normal, true),
@@ -135,6 +138,7 @@ impl ShadeFormats {
             ("specular", self.specular, COLOR, options.reads_specular()),
             ("coat", self.coat, coat, options.reads_coat()),
             ("sheen", self.sheen, COLOR, options.reads_sheen()),
+            ("anisotropy", self.anisotropy, DIRECTION, options.reads_anisotropy()),
             ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {
@@ -157,6 +161,7 @@ mod tests {
         specular: Format::R8G8B8A8_UNORM,
         coat: Format::R16G16B16A16_SFLOAT,
         sheen: Format::R16G16B16A16_SFLOAT,
+        anisotropy: Format::R16G16B16A16_SFLOAT,
         radiance: Format::R32G32B32A32_SFLOAT,
     };
 

@@ -233,6 +233,7 @@ impl ShadowPass {
             shade.shapes.unwrap_or(shade.lights),
             shade.coat.unwrap_or(shade.base_color),
             shade.sheen.unwrap_or(shade.base_color),
+            shade.anisotropy.unwrap_or(shade.base_color),
             picks,
             resources.shadow,
             resources.radiance.unwrap_or(shade.radiance),

@@ -46,12 +46,11 @@ bitflags::bitflags! {
         /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR; else what a Fresnel term of the view does, as in glTF.
         /// With [`Effects::COAT`].
         const COAT_BY_ALBEDO = 1 << 17;
-        /// Some diffuse lobe is rough, EON instead of Lambert's. No layout of ours has its roughness: a G-buffer of the host's own does.
+        /// Some diffuse lobe is rough, EON instead of Lambert's, so the G-buffer's image of anisotropy is read.
         const DIFFUSE_ROUGHNESS = 1 << 18;
         /// Some surface has sheen, so the G-buffer's image of sheen is read.
         const SHEEN = 1 << 19;
-        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it. No layout of ours has them: a G-buffer of the host's
-        /// own does.
+        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it, so the G-buffer's image of anisotropy is read.
         const ANISOTROPY = 1 << 20;
     }
 }

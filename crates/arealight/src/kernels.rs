@@ -146,6 +146,14 @@ pub const G_SHEEN: Binding = read(
      with Effects::SHEEN, else bind any image",
 );
 
+/// A G-buffer's second roughnesses.
+pub const G_ANISOTROPY: Binding = read(
+    "g_anisotropy",
+    BindingKind::SampledImage,
+    "tangent's place on the octahedron, in [-1, 1], in rg, perceptual roughness along it in b (Effects::ANISOTROPY; 0: \
+     isotropic), roughness of the diffuse lobe in a (Effects::DIFFUSE_ROUGHNESS) (rgba16f); read only with one of these, else bind any image",
+);
+
 /// Lights' textures.
 pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
@@ -216,6 +224,7 @@ pub static SHADE: Kernel = Kernel {
         GLOSSY,
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         PICKS,
         Binding { access: Access::Read, ..TILE_LISTS },
         LOBE_HORIZONS.unused(),
@@ -260,6 +269,7 @@ pub static CLASSIFY: Kernel = Kernel {
         GLOSSY.unused(),
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         PICKS.unused(),
         TILE_LISTS,
         LOBE_HORIZONS,
@@ -329,6 +339,7 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         SHAPES,
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         Binding { access: Access::Read, ..PICKS },
         SHADOW,
         SHADOWED.unused(),
@@ -366,6 +377,7 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
         SHAPES.unused(),
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         PICKS.unused(),
         SHADOW,
         SHADOWED.unused(),
@@ -405,6 +417,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         SHAPES.unused(),
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         PICKS.unused(),
         SHADOW,
         SHADOWED,

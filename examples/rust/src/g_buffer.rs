@@ -34,6 +34,7 @@ impl<'a> GBuffer<'a> {
         radiance: vk::Format::R32G32B32A32_SFLOAT,
         specular: vk::Format::UNDEFINED, // there is none
         sheen: vk::Format::UNDEFINED,
+        anisotropy: vk::Format::UNDEFINED,
         coat: vk::Format::UNDEFINED,
     };
     // doc end

@@ -29,7 +29,10 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             v1: v,
             v2: v,
             flags: 0,
-            reserved: [0; 2],
+            tangent0: 0,
+            tangent1: 0,
+            tangent2: 0,
+            reserved: [0; 3],
         }
     };
     SceneBuffers {
@@ -67,6 +70,9 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             sheen_roughness_texture: GpuMaterial::NO_TEXTURE,
             sheen_color: [0.0; 3],
             sheen_roughness: 0.0,
+            anisotropy_texture: GpuMaterial::NO_TEXTURE,
+            anisotropy_strength: 0.0,
+            anisotropy_direction: [1.0, 0.0],
         }],
         textures: vec![texture],
         texels: texels.to_vec(),

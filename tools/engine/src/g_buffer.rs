@@ -19,6 +19,8 @@ pub struct GBuffer {
     pub coat: Image,
     /// Colour and roughness of sheen.
     pub sheen: Image,
+    /// Tangent, roughness along it, and roughness of the diffuse lobe.
+    pub anisotropy: Image,
     /// Radiance.
     pub radiance: Image,
 }
@@ -48,17 +50,19 @@ impl GBuffer {
             specular: image("specular", full)?,
             coat: image("coat", full)?,
             sheen: image("sheen", full)?,
+            anisotropy: image("anisotropy", full)?,
             radiance: image("radiance", full)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; those of coats and sheen are the last.
-    pub fn surfaces(&self) -> [&Image; 6] {
-        [&self.position, &self.normal, &self.base_color, &self.specular, &self.coat, &self.sheen]
+    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen and anisotropy are the last.
+    pub fn surfaces(&self) -> [&Image; 7] {
+        let Self { position, normal, base_color, specular, coat, sheen, anisotropy, .. } = self;
+        [position, normal, base_color, specular, coat, sheen, anisotropy]
     }
 
     /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 6] {
+    pub fn sampled(&self) -> [Resource; 7] {
         let layout = Usage::COMPUTE_READ.layout;
         self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
     }

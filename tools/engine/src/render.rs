@@ -100,8 +100,9 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let GBuffer { position, normal, base_color, specular, coat, sheen, radiance } = &self.g_buffer;
-        let images = [position, normal, base_color, specular, radiance, coat, sheen].into_iter();
+        let GBuffer { position, normal, base_color, specular, coat, sheen, anisotropy, radiance } =
+            &self.g_buffer;
+        let images = [position, normal, base_color, specular, radiance, coat, sheen, anisotropy].into_iter();
         let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
         let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
         let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
@@ -161,7 +162,7 @@ impl<'a> SceneRenderer<'a> {
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, coat, sheen] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
         let resources = [
             self.engine.table(),
             Resource::buffer(self.light_buffer.handle()),
@@ -176,6 +177,7 @@ impl<'a> SceneRenderer<'a> {
             Resource::StorageImage { view: self.g_buffer.radiance.view() },
             coat,
             sheen,
+            anisotropy,
             // Shadow rays and tiles, which no frame of these has
             Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(self.light_buffer.handle()),
@@ -202,7 +204,7 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let [position, normal, base_color, specular, coat, sheen] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
         let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
         let resources: Vec<_> = buffers
             .into_iter()
@@ -217,6 +219,7 @@ impl<'a> SceneRenderer<'a> {
                 Resource::buffer(self.shape_buffer.handle()),
                 coat,
                 sheen,
+                anisotropy,
             ])
             .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
             .collect();
@@ -317,7 +320,7 @@ impl<'a> SceneRenderer<'a> {
     }
 
     fn shade_resources(&self) -> ShadeResources {
-        let [position, normal, base_color, specular, coat, sheen] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
         ShadeResources {
             table: self.engine.table(),
             lights: Resource::buffer(self.light_buffer.handle()),
@@ -328,6 +331,7 @@ impl<'a> SceneRenderer<'a> {
             specular: Some(specular),
             coat: Some(coat),
             sheen: Some(sheen),
+            anisotropy: Some(anisotropy),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             light_textures: Some(self.engine.light_textures()),
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),

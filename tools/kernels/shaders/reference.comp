@@ -15,10 +15,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define SHAPES_BINDING 10
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
-#define SCENE_BINDING 13
+#define ANISOTROPY_BINDING 13
+#define SCENE_BINDING 14
 #define AREALIGHT_COAT 1
 #define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_SHEEN 1
+#define AREALIGHT_ANISOTROPY 1
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
@@ -100,8 +102,9 @@ struct Lobes {
     vec2 above_diffuse; // its reflectances above the Lambert lobe, at normal and at grazing incidence
     vec3 f0;
     float f90;
-    float alpha;
-    float glossy_probability; // of drawing from the GGX lobe, where not from the coat's
+    vec2 axis;  // of the GGX lobe, of length 1: what its first alpha is along
+    vec2 alpha; // of the GGX lobe, along its axis and across it
+    float glossy_probability; // of drawing from it, where not from the coat's
     CoatLobe coat;
     SheenLobe sheen;
 };
@@ -179,13 +182,23 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
 
 Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
-    float alpha = max(surface.roughness * surface.roughness, AREALIGHT_MIN_ALPHA);
+    vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
+    vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
+    vec2 axis = alpha.x == alpha.y ? vec2(1.0, 0.0) : arealight_surface_axis(frame, surface.anisotropy.tangent);
     float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
-                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, alpha, probability,
-                 load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen));
+                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, axis, alpha,
+                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen));
+}
+
+// A direction of the surface's frame in the frame of its GGX lobe, and back.
+vec3 to_axis(Lobes lobes, vec3 direction) {
+    return vec3(dot(lobes.axis, direction.xy), lobes.axis.x * direction.y - lobes.axis.y * direction.x, direction.z);
+}
+vec3 from_axis(Lobes lobes, vec3 direction) {
+    return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
 // f cos, all lobes.
@@ -195,21 +208,21 @@ vec3 evaluate(Lobes lobes, vec3 light) {
         vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
         diffuse *= 1.0 - mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
     }
-    vec3 base = diffuse + arealight_ggx_evaluate(lobes.view, light, lobes.alpha, lobes.f0, lobes.f90);
+    vec3 base = diffuse + arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha, lobes.f0, lobes.f90);
     if (lobes.sheen.color != vec3(0.0)) {
         vec3 view = vec3(lobes.view.xy, max(lobes.view.z, AREALIGHT_FORMULA_MIN_COS_VIEW));
         base = base * lobes.sheen.base + lobes.sheen.color * sheen_evaluate(view, light, lobes.sheen.roughness);
     }
     CoatLobe coat = lobes.coat;
-    vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, coat.alpha, vec3(1.0), 1.0);
+    vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, vec2(coat.alpha), vec3(1.0), 1.0);
     return mix(base, above, coat.share);
 }
 
 // Zero where no lobe reflects light from there: below the surface, and below its coat.
 float density(Lobes lobes, vec3 light) {
     float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
-    float base = mix(diffuse, arealight_ggx_density(lobes.view, light, lobes.alpha), lobes.glossy_probability);
-    float above = arealight_ggx_density(lobes.coat.view, lobes.coat.to_coat * light, lobes.coat.alpha);
+    float base = mix(diffuse, arealight_ggx_density(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha), lobes.glossy_probability);
+    float above = arealight_ggx_density(lobes.coat.view, lobes.coat.to_coat * light, vec2(lobes.coat.alpha));
     return mix(base, above, lobes.coat.probability);
 }
 
@@ -218,11 +231,11 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     vec2 u = vec2(random_float(random), random_float(random));
     CoatLobe coat = lobes.coat;
     if (choice < coat.probability) {
-        return arealight_ggx_sample(coat.view, coat.alpha, u) * coat.to_coat;
+        return arealight_ggx_sample(coat.view, vec2(coat.alpha), u) * coat.to_coat;
     }
     choice = (choice - coat.probability) / (1.0 - coat.probability);
     if (choice < lobes.glossy_probability) {
-        return arealight_ggx_sample(lobes.view, lobes.alpha, u);
+        return from_axis(lobes, arealight_ggx_sample(to_axis(lobes, lobes.view), lobes.alpha, u));
     }
     float radius = sqrt(u.x);
     float phi = 2.0 * AREALIGHT_PI * u.y;

@@ -7,6 +7,7 @@
 #define BVH_NODES_BINDING SCENE_BINDING
 #include "arealight/surface.glsl"
 #include "bvh.glsl"
+#include "octahedron.glsl"
 #include "srgb.glsl"
 
 struct ArealightGpuTriangle {
@@ -24,8 +25,12 @@ struct ArealightGpuTriangle {
     float u2;
     float v2;
     uint flags;
+    uint tangent0;
+    uint tangent1;
+    uint tangent2;
     uint reserved0;
     uint reserved1;
+    uint reserved2;
 };
 
 struct ArealightGpuMaterial {
@@ -53,6 +58,9 @@ struct ArealightGpuMaterial {
     uint sheen_roughness_texture;
     vec3 sheen_color;
     float sheen_roughness;
+    uint anisotropy_texture;
+    float anisotropy_strength;
+    vec2 anisotropy_direction;
 };
 
 struct ArealightGpuTexture {
@@ -64,6 +72,8 @@ struct ArealightGpuTexture {
 
 const uint NO_TEXTURE = 0xffffffffu;
 const uint TRIANGLE_LAMP = 1u;
+const uint TRIANGLE_TANGENTS = 2u;
+const uint TRIANGLE_MIRRORED = 4u;
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
 const uint TEXTURE_SRGB = 1u;
@@ -96,6 +106,7 @@ struct ScenePoint {
     vec3 emission;
     ArealightCoat coat; // its normal is unit
     ArealightSheen sheen;
+    ArealightAnisotropy anisotropy; // its roughness is 0 where there is none
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -154,21 +165,49 @@ bool masked_out(BvhHit hit) {
     return alpha * material.base_alpha < material.alpha_cutoff;
 }
 
-// The shading normal bent by a tangent-space normal texture; the tangents follow the texture coordinates.
-vec3 bend_normal(ArealightGpuTriangle triangle, uint normal_texture, float scale, vec3 normal, vec2 uv) {
-    if (normal_texture == NO_TEXTURE) {
+// A tangent-space normal's axes at a hit; both zero where the triangle has no tangents.
+struct TangentAxes {
+    vec3 tangent;   // unit, within the surface
+    vec3 bitangent; // where green points
+};
+
+// A unit direction from its place on the octahedron, two numbers of 16 bits.
+vec3 unpack_direction(uint place) {
+    return arealight_normalize_or(from_octahedron(unpackSnorm2x16(place)), vec3(0.0));
+}
+
+TangentAxes tangent_axes(ArealightGpuTriangle triangle, vec2 barycentric, vec3 normal) {
+    if ((triangle.flags & TRIANGLE_TANGENTS) == 0u) {
+        return TangentAxes(vec3(0.0), vec3(0.0));
+    }
+    vec3 smooth_tangent = unpack_direction(triangle.tangent0) * (1.0 - barycentric.x - barycentric.y)
+                        + unpack_direction(triangle.tangent1) * barycentric.x + unpack_direction(triangle.tangent2) * barycentric.y;
+    vec3 tangent = arealight_normalize_or(smooth_tangent - normal * dot(normal, smooth_tangent), vec3(0.0));
+    return TangentAxes(tangent, cross(normal, tangent) * ((triangle.flags & TRIANGLE_MIRRORED) != 0u ? -1.0 : 1.0));
+}
+
+// The shading normal bent by a tangent-space normal texture.
+vec3 bend_normal(TangentAxes axes, uint normal_texture, float scale, vec3 normal, vec2 uv) {
+    if (normal_texture == NO_TEXTURE || axes.tangent == vec3(0.0)) {
         return normal;
     }
-    vec2 d1 = vec2(triangle.u1 - triangle.u0, triangle.v1 - triangle.v0);
-    vec2 d2 = vec2(triangle.u2 - triangle.u0, triangle.v2 - triangle.v0);
-    float area = d1.x * d2.y - d2.x * d1.y;
-    vec3 along_u = ((triangle.p1 - triangle.p0) * d2.y - (triangle.p2 - triangle.p0) * d1.y) * sign(area);
-    vec3 tangent = arealight_normalize_or(along_u - normal * dot(normal, along_u), vec3(0.0));
-    // Rows of a texture run downwards, so green points against v
-    vec3 bitangent = cross(normal, tangent) * (area < 0.0 ? 1.0 : -1.0);
     vec3 bend = sample_texture(normal_texture, uv).xyz * 2.0 - 1.0;
     bend.xy *= scale;
-    return arealight_normalize_or(tangent * bend.x + bitangent * bend.y + normal * bend.z, normal);
+    return arealight_normalize_or(axes.tangent * bend.x + axes.bitangent * bend.y + normal * bend.z, normal);
+}
+
+// KHR_materials_anisotropy: the texture's direction and the factor's rotation, and both strengths.
+ArealightAnisotropy scene_anisotropy(ArealightGpuMaterial material, TangentAxes axes, float roughness, vec2 uv) {
+    vec3 texel = vec3(1.0, 0.5, 1.0);
+    if (material.anisotropy_texture != NO_TEXTURE) {
+        texel = sample_texture(material.anisotropy_texture, uv).rgb;
+    }
+    vec2 direction = texel.rg * 2.0 - 1.0;
+    vec2 turn = material.anisotropy_direction;
+    direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
+    float strength = material.anisotropy_strength * texel.b;
+    vec3 along = axes.tangent * direction.x + axes.bitangent * direction.y;
+    return ArealightAnisotropy(along, strength > 0.0 ? arealight_gltf_anisotropy(roughness, strength) : 0.0);
 }
 
 ScenePoint scene_point(BvhHit hit) {
@@ -185,8 +224,9 @@ ScenePoint scene_point(BvhHit hit) {
     vec3 smooth_normal = triangle.n0 * (1.0 - u - v) + triangle.n1 * u + triangle.n2 * v;
     vec3 normal = arealight_normalize_or(smooth_normal, arealight_normalize_or(face, vec3(0.0, 0.0, 1.0)));
     float side = hit.back ? -1.0 : 1.0;
-    point.normal = side * bend_normal(triangle, material.normal_texture, material.normal_scale, normal, uv);
-    point.coat.normal = side * bend_normal(triangle, material.coat_normal_texture, material.coat_normal_scale, normal, uv);
+    TangentAxes axes = tangent_axes(triangle, hit.barycentric, normal);
+    point.normal = side * bend_normal(axes, material.normal_texture, material.normal_scale, normal, uv);
+    point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, material.coat_normal_scale, normal, uv);
     point.coat.weight = material.coat * sample_texture(material.coat_texture, uv).r;
     point.coat.roughness = material.coat_roughness * sample_texture(material.coat_roughness_texture, uv).g;
     point.sheen.color = material.sheen_color * sample_texture(material.sheen_color_texture, uv).rgb;
@@ -196,6 +236,7 @@ ScenePoint scene_point(BvhHit hit) {
     point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb;
     point.metalness = material.metalness * metallic_roughness.b;
     point.roughness = material.roughness * metallic_roughness.g;
+    point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);
     point.dielectric_f0 = material.dielectric_f0;
     point.dielectric_f90 = material.dielectric_f90;
     point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;

@@ -15,6 +15,7 @@ layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D out_specular;
 layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D out_radiance;
 layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D out_sheen;
+layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D out_anisotropy;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
@@ -40,13 +41,6 @@ void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit
     }
 }
 
-// A unit direction's place in [-1, 1]^2 on an unfolded octahedron. Source: Cigolle et al. 2014.
-vec2 to_octahedron(vec3 direction) {
-    vec2 place = direction.xy / (abs(direction.x) + abs(direction.y) + abs(direction.z));
-    vec2 sides = vec2(place.x >= 0.0 ? 1.0 : -1.0, place.y >= 0.0 ? 1.0 : -1.0);
-    return direction.z >= 0.0 ? place : (1.0 - abs(place.yx)) * sides;
-}
-
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(out_radiance);
@@ -67,6 +61,7 @@ void main() {
         imageStore(out_radiance, pixel, vec4(constants.background, 0.0));
         imageStore(out_coat, pixel, vec4(0.0));
         imageStore(out_sheen, pixel, vec4(0.0));
+        imageStore(out_anisotropy, pixel, vec4(0.0));
         return;
     }
     ScenePoint point = scene_point(hit);
@@ -78,4 +73,5 @@ void main() {
     imageStore(out_radiance, pixel, vec4(point.emission * below_coat, 1.0));
     imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
     imageStore(out_sheen, pixel, vec4(point.sheen.color, point.sheen.roughness));
+    imageStore(out_anisotropy, pixel, vec4(to_octahedron(point.anisotropy.tangent), point.anisotropy.roughness, 0.0));
 }

@@ -130,15 +130,25 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
-    /// [`GpuTriangle::LAMP`], or zero.
+    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`].
     pub flags: u32,
+    /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a sign.
+    pub tangent0: u32,
+    /// Tangent at the second vertex.
+    pub tangent1: u32,
+    /// Tangent at the third vertex.
+    pub tangent2: u32,
     /// Zero.
-    pub reserved: [u32; 2],
+    pub reserved: [u32; 3],
 }
 
 impl GpuTriangle {
     /// It is what a light of the scene looks like, and blocks no light.
     pub const LAMP: u32 = 1;
+    /// It has tangents.
+    pub const TANGENTS: u32 = 2;
+    /// Its bitangents are `cross(tangent, normal)`, not `cross(normal, tangent)`.
+    pub const MIRRORED: u32 = 4;
 }
 
 /// A material of the visibility kernel. Texture indices are [`GpuMaterial::NO_TEXTURE`] where there is none.
@@ -193,6 +203,12 @@ pub struct GpuMaterial {
     pub sheen_color: [f32; 3],
     /// Perceptual roughness factor of the sheen.
     pub sheen_roughness: f32,
+    /// Linear texture: a direction in tangent space in red and green, blue times `anisotropy_strength`.
+    pub anisotropy_texture: u32,
+    /// `anisotropyStrength` of `KHR_materials_anisotropy`.
+    pub anisotropy_strength: f32,
+    /// Unit direction in tangent space that the texture's is rotated by.
+    pub anisotropy_direction: [f32; 2],
 }
 
 impl VisibilityConstants {

@@ -2,8 +2,8 @@
 //! facts back out of the SPIR-V.
 
 use arealight::kernels::{
-    Access, Binding, BindingKind, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SHEEN, G_SPECULAR, Kernel,
-    LIGHT_TEXTURES, LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
+    Access, Binding, BindingKind, G_ANISOTROPY, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SHEEN,
+    G_SPECULAR, Kernel, LIGHT_TEXTURES, LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
 };
 
 const fn read(name: &'static str, kind: BindingKind, content: &'static str) -> Binding {
@@ -102,6 +102,7 @@ pub static REFERENCE: Kernel = Kernel {
         SHAPES,
         G_COAT,
         G_SHEEN,
+        G_ANISOTROPY,
         SCENE[0],
         SCENE[1],
         SCENE[2],
@@ -140,6 +141,7 @@ pub static VISIBILITY: Kernel = Kernel {
         write("out_radiance", BindingKind::StorageImage, Access::Write, "emission seen directly (rgba32f)"),
         write("out_coat", BindingKind::StorageImage, Access::Write, "g_coat, with normals (rgba32f)"),
         write("out_sheen", BindingKind::StorageImage, Access::Write, "g_sheen (rgba32f)"),
+        write("out_anisotropy", BindingKind::StorageImage, Access::Write, "g_anisotropy (rgba32f)"),
     ],
     constants: &[],
 };

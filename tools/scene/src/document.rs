@@ -5,8 +5,9 @@ use gltf::json;
 use std::path::{Path, PathBuf};
 
 /// Extensions that a file may require.
-const SUPPORTED_EXTENSIONS: [&str; 6] = [
+const SUPPORTED_EXTENSIONS: [&str; 7] = [
     "EXT_lights_area",
+    "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",

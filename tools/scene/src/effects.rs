@@ -20,36 +20,42 @@ impl std::fmt::Display for RequiredEffect {
     }
 }
 
+/// Whether a material needs an effect.
+type Needs = fn(&SceneMaterial) -> bool;
+
+/// What materials may need, and how it is known.
+const OF_MATERIALS: [(Effects, Needs); 8] = [
+    (Effects::DIFFUSE, has_diffuse_lobe),
+    (Effects::GLOSSY, has_glossy_lobe),
+    (Effects::SPECULAR_INPUT, has_specular_input),
+    (Effects::COAT, has_coat),
+    (Effects::COAT_NORMAL, has_coat_normal),
+    (Effects::COUPLED, is_coupled),
+    (Effects::SHEEN, has_sheen),
+    (Effects::ANISOTROPY, has_anisotropy),
+];
+
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
 /// [`Scene::effects`] is their union.
 pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
-    // Only materials that something has been made of are in a scene
-    let material = |effect, needs: fn(&SceneMaterial) -> bool| {
-        let first = scene.materials.iter().find(|m| needs(m))?;
-        Some(RequiredEffect { effect, reason: format!("material '{}'", first.name) })
-    };
-    let light = |effect| {
+    let reason = |effect| {
+        // Only materials that something has been made of are in a scene
+        if let Some((_, needs)) = OF_MATERIALS.into_iter().find(|(of_materials, _)| *of_materials == effect) {
+            let first = scene.materials.iter().find(|material| needs(material))?;
+            return Some(format!("material '{}'", first.name));
+        }
         let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
-        Some(RequiredEffect { effect, reason: format!("light '{}'", first.name) })
+        Some(format!("light '{}'", first.name))
     };
-    let required = [
-        material(Effects::DIFFUSE, has_diffuse_lobe),
-        material(Effects::GLOSSY, has_glossy_lobe),
-        light(Effects::TWO_SIDED),
-        material(Effects::SPECULAR_INPUT, has_specular_input),
-        light(Effects::POLYGON),
-        light(Effects::TEXTURED),
-        light(Effects::ELLIPSE),
-        light(Effects::SPHERE),
-        light(Effects::TUBE),
-        light(Effects::MESH),
-        light(Effects::TEXTURED_ELLIPSE),
-        material(Effects::COAT, has_coat),
-        material(Effects::COAT_NORMAL, has_coat_normal),
-        material(Effects::COUPLED, is_coupled),
-        material(Effects::SHEEN, has_sheen),
-    ];
-    required.into_iter().flatten().collect()
+    let effects = Effects::all().iter();
+    effects.filter_map(|effect| Some(RequiredEffect { effect, reason: reason(effect)? })).collect()
+}
+
+impl SceneMaterial {
+    /// What shading it needs.
+    pub fn effects(&self) -> Effects {
+        OF_MATERIALS.into_iter().filter(|(_, needs)| needs(self)).map(|(effect, _)| effect).collect()
+    }
 }
 
 impl Scene {
@@ -87,6 +93,10 @@ fn has_coat(material: &SceneMaterial) -> bool {
 
 fn has_sheen(material: &SceneMaterial) -> bool {
     material.material.sheen_color != Vec3::ZERO
+}
+
+fn has_anisotropy(material: &SceneMaterial) -> bool {
+    material.anisotropy_strength > 0.0 && has_glossy_lobe(material)
 }
 
 /// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.

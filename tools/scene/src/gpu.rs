@@ -125,6 +125,7 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
             ("coat_normal_texture", material.coat_normal_texture),
             ("sheen_color_texture", material.sheen_color_texture),
             ("sheen_roughness_texture", material.sheen_roughness_texture),
+            ("anisotropy_texture", material.anisotropy_texture),
         ];
         for (name, texture) in textures {
             let Some(texture) = texture else { continue };
@@ -145,6 +146,9 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
     let [p0, p1, p2] = triangle.positions.map(|p| (p - origin).as_vec3().to_array());
     let [n0, n1, n2] = triangle.normals.map(|n| n.to_array());
     let [uv0, uv1, uv2] = triangle.uvs;
+    let has_tangents = triangle.tangents.iter().all(|tangent| tangent.truncate() != Vec3::ZERO);
+    let [tangent0, tangent1, tangent2] = triangle.tangents.map(|tangent| pack_direction(tangent.truncate()));
+    let flag = |on: bool, flag: u32| if on { flag } else { 0 };
     GpuTriangle {
         p0,
         material: triangle.material,
@@ -159,9 +163,27 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
         n2,
         u2: uv2.x,
         v2: uv2.y,
-        flags: if triangle.lamp { GpuTriangle::LAMP } else { 0 },
-        reserved: [0; 2],
+        flags: flag(triangle.lamp, GpuTriangle::LAMP)
+            | flag(has_tangents, GpuTriangle::TANGENTS)
+            | flag(triangle.tangents[0].w < 0.0, GpuTriangle::MIRRORED),
+        tangent0,
+        tangent1,
+        tangent2,
+        reserved: [0; 3],
     }
+}
+
+/// A unit direction's place on the unfolded octahedron, as two numbers of 16 bits with a sign (`unpackSnorm2x16`). Source: Cigolle et al. 2014.
+fn pack_direction(direction: Vec3) -> u32 {
+    let size = direction.abs().element_sum();
+    if size.is_nan() || size <= 0.0 {
+        return 0;
+    }
+    let [x, y, z] = (direction / size).to_array();
+    let sign = |value: f32| if value >= 0.0 { 1.0 } else { -1.0 };
+    let place = if z >= 0.0 { [x, y] } else { [(1.0 - y.abs()) * sign(x), (1.0 - x.abs()) * sign(y)] };
+    let [low, high] = place.map(|value| u32::from((value.clamp(-1.0, 1.0) * 32767.0).round() as i16 as u16));
+    low | high << 16
 }
 
 fn pack_material(material: &SceneMaterial) -> GpuMaterial {
@@ -193,6 +215,9 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         sheen_roughness_texture: texture(material.sheen_roughness_texture),
         sheen_color: material.material.sheen_color.to_array(),
         sheen_roughness: material.material.sheen_roughness,
+        anisotropy_texture: texture(material.anisotropy_texture),
+        anisotropy_strength: material.anisotropy_strength,
+        anisotropy_direction: [material.anisotropy_rotation.cos(), material.anisotropy_rotation.sin()],
     }
 }
 

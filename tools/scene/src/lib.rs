@@ -44,6 +44,7 @@ pub mod rays;
 mod scene;
 mod shape_lights;
 mod shown;
+mod tangents;
 mod uv_map;
 
 pub use area_lights::LUMENS_PER_WATT;

@@ -34,6 +34,7 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.coat_normal_texture,
         material.sheen_color_texture,
         material.sheen_roughness_texture,
+        material.anisotropy_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
@@ -75,6 +76,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         sheen_color: Vec3::from_array(sheen_color),
         sheen_roughness,
     };
+    let anisotropy = reader.anisotropy(&source)?;
+    let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
     let emission = reader.emission(&source);
     // Textures
     let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), "baseColorTexture", true)?;
@@ -91,6 +94,7 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), "sheenColorTexture", true)?;
     let sheen_roughness_texture =
         reader.texture(sheen.roughness_texture.as_ref(), "sheenRoughnessTexture", false)?;
+    let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), "anisotropyTexture", false)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -116,6 +120,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         coat_normal_scale,
         sheen_color_texture,
         sheen_roughness_texture,
+        anisotropy_strength,
+        anisotropy_rotation: anisotropy.rotation,
+        anisotropy_texture,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -182,6 +189,21 @@ impl Reader<'_> {
         Ok(if sheen.color_factor == [0.0; 3] { Sheen::default() } else { sheen })
     }
 
+    /// The anisotropy; nothing of it where its strength is zero.
+    fn anisotropy(&mut self, source: &json::Material) -> Result<Anisotropy, SceneError> {
+        let extension = source.extensions.as_ref().and_then(|e| e.others.get(ANISOTROPY));
+        let Some(extension) = extension else { return Ok(Anisotropy::default()) };
+        let read = Anisotropy::deserialize(extension);
+        let field = format!("{}: {ANISOTROPY}", self.place);
+        let anisotropy = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+        if !anisotropy.rotation.is_finite() {
+            self.warn(format!("anisotropyRotation {} is not finite: 0 is used", anisotropy.rotation));
+        }
+        let rotation = if anisotropy.rotation.is_finite() { anisotropy.rotation } else { 0.0 };
+        let anisotropy = Anisotropy { rotation, ..anisotropy };
+        Ok(if anisotropy.strength == 0.0 { Anisotropy::default() } else { anisotropy })
+    }
+
     /// emissiveFactor times `KHR_materials_emissive_strength`.
     fn emission(&mut self, source: &json::Material) -> Vec3 {
         let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
@@ -232,16 +254,36 @@ impl Reader<'_> {
             .extensions
             .iter()
             .flat_map(|e| e.others.keys())
-            .filter(|name| ![CLEARCOAT, SHEEN].contains(&name.as_str()));
+            .filter(|name| ![ANISOTROPY, CLEARCOAT, SHEEN].contains(&name.as_str()));
         for extension in unknown {
             self.warn(format!("{extension} is not supported: ignored"));
         }
     }
 }
 
+/// Whether a material is shaded by its surface's tangents.
+pub(crate) fn has_tangents(material: &json::Material) -> bool {
+    let extension = |name: &str| material.extensions.as_ref().and_then(|e| e.others.get(name));
+    let coat_is_bent = extension(CLEARCOAT).is_some_and(|coat| coat.get("clearcoatNormalTexture").is_some());
+    material.normal_texture.is_some() || coat_is_bent || extension(ANISOTROPY).is_some()
+}
+
+const ANISOTROPY: &str = "KHR_materials_anisotropy";
 const TRANSFORM: &str = "KHR_texture_transform";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
 const SHEEN: &str = "KHR_materials_sheen";
+
+/// `KHR_materials_anisotropy`.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Anisotropy {
+    #[serde(rename = "anisotropyStrength")]
+    strength: f32,
+    #[serde(rename = "anisotropyRotation")]
+    rotation: f32,
+    #[serde(rename = "anisotropyTexture")]
+    texture: Option<json::texture::Info>,
+}
 
 /// `KHR_materials_sheen`.
 #[derive(Default, Deserialize)]

@@ -2,8 +2,8 @@
 
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
-use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor};
-use glam::{DMat3, DVec3, Vec2, Vec3};
+use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor, materials, tangents};
+use glam::{DMat3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
@@ -26,6 +26,8 @@ pub(crate) struct Primitive {
     uvs: Vec<Vec2>,
     /// Indices of vertices that exist.
     triangles: Vec<[u32; 3]>,
+    /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says what they are.
+    tangents: Vec<[Vec4; 3]>,
 }
 
 /// A primitive's shape in the world.
@@ -135,15 +137,33 @@ fn read(
     if left_over > 0 {
         loader.warn(field.as_str(), format!("{left_over} corners are no whole triangle: left out"));
     }
+    let normals: Vec<Vec3> = normals.into_iter().map(Vec3::from_array).collect();
+    let uvs: Vec<Vec2> = uvs.into_iter().map(Vec2::from_array).collect();
+    let material = source.material.map(|m| m.value());
+    // Tangents
+    let mut tangents = None;
+    if material
+        .and_then(|index| loader.document.root.materials.get(index))
+        .is_some_and(materials::has_tangents)
+    {
+        let uvs = coordinates.is_some().then_some(&uvs[..]);
+        let vertices =
+            tangents::Vertices { positions: &positions, normals: &normals, uvs, triangles: &triangles };
+        tangents = tangents::read(loader, source, &field, &vertices)?;
+        if tangents.is_none() {
+            loader.warn(field.as_str(), "has neither TANGENT nor TEXCOORD_0: its tangents are not known");
+        }
+    }
     Ok(Some(Primitive {
         field,
         mesh_name,
-        material: source.material.map(|m| m.value()),
+        material,
         has_uvs: coordinates.is_some(),
         positions,
-        normals: normals.into_iter().map(Vec3::from_array).collect(),
-        uvs: uvs.into_iter().map(Vec2::from_array).collect(),
+        normals,
+        uvs,
         triangles,
+        tangents: tangents.unwrap_or_default(),
     }))
 }
 
@@ -194,14 +214,23 @@ pub(crate) fn place<'a>(
     let normals: Vec<Vec3> =
         primitive.normals.iter().map(|n| (cofactors * n.as_dvec3()).normalize_or_zero().as_vec3()).collect();
     let mut kept = Vec::with_capacity(primitive.triangles.len());
-    for &[a, b, c] in &primitive.triangles {
+    for (number, &[a, b, c]) in primitive.triangles.iter().enumerate() {
         let corners = if mirrored { [a, c, b] } else { [a, b, c] }.map(|i| i as usize);
+        let [d, e, f] = primitive.tangents.get(number).map_or([Vec4::ZERO; 3], |of_corners| {
+            of_corners.map(|tangent| {
+                let direction = node.world.matrix3 * tangent.truncate().as_dvec3();
+                let side = if mirrored { -tangent.w } else { tangent.w };
+                direction.normalize_or_zero().as_vec3().extend(side)
+            })
+        });
+        let tangents = if mirrored { [d, f, e] } else { [d, e, f] };
         let [p, q, r] = corners.map(|i| positions[i]);
         // A triangle without area cannot be seen; one without normals is flat
         let Some(flat) = (q - p).cross(r - p).try_normalize() else { continue };
         let normals = corners.map(|i| if normals[i] == Vec3::ZERO { flat.as_vec3() } else { normals[i] });
         let uvs = corners.map(|i| primitive.uvs[i]);
-        loader.scene.triangles.push(Triangle { positions: [p, q, r], normals, uvs, material, lamp: false });
+        let positions = [p, q, r];
+        loader.scene.triangles.push(Triangle { positions, normals, uvs, tangents, material, lamp: false });
         kept.push(corners.map(|i| i as u32));
     }
     let largest =

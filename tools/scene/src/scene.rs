@@ -4,7 +4,7 @@ use crate::{Camera, SceneError, SceneLightTexture};
 use arealight::Light;
 pub use arealight::texture_part::Wrap;
 use arealight_oracle::material::Material;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use std::path::Path;
 
 /// The most triangles a scene may have; a file beyond is refused.
@@ -47,6 +47,9 @@ pub struct Triangle {
     pub normals: [Vec3; 3],
     /// Texture coordinates; zero where the file has none. (0, 0) is the image's upper left corner.
     pub uvs: [Vec2; 3],
+    /// Unit tangents, the direction of growing u, in xyz, and in w, 1 or -1, the side of the bitangent, `cross(normal, tangent) w`. Zero where no
+    /// material needs them, or nothing in the file says what they are.
+    pub tangents: [Vec4; 3],
     /// Index into [`Scene::materials`].
     pub material: u32,
     /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is where the lamp is, nor another's.
@@ -86,6 +89,12 @@ pub struct SceneMaterial {
     pub sheen_color_texture: Option<u32>,
     /// Of a linear texture: alpha times the sheen's roughness.
     pub sheen_roughness_texture: Option<u32>,
+    /// How much longer highlights are along the direction of anisotropy, in [0, 1]: `anisotropyStrength`. 0 for none.
+    pub anisotropy_strength: f32,
+    /// That direction's angle from the tangent towards the bitangent, radians.
+    pub anisotropy_rotation: f32,
+    /// Of a linear texture: a direction in tangent space in red and green, blue times the strength.
+    pub anisotropy_texture: Option<u32>,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

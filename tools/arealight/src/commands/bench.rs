@@ -3,6 +3,7 @@
 mod compare;
 mod compiled;
 mod ladder;
+mod materials;
 mod page;
 mod shadows;
 mod stability;
@@ -34,6 +35,7 @@ pub struct Arguments {
 enum Bench {
     Compare(compare::Arguments),
     Compiled(compiled::Arguments),
+    Materials(materials::Arguments),
     Shadows(shadows::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
@@ -44,6 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => ladder::run(&arguments.ladder),
         Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
+        Some(Bench::Materials(arguments)) => materials::run(arguments),
         Some(Bench::Shadows(arguments)) => shadows::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),

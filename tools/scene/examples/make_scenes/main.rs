@@ -6,6 +6,7 @@ mod demo;
 mod files;
 mod hundred_lamps;
 mod lamps;
+mod materials;
 mod room;
 mod screen;
 mod shadows;

@@ -23,6 +23,8 @@ mod files;
 mod hundred_lamps;
 #[path = "../../examples/make_scenes/lamps.rs"]
 mod lamps;
+#[path = "../../examples/make_scenes/materials.rs"]
+mod material_balls;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;
 #[path = "../../examples/make_scenes/screen.rs"]

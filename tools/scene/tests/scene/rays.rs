@@ -3,7 +3,7 @@
 use arealight_scene::rays::{self, Hit};
 use arealight_scene::{Bounds, Scene, SceneBuffers, Triangle};
 use arealight_tool_kernels::gpu::GpuMaterial;
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use proptest::prelude::*;
 
 fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
@@ -13,6 +13,7 @@ fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
         positions: *positions,
         normals: [Vec3::Z; 3],
         uvs: [Vec2::ZERO; 3],
+        tangents: [Vec4::ZERO; 3],
         material: 0,
         lamp: false,
     };

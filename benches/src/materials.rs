@@ -1,0 +1,250 @@
+//! What each material of a scene errs: its picture beside the Monte Carlo reference, by material.
+
+use crate::shadow_levels::pictures::Pictures;
+use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightTable};
+use arealight_engine::host::{Host, Usage};
+use arealight_engine::{Engine, EngineError, Reference, SceneRenderer};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_vk::TableFormat;
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+use std::fmt::Write as _;
+
+/// What to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// Of the pictures, in pixels.
+    pub size: [u32; 2],
+    /// Samples a pixel of each of the two references.
+    pub samples: u32,
+}
+
+impl Default for Options {
+    /// A minute on two processors.
+    fn default() -> Self {
+        Self { size: [320, 180], samples: 512 }
+    }
+}
+
+/// A material in a picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialResult {
+    /// Its name in the scene.
+    pub name: String,
+    /// The effects that it needs, beside both lobes.
+    pub effects: String,
+    /// How many pixels show it.
+    pub pixels: usize,
+    /// Mean radiance over that of the reference, of all channels.
+    pub ratio: f64,
+    /// Root of the mean squared difference, over the reference's mean. The references' noise is not in it: squares are products of the differences from two
+    /// of them. 0 where noise makes the mean negative.
+    pub error: f64,
+    /// The same of the reference itself, of one of the two: its noise.
+    pub noise: f64,
+}
+
+/// What a run found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MaterialErrors {
+    /// The device.
+    pub device: String,
+    /// [`Options::size`].
+    pub size: [u32; 2],
+    /// [`Options::samples`].
+    pub samples: u32,
+    /// Each material that the camera sees, in the order of the scene's.
+    pub materials: Vec<MaterialResult>,
+}
+
+/// Why there is no result.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaterialsError {
+    /// The device, or a scene that does not fit it.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// A scene without a camera and without anything to frame.
+    #[error("{scene}: nothing to see")]
+    NoCamera {
+        /// Its name.
+        scene: String,
+    },
+}
+
+/// Two independent pictures of the truth, and ours.
+struct Pixels {
+    ours: Vec<DVec3>,
+    truths: [Vec<DVec3>; 2],
+    /// Index into the scene's materials; none where nothing or a lamp is seen.
+    materials: Vec<Option<usize>>,
+}
+
+/// Renders a scene without shadows, at the exact level, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
+/// [`Options::samples`].
+///
+/// # Errors
+/// [`MaterialsError`].
+pub fn run(
+    host: &Host,
+    table: &LightTable,
+    scene: &Scene,
+    options: &Options,
+    progress: &dyn Fn(u64),
+) -> Result<MaterialErrors, MaterialsError> {
+    let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
+    engine.load_scene_textures(scene, 1024)?;
+    let pixels = render(&engine, scene, options, progress)?;
+    let materials = scene.materials.iter().enumerate();
+    Ok(MaterialErrors {
+        device: host.device_name(),
+        size: options.size,
+        samples: options.samples,
+        materials: materials
+            .filter_map(|(index, material)| {
+                let effects = (material.effects() & Effects::SURFACES)
+                    - (Effects::DIFFUSE | Effects::GLOSSY | Effects::COUPLED | Effects::SPECULAR_INPUT);
+                let found = pixels.errors(index)?;
+                Some(MaterialResult { name: material.name.clone(), effects: effects.to_string(), ..found })
+            })
+            .collect(),
+    })
+}
+
+fn render(
+    engine: &Engine,
+    scene: &Scene,
+    options: &Options,
+    progress: &dyn Fn(u64),
+) -> Result<Pixels, MaterialsError> {
+    let [width, height] = options.size.map(f64::from);
+    let camera = scene
+        .camera(None, width / height)
+        .ok_or_else(|| MaterialsError::NoCamera { scene: scene.name.clone() })?;
+    let buffers = SceneBuffers::new(scene, camera.position).map_err(EngineError::from)?;
+    let constants = buffers.constants(&camera, options.size, Vec3::ZERO);
+    let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
+    let mut pictures = Pictures::new(renderer)?;
+    // What each pixel shows
+    let positions: Vec<[f32; 4]> =
+        pictures.renderer.g_buffer().position.download(Usage::COMPUTE_READ).map_err(EngineError::from)?;
+    let material = |position: &[f32; 4]| {
+        let triangle = buffers.triangles.get((position[3] as usize).checked_sub(1)?)?;
+        (triangle.flags & arealight_tool_kernels::gpu::GpuTriangle::LAMP == 0)
+            .then_some(triangle.material as usize)
+    };
+    let materials = positions.iter().map(material).collect();
+    // Ours, and the truth
+    let surfaces = scene.effects() & Effects::SURFACES;
+    pictures.begin()?;
+    pictures.renderer.shade_as(ShadeOptions { surfaces, ..ShadeOptions::default() })?;
+    let ours = pictures.radiance()?;
+    let mut truth = |seed| {
+        let mut told = 0;
+        pictures.begin()?;
+        let reference = Reference { samples: options.samples, seed, ..Reference::default() };
+        pictures.renderer.reference(reference, |done| {
+            progress(u64::from(done - told));
+            told = done;
+        })?;
+        pictures.radiance()
+    };
+    Ok(Pixels { ours, truths: [truth(1)?, truth(2)?], materials })
+}
+
+impl Pixels {
+    /// Of a material; none where no pixel shows it, or it reflects nothing.
+    fn errors(&self, material: usize) -> Option<MaterialResult> {
+        let mut pixels = 0;
+        let [mut mean, mut truth, mut square, mut noise] = [0.0; 4];
+        for (index, shown) in self.materials.iter().enumerate() {
+            if *shown != Some(material) {
+                continue;
+            }
+            let (ours, [first, second]) =
+                (self.ours[index], self.truths.each_ref().map(|truth| truth[index]));
+            pixels += 1;
+            mean += ours.element_sum();
+            truth += 0.5 * (first + second).element_sum();
+            square += (ours - first).dot(ours - second);
+            noise += 0.5 * (first - second).length_squared();
+        }
+        let count = 3.0 * f64::from(pixels);
+        let reference = truth / count;
+        (reference > 0.0).then(|| MaterialResult {
+            name: String::new(),
+            effects: String::new(),
+            pixels: pixels as usize,
+            ratio: mean / truth,
+            error: (square / count).max(0.0).sqrt() / reference,
+            noise: (noise / count).sqrt() / reference,
+        })
+    }
+}
+
+impl MaterialErrors {
+    /// The largest error of any material.
+    pub fn largest(&self) -> f64 {
+        self.materials.iter().map(|material| material.error).fold(0.0, f64::max)
+    }
+
+    /// The table.
+    pub fn to_text(&self) -> String {
+        let mut text = format!("{}: {} samples a pixel, two references\n\n", self.device, self.samples);
+        text += "material              pixels  mean / reference  RMSE / mean  reference's noise\n";
+        for MaterialResult { name, pixels, ratio, error, noise, .. } in &self.materials {
+            let (error, noise) = (100.0 * error, 100.0 * noise);
+            let _ = writeln!(text, "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {noise:15.2} %");
+        }
+        text
+    }
+
+    /// The same as Markdown, with the command that repeats it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        let mut text = format!(
+            "By `{command}` on {}: the exact level beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
+            self.device
+        );
+        text += "| material | effects | mean over reference | RMSE over mean |\n|---|---|---|---|\n";
+        for MaterialResult { name, effects, ratio, error, .. } in &self.materials {
+            let _ = writeln!(text, "| {name} | {effects} | {ratio:.4} | {:.2} % |", 100.0 * error);
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A picture of one material, with noise that the two references do not share.
+    fn pixels(off_by: f64) -> Pixels {
+        let noise = |seed: usize| {
+            (0..4096).map(|i| DVec3::splat(1.0 + if (i * seed) % 2 == 0 { 0.5 } else { -0.5 })).collect()
+        };
+        let truths = [
+            noise(1),
+            (0..4096).map(|i| DVec3::splat(1.0 + if (i / 2) % 2 == 0 { 0.5 } else { -0.5 })).collect(),
+        ];
+        let mut materials = vec![Some(3); 4096];
+        materials.push(None);
+        let mut pixels = Pixels { ours: vec![DVec3::splat(1.0 + off_by); 4096], truths, materials };
+        pixels.ours.push(DVec3::splat(100.0));
+        for truth in &mut pixels.truths {
+            truth.push(DVec3::ZERO);
+        }
+        pixels
+    }
+
+    #[test]
+    fn noise_is_no_error_and_an_error_shows_below_it() {
+        let right = pixels(0.0).errors(3).unwrap();
+        assert!(right.error < 1e-6 && (right.ratio - 1.0).abs() < 1e-9, "{right:?}");
+        assert!((right.noise - 0.5).abs() < 1e-9, "{right:?}");
+        let wrong = pixels(0.05).errors(3).unwrap();
+        assert!((wrong.error - 0.05).abs() < 1e-9 && (wrong.ratio - 1.05).abs() < 1e-9, "{wrong:?}");
+        assert_eq!(wrong.pixels, 4096);
+        assert!(pixels(0.0).errors(2).is_none(), "no pixel shows it");
+    }
+}
