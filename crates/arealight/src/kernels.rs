@@ -246,7 +246,7 @@ pub static SHADE: Kernel = Kernel {
 };
 
 /// How many of the first bindings of [`SHADE`] whole frames use.
-pub const FRAME_BINDINGS: usize = 14;
+pub const FRAME_BINDINGS: usize = 15;
 
 /// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
 /// [`crate::gpu::ShadeConstants`].

@@ -66,9 +66,8 @@ fn bent_sweep(bend: Vec3, weight: f32) -> Scene {
         material.material.dielectric_f90 = 0.0;
     };
     scene.materials.iter_mut().for_each(coat);
-    // Triangles without texture coordinates have no tangent: those of their plane
     for triangle in &mut scene.triangles {
-        triangle.uvs = triangle.positions.map(|p| glam::DVec2::new(p.x, p.z).as_vec2());
+        triangle.tangents = [Vec3::X.extend(1.0); 3];
     }
     scene
 }

@@ -24,6 +24,7 @@ mod host_shadows;
 mod light_textures;
 mod lobe_horizons;
 mod manifest;
+mod material_frames;
 mod meshes;
 mod modules;
 mod output;

@@ -114,7 +114,7 @@ fn a_pruned_module_binds_what_its_frames_use() {
     assert_eq!(bound(shade_specialization(options, lights)), of_frames);
     // Tiles have their lists, too; a frame of quads without shadows has no more than quads need
     let of_tiles = bound(shade_tiles_specialization(options, lights, TileClass::Any));
-    assert_eq!(of_tiles, [of_frames.as_slice(), &[14]].concat());
+    assert_eq!(of_tiles, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32]].concat());
     let quads = LightSummary { effects: Effects::empty(), ..lights };
     assert_eq!(bound(shade_specialization(ShadeOptions::default(), quads)), [0, 1, 2, 3, 4, 5, 7]);
 }

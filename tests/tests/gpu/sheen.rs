@@ -1,10 +1,9 @@
-//! Sheen on the GPU: against the float64 twin, against none, in its image of a G-buffer, and under tiles.
+//! Sheen on the GPU: against the float64 twin, against none, and in its image of a G-buffer.
 
-use arealight::plan::{GBufferLayout, ShadeOptions, TileOptions};
-use arealight::{Effects, Horizon, Light, LightShape, Quality};
+use arealight::plan::{GBufferLayout, ShadeOptions};
+use arealight::{Effects, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Material, Sheen, Surface};
-use arealight_tests::frame::{scene, with_renderer};
 use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
 use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
 use arealight_tests::{Random, TestEngine, point, rounding};
@@ -184,61 +183,4 @@ fn every_layout_has_its_sheen_in_an_image_of_its_own() {
     let found = shade(GBufferLayout::Arealight, Effects::SHEEN, texel);
     // Radiance of 3 and three lobes
     assert!((found - expected).abs().max_element() < 2e-5, "{found} and {expected}");
-}
-
-#[test]
-fn a_frame_of_sheen_is_the_same_with_tiles() {
-    const SIZE: [u32; 2] = [61, 37];
-    let Some(engine) = TestEngine::new() else { return };
-    let mut scene = scene("sheen.glb");
-    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
-    let center = scene.bounds.center();
-    let mut lights = scene.lights.clone();
-    // Low lights that stand on the floor and across it, which lobes that lean below the surface see
-    for (index, height) in [-0.5, 0.0, 0.3, 1.0].into_iter().enumerate() {
-        let at = center.with_y(height) + DVec3::X * (3.0 * index as f64 - 4.5);
-        let corner = |(x, y): (f64, f64)| at + DVec3::X * x + DVec3::Y * y;
-        lights.push(Light {
-            name: format!("low {index}"),
-            shape: LightShape::Polygon(
-                [(-0.4, -0.4), (0.4, -0.4), (0.4, 0.4), (-0.4, 0.4)].map(corner).to_vec(),
-            ),
-            radiance: Vec3::ONE,
-            two_sided: true,
-            ..Light::default()
-        });
-    }
-    for (horizon, cull_threshold) in [(Horizon::Cosine, 0.0), (Horizon::Both, 0.0), (Horizon::Cosine, 0.01)] {
-        // With and without a glossy lobe, whose horizon tiles know of
-        for surfaces in [scene.effects(), scene.effects() - Effects::GLOSSY] {
-            let quality = Quality { horizon, ..Quality::default() };
-            let plain = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
-                renderer.shade(surfaces, quality).unwrap();
-                renderer.radiance().unwrap()
-            });
-            let (tiled, listed) = with_renderer(&engine, &scene, &lights, SIZE, |renderer| {
-                let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
-                let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
-                let view = renderer.tiled(options, tiles).unwrap();
-                renderer.shade_tiled(&view).unwrap();
-                let counts = view.counts(lights.len()).unwrap();
-                (renderer.radiance().unwrap(), counts.lights)
-            });
-            let different = |a: &[Vec4], b: &[Vec4]| {
-                // A rounding of each light's form factor, of radiances of 24 and 1
-                let apart = |(a, b): &(&Vec4, &Vec4)| {
-                    (**a - **b).abs().max_element()
-                        > f32::EPSILON * a.max_element() + 6e-5 + cull_threshold * a.max_element()
-                };
-                a.iter().zip(b).filter(apart).count()
-            };
-            assert_eq!(different(&plain, &tiled), 0, "{horizon:?}, {cull_threshold}, {surfaces}");
-            // The twin: without the first light pictures differ
-            let fewer = with_renderer(&engine, &scene, &lights[1..], SIZE, |renderer| {
-                renderer.shade(surfaces, quality).unwrap();
-                renderer.radiance().unwrap()
-            });
-            assert!(listed > 0 && different(&plain, &fewer) > 100, "{horizon:?}");
-        }
-    }
 }

@@ -39,6 +39,9 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
         loader.warn(primitive.field.clone(), text);
+    } else if !primitive.has_tangents && material.anisotropy_strength > 0.0 {
+        let text = "has neither TANGENT nor TEXCOORD_0: its anisotropy has some direction";
+        loader.warn(primitive.field.clone(), text);
     }
     Ok(index)
 }

@@ -19,6 +19,8 @@ pub(crate) struct Primitive {
     pub material: Option<usize>,
     /// Whether it has texture coordinates of its own.
     pub has_uvs: bool,
+    /// Whether it has tangents: its own, or by texture coordinates.
+    pub has_tangents: bool,
     positions: Vec<[f32; 3]>,
     /// As many as positions; zero where there is none.
     normals: Vec<Vec3>,
@@ -150,15 +152,13 @@ fn read(
         let vertices =
             tangents::Vertices { positions: &positions, normals: &normals, uvs, triangles: &triangles };
         tangents = tangents::read(loader, source, &field, &vertices)?;
-        if tangents.is_none() {
-            loader.warn(field.as_str(), "has neither TANGENT nor TEXCOORD_0: its tangents are not known");
-        }
     }
     Ok(Some(Primitive {
         field,
         mesh_name,
         material,
         has_uvs: coordinates.is_some(),
+        has_tangents: tangents.is_some(),
         positions,
         normals,
         uvs,

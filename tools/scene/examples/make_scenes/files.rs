@@ -2,7 +2,7 @@
 
 use crate::hundred_lamps::Surface;
 use crate::shadows::Floor;
-use crate::{clock, coats, demo, hundred_lamps, lamps, materials, room, screen, shadows, sheen, sweep};
+use crate::{clock, coats, demo, hundred_lamps, lamps, material_balls, room, screen, shadows, sheen, sweep};
 
 /// Each file's name and bytes.
 pub fn files() -> [(&'static str, Vec<u8>); 13] {
@@ -15,7 +15,7 @@ pub fn files() -> [(&'static str, Vec<u8>); 13] {
         ("clock.glb", clock::glb()),
         ("coats.glb", coats::glb()),
         ("sheen.glb", sheen::glb()),
-        ("materials.glb", materials::glb()),
+        ("materials.glb", material_balls::glb()),
         ("shadows.glb", shadows::glb(Floor::Matt)),
         ("shadows-glossy.glb", shadows::glb(Floor::Glossy)),
         ("hundred-lamps.glb", hundred_lamps::glb(Surface::Satin)),

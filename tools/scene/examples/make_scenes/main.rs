@@ -6,7 +6,7 @@ mod demo;
 mod files;
 mod hundred_lamps;
 mod lamps;
-mod materials;
+mod material_balls;
 mod room;
 mod screen;
 mod shadows;

@@ -8,6 +8,7 @@ mod materials;
 mod own_scenes;
 mod rays;
 mod shape_lights;
+mod tangents;
 mod textured_lights;
 
 // The program that writes the project's scenes, whose writer and shapes serve the tests too
@@ -23,7 +24,7 @@ mod files;
 mod hundred_lamps;
 #[path = "../../examples/make_scenes/lamps.rs"]
 mod lamps;
-#[path = "../../examples/make_scenes/materials.rs"]
+#[path = "../../examples/make_scenes/material_balls.rs"]
 mod material_balls;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;

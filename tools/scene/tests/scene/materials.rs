@@ -326,3 +326,36 @@ fn materials_that_nothing_is_made_of_do_not_count() {
     let scene = load(writer);
     assert_eq!((scene.materials.len(), warnings(&scene).len()), (1, 0));
 }
+
+fn with_anisotropy(values: &Value) -> Value {
+    json!({ "extensions": { "KHR_materials_anisotropy": values } })
+}
+
+#[test]
+fn anisotropy_is_read_with_its_texture() {
+    let scene = load(textured(with_anisotropy(&json!({
+        "anisotropyStrength": 0.75, "anisotropyRotation": 0.5, "anisotropyTexture": { "index": 0 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    assert_eq!((read.anisotropy_strength, read.anisotropy_rotation), (0.75, 0.5));
+    let texture = read.anisotropy_texture.unwrap();
+    assert!(!scene.textures[texture as usize].srgb);
+    assert!(scene.effects().contains(Effects::ANISOTROPY));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!((gpu.anisotropy_texture, gpu.anisotropy_strength), (texture, 0.75));
+    assert_eq!(gpu.anisotropy_direction, [0.5_f32.cos(), 0.5_f32.sin()]);
+    // None without the extension, nor of its texture where the strength is zero, which is the default
+    for without in [json!({}), with_anisotropy(&json!({ "anisotropyTexture": { "index": 0 } }))] {
+        let scene = load(textured(without));
+        assert_eq!((scene.materials[0].anisotropy_texture, scene.textures.len()), (None, 0));
+        assert!(!scene.effects().contains(Effects::ANISOTROPY));
+    }
+}
+
+#[test]
+fn what_is_wrong_with_anisotropy_is_named() {
+    let text = error(textured(with_anisotropy(&json!({ "anisotropyStrength": "much" }))));
+    assert!(text.contains("material '#0': KHR_materials_anisotropy"), "{text}");
+    let scene = load(textured(with_anisotropy(&json!({ "anisotropyStrength": 2.0 }))));
+    assert_eq!(warnings(&scene), ["material '#0': anisotropyStrength [2.0] is not in [0, 1]: clamped"]);
+}

@@ -1,7 +1,9 @@
 //! The scenes of `scenes/` are what the program makes, load without a warning, and hold what they promise.
 
 use crate::hundred_lamps::Surface;
-use crate::{clock, coats, files, hundred_lamps, lamps, room, screen, shadows, sheen, sweep, test_card};
+use crate::{
+    clock, coats, files, hundred_lamps, lamps, material_balls, room, screen, shadows, sheen, sweep, test_card,
+};
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
@@ -81,6 +83,20 @@ fn sheen_lies_on_every_cloth_and_beside_each_is_the_same_without() {
         assert_eq!(textures, (name == "striped", name == "brushed"));
     }
     assert_eq!(scene.effects(), LOBES | Effects::SHEEN);
+}
+
+#[test]
+fn there_is_a_ball_of_every_material() {
+    let scene = load("materials.glb");
+    for ball in material_balls::rows(0).into_iter().flatten() {
+        let found = scene.materials.iter().find(|material| material.name == ball.name).unwrap();
+        assert_eq!(found.material.base_color.to_array(), ball.color, "{}", ball.name);
+        assert_eq!((found.material.metalness, found.material.roughness), (ball.metalness, ball.roughness));
+    }
+    let spun = scene.materials.iter().find(|material| material.name == "spun").unwrap();
+    assert!(spun.anisotropy_texture.is_some());
+    let layers = Effects::COAT | Effects::SHEEN | Effects::ANISOTROPY;
+    assert_eq!(scene.effects(), LOBES | layers);
 }
 
 /// Whether an outline turns both ways.
