@@ -220,13 +220,11 @@ mod tests {
 
     /// A picture of one material, with noise that the two references do not share.
     fn pixels(off_by: f64) -> Pixels {
-        let noise = |seed: usize| {
-            (0..4096).map(|i| DVec3::splat(1.0 + if (i * seed) % 2 == 0 { 0.5 } else { -0.5 })).collect()
+        let noisy = |every: usize| {
+            let noise = |i: usize| if (i / every).is_multiple_of(2) { 0.5 } else { -0.5 };
+            (0..4096).map(|i| DVec3::splat(1.0 + noise(i))).collect()
         };
-        let truths = [
-            noise(1),
-            (0..4096).map(|i| DVec3::splat(1.0 + if (i / 2) % 2 == 0 { 0.5 } else { -0.5 })).collect(),
-        ];
+        let truths = [noisy(1), noisy(2)];
         let mut materials = vec![Some(3); 4096];
         materials.push(None);
         let mut pixels = Pixels { ours: vec![DVec3::splat(1.0 + off_by); 4096], truths, materials };

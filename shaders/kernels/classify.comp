@@ -37,7 +37,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "tiles.glsl"
 #include "position.glsl"
 
-const bool HAS_DIFFUSE = (EFFECTS & EFFECT_DIFFUSE) != 0u;
+const bool HAS_DIFFUSE = AREALIGHT_HAS_DIFFUSE;
 const bool HAS_GLOSSY = (EFFECTS & EFFECT_GLOSSY) != 0u;
 // Whether the horizon of the glossy lobe can be known: the table's cells do not hold for the formula.
 const bool HAS_HORIZON = HAS_GLOSSY && !AREALIGHT_USES_FORMULA;

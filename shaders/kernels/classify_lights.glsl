@@ -121,7 +121,7 @@ vec2 contribution(uint index) {
         heights.coat.y = tile_coat_spread() >= 0.0 ? tile_heights(tile_planes(COAT_MIRROR_PAIR), light).y : 0.0;
         vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
         // NaN is neither little nor much
-        bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && tile_has_lobe() && tile_has_coat_horizon();
+        bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && !AREALIGHT_RESCATTERS && tile_has_lobe() && tile_has_coat_horizon();
         bool is_sure = light.is_bounded && is_known && bounds.x >= 0.0 && bounds.y < TILE_FAR;
         sent = is_sure ? bounds : sent;
     }

@@ -184,7 +184,8 @@ void reduce_pixels(ivec2 pixel) {
 
     if (HAS_DIFFUSE || CULL != 0u) {
         vec3 albedo = HAS_DIFFUSE ? surface.diffuse_albedo : vec3(0.0);
-        float is_diffuse = albedo != vec3(0.0) ? 1.0 : 0.0;
+        bool is_rescattered = AREALIGHT_RESCATTERS && surface.f0 != vec3(0.0);
+        float is_diffuse = albedo != vec3(0.0) || is_rescattered ? 1.0 : 0.0;
         vec2 diffuse = vec2(-min(albedo.r, min(albedo.g, albedo.b)), arealight_max_component(albedo)) * part;
         tile_reduce(REFLECTION_PAIR, has_surface ? vec4(is_diffuse, reflection) : vec4(-TILE_FAR),
                     has_surface ? vec4(diffuse, 0.0, 0.0) : vec4(-TILE_FAR));

@@ -38,6 +38,8 @@ const uint EFFECT_DIFFUSE_ROUGHNESS = 262144u;
 const uint EFFECT_SHEEN = 524288u;
 // Some surface's specular lobe is stretched along a tangent.
 const uint EFFECT_ANISOTROPY = 1048576u;
+// What specular lobes' facets reflect more than once is added.
+const uint EFFECT_MULTIPLE_SCATTERING = 2097152u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -67,6 +69,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_COAT_NORMAL ((EFFECTS & EFFECT_COAT_NORMAL) != 0u)
 #define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)
 #define AREALIGHT_ANISOTROPY ((EFFECTS & EFFECT_ANISOTROPY) != 0u)
+#define AREALIGHT_MULTIPLE_SCATTERING ((EFFECTS & EFFECT_MULTIPLE_SCATTERING) != 0u)
 #define AREALIGHT_SHEEN ((EFFECTS & EFFECT_SHEEN) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS

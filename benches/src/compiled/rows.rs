@@ -143,6 +143,7 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
         quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
         quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
+        quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),

@@ -80,6 +80,9 @@
 // Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
 #define AREALIGHT_EFFECT_ANISOTROPY 1048576
 
+// What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
+#define AREALIGHT_EFFECT_MULTIPLE_SCATTERING 2097152
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -393,7 +396,7 @@ typedef struct ArealightPackedLights {
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED and _COUPLED_BY_ALBEDO. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO and _MULTIPLE_SCATTERING. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;

@@ -38,6 +38,8 @@ pub const AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS: u32 = 262144;
 pub const AREALIGHT_EFFECT_SHEEN: u32 = 524288;
 /// Some surface's specular lobe has two roughnesses: ArealightResources.anisotropy is read.
 pub const AREALIGHT_EFFECT_ANISOTROPY: u32 = 1048576;
+/// What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
+pub const AREALIGHT_EFFECT_MULTIPLE_SCATTERING: u32 = 2097152;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

@@ -398,6 +398,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS, Effects::DIFFUSE_ROUGHNESS),
             (c::AREALIGHT_EFFECT_ANISOTROPY, Effects::ANISOTROPY),
             (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
+            (c::AREALIGHT_EFFECT_MULTIPLE_SCATTERING, Effects::MULTIPLE_SCATTERING),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -66,8 +66,8 @@ impl Ggx {
         self.visible_normal_density(view, half) / (4.0 * view.dot(half)).max(f64::MIN_POSITIVE)
     }
 
-    /// Draws a half vector from the visible normals (Heitz 2018).
-    fn sample_visible_normal(self, view: DVec3, u: [f64; 2]) -> DVec3 {
+    /// Draws a half vector from the visible normals (Heitz 2018); `view` may be below the surface.
+    pub(crate) fn sample_visible_normal(self, view: DVec3, u: [f64; 2]) -> DVec3 {
         let a = self.alpha;
         // Stretch the view so that the surface has alpha = 1
         let stretched = DVec3::new(a * view.x, a * view.y, view.z).normalize_or(DVec3::Z);

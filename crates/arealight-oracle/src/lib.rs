@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`frame`] | the surface frame of a normal and a view |
 //! | [`formula`] | the lobes by formulas, in the place of the table |
+//! | [`microsurface`] | random walks on a GGX microsurface: light that facets reflect more than once |
 //! | [`material`] | metallic-roughness materials, and the surface that they make |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
 //! | [`sheen`] | the Charlie lobe of sheen, and the transformed cosine that stands for it |
@@ -29,6 +30,7 @@ pub mod frame;
 pub mod ggx;
 pub mod ltsd;
 pub mod material;
+pub mod microsurface;
 pub mod polygon;
 pub mod shading;
 pub mod sheen;

@@ -62,6 +62,10 @@ pub struct Surface {
     pub coat: Option<Coat>,
     /// What lies above both lobes and below the coat.
     pub sheen: Option<Sheen>,
+    /// Whether light that the GGX lobe's facets reflect more than once is added
+    /// ([`Effects::MULTIPLE_SCATTERING`](arealight::Effects::MULTIPLE_SCATTERING)); else it is lost. [`crate::microsurface`] has the truth, which
+    /// [`crate::shading::truth`] leaves out.
+    pub multiple_scattering: bool,
     /// Where the GGX lobe is stretched along a tangent; [`Surface::alpha`] is that across it then.
     pub anisotropy: Option<Anisotropy>,
 }
@@ -94,6 +98,7 @@ impl Default for Surface {
             f90: 0.0,
             alpha: 1.0,
             diffuse_roughness: 0.0,
+            multiple_scattering: false,
             interface: None,
             coat: None,
             sheen: None,
@@ -174,6 +179,7 @@ impl Material {
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
             diffuse_roughness: 0.0,
+            multiple_scattering: false,
             interface: None,
             coat: (weight > 0.0).then(|| Coat {
                 weight,

@@ -6,6 +6,7 @@ mod coat;
 mod diffuse;
 pub mod footprint;
 pub mod poses;
+mod rescattered;
 mod shapes;
 mod sheen;
 mod shown;
@@ -26,6 +27,7 @@ use arealight::table::share_above_surface;
 use arealight::{Fresnel, Horizon, Light, LightFault, LightTable, Lobes, Quality, TableSample};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
+use rescattered::Rescattered;
 use sheen::{sheen_truth, with_sheen};
 use std::convert::Infallible;
 use std::f64::consts::PI;
@@ -335,7 +337,7 @@ pub fn ltc_on(
     // Integrate the cosine, or the diffuse lobe's transformed one
     let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
-        _ if surface.diffuse_albedo == DVec3::ZERO => DVec3::ZERO,
+        _ if albedo == DVec3::ZERO => DVec3::ZERO,
         None if inverse == DMat3::IDENTITY => DVec3::splat(emitted(form_factor(&vertices), light.two_sided)),
         Some(image) if inverse == DMat3::IDENTITY => {
             let signed = transformed_image_integral(&inverse, &vertices, image, false);
@@ -397,8 +399,9 @@ fn glossy_part(
 ) -> DVec3 {
     let sample = surface_sample(quality, table, surface, frame);
     let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
-    let f0_part = surface.f0 * sample.albedo;
-    let schlick_part = (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
+    let scale = Rescattered::new(surface, &sample).scale;
+    let f0_part = scale * surface.f0 * sample.albedo;
+    let schlick_part = scale * (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
     // Below two layers there is one lobe, as in options.glsl
     let two_layers = surface.coat.is_some() && surface.sheen.is_some();
     match quality.fresnel {

@@ -4,6 +4,7 @@
 #include "arealight/lobes/anisotropy.glsl"
 #include "arealight/lobes/coat.glsl"
 #include "arealight/lobes/diffuse.glsl"
+#include "arealight/lobes/rescattered.glsl"
 #include "arealight/lobes/sheen.glsl"
 #include "arealight/lobes/specular.glsl"
 
@@ -80,6 +81,12 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
             vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
+        }
+        if (AREALIGHT_RESCATTERS) {
+            ArealightRescattered more = arealight_rescattered(table, surface.f0, surface.f90);
+            point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= more.scale;
+            point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= more.scale;
+            point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo += more.diffuse;
         }
     }
     if (AREALIGHT_HAS_SHEEN) {

@@ -19,6 +19,11 @@
 #ifndef AREALIGHT_COUPLED_BY_ALBEDO
 #define AREALIGHT_COUPLED_BY_ALBEDO 0
 #endif
+// What the specular lobe's facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF. Metals have a diffuse lobe
+// then.
+#ifndef AREALIGHT_MULTIPLE_SCATTERING
+#define AREALIGHT_MULTIPLE_SCATTERING 0
+#endif
 // The diffuse lobe is EON, ArealightSurface.diffuse_roughness.
 #ifndef AREALIGHT_DIFFUSE_ROUGHNESS
 #define AREALIGHT_DIFFUSE_ROUGHNESS 0
@@ -110,7 +115,8 @@
 #define AREALIGHT_TUBES 0
 #endif
 
-const bool AREALIGHT_HAS_DIFFUSE = bool(AREALIGHT_DIFFUSE);
+const bool AREALIGHT_RESCATTERS = bool(AREALIGHT_MULTIPLE_SCATTERING);
+const bool AREALIGHT_HAS_DIFFUSE = AREALIGHT_RESCATTERS ? true : bool(AREALIGHT_DIFFUSE);
 const bool AREALIGHT_HAS_SPECULAR = bool(AREALIGHT_SPECULAR);
 const bool AREALIGHT_COUPLES_DIFFUSE = bool(AREALIGHT_COUPLED);
 const bool AREALIGHT_COUPLES_BY_ALBEDO = bool(AREALIGHT_COUPLED_BY_ALBEDO);

@@ -101,7 +101,12 @@ fn flags_have_the_same_bits_in_glsl() {
     assert_constants(FOOTPRINT_GLSL, "AREALIGHT_NO_", &[("IMAGE", GpuLight::NO_TEXTURE.into())]);
     let material =
         [("DOUBLE_SIDED", GpuMaterial::DOUBLE_SIDED.into()), ("ALPHA_MASK", GpuMaterial::ALPHA_MASK.into())];
-    assert_constants(SCENE_GLSL, "TRIANGLE_", &[("LAMP", GpuTriangle::LAMP.into())]);
+    let triangle = [
+        ("LAMP", GpuTriangle::LAMP.into()),
+        ("TANGENTS", GpuTriangle::TANGENTS.into()),
+        ("MIRRORED", GpuTriangle::MIRRORED.into()),
+    ];
+    assert_constants(SCENE_GLSL, "TRIANGLE_", &triangle);
     assert_constants(SCENE_GLSL, "MATERIAL_", &material);
     assert_constants(SCENE_GLSL, "NO_TEXTURE", &[("", GpuMaterial::NO_TEXTURE.into())]);
     let texture = [

@@ -36,6 +36,7 @@ mod prune;
 mod pyramid;
 mod quad_path;
 mod recorder;
+mod rescattered;
 mod resize;
 mod shading;
 mod shadow_history;

@@ -151,6 +151,7 @@ pub(crate) fn layer_effects(surface: &Surface) -> Effects {
         effects.set(Effects::COAT_NORMAL, coat.normal.is_some());
         effects.set(Effects::COAT_BY_ALBEDO, coat.by_albedo);
     }
+    effects.set(Effects::MULTIPLE_SCATTERING, surface.multiple_scattering);
     effects.set(Effects::SHEEN, surface.sheen.is_some());
     effects.set(Effects::ANISOTROPY, surface.anisotropy.is_some());
     effects

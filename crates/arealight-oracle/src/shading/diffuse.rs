@@ -1,5 +1,6 @@
 //! A diffuse lobe, Lambert's or rough, below an interface, in float64: the truth, and its fitted lobe.
 
+use super::rescattered::Rescattered;
 use super::{hemisphere_albedo, surface_sample};
 use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
@@ -35,6 +36,20 @@ pub(super) fn albedo_part(surface: &Surface, frame: &SurfaceFrame, settings: &Se
 
 /// The diffuse lobe of a surface, the twin of `arealight_surface_diffuse_lobe`: M⁻¹ of the surface frame, and the albedo, a channel.
 pub(super) fn lobe(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+) -> (DMat3, DVec3) {
+    let (inverse, albedo) = lobe_below_interface(quality, table, surface, frame);
+    if !surface.multiple_scattering {
+        return (inverse, albedo);
+    }
+    let sample = surface_sample(quality, table, surface, frame);
+    (inverse, albedo + Rescattered::new(surface, &sample).diffuse)
+}
+
+fn lobe_below_interface(
     quality: Quality,
     table: &LightTable,
     surface: &Surface,

@@ -8,6 +8,7 @@ mod ellipse;
 mod footprints;
 mod ggx;
 mod ltsd;
+mod microsurface;
 mod polygon;
 mod pyramid;
 mod shading;

@@ -109,6 +109,7 @@ impl CaseMaterial {
                 f90: 1.0,
                 alpha: alpha.y,
                 diffuse_roughness: 0.0,
+                multiple_scattering: false,
                 interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
                 sheen: *sheen,
