@@ -15,7 +15,7 @@ const COLORS: [[u8; 3]; 6] =
 pub const SCALE: [f64; 2] = [1e-4, 1.0];
 
 /// The colour of a difference over the mean.
-fn color(difference: f64) -> [u8; 3] {
+pub fn color(difference: f64) -> [u8; 3] {
     // What is no number is as bad as can be
     let difference = if difference.is_nan() { SCALE[1] } else { difference.clamp(SCALE[0], SCALE[1]) };
     let [low, high] = SCALE.map(f64::log10);
@@ -51,14 +51,19 @@ pub fn picture(size: [u32; 2], pixels: impl Iterator<Item = DVec3>) -> Result<St
 /// # Errors
 /// As [`picture`].
 pub fn differences(size: [u32; 2], found: &[DVec3], reference: &[DVec3]) -> Result<String, Failure> {
+    address(size, difference_colors(found, reference).as_flattened())
+}
+
+/// The colour of each pixel's difference from a reference over its mean.
+pub fn difference_colors(found: &[DVec3], reference: &[DVec3]) -> Vec<[u8; 3]> {
     let mean =
         reference.iter().map(|pixel| pixel.element_sum()).sum::<f64>() / (3 * reference.len().max(1)) as f64;
     let pairs = found.iter().zip(reference);
-    let bytes = pairs.flat_map(|(found, expected)| {
+    let color_of = |(found, expected): (&DVec3, &DVec3)| {
         let off = (*found - *expected).abs();
         color(if off.is_nan() { f64::NAN } else { off.max_element() / mean })
-    });
-    address(size, &bytes.collect::<Vec<u8>>())
+    };
+    pairs.map(color_of).collect()
 }
 
 fn address(size: [u32; 2], rgb: &[u8]) -> Result<String, Failure> {
