@@ -64,7 +64,8 @@ pub fn error_cost(bench: &Ladder, compiled: &Compiled, family: &str) -> Result<S
     }
 
     let (width, height) = (960.0, 430.0);
-    let mut drawing = Drawing::new(width, height, "Error against cost of our quality levels and of what engines ship");
+    let mut drawing =
+        Drawing::new(width, height, "Error against cost of our quality levels and of what engines ship");
     drawing.bar("paper", [0.0, 0.0], [width, height]);
     let left = format!("{family}: compiled cost, clipless = 1 (inverse throughput; no time)");
     panel(&mut drawing, [80.0, 40.0, 478.0, 362.0], &by_compiler, &left);
@@ -72,7 +73,8 @@ pub fn error_cost(bench: &Ladder, compiled: &Compiled, family: &str) -> Result<S
     let right = format!("{device}, on a CPU: time, clipless = 1");
     panel(&mut drawing, [560.0, 40.0, 950.0, 362.0], &by_clock, &right);
     drawing.upwards([14.0, 200.0], "error: RMSE over the mean of the truth");
-    let key = [("ours", "Arealight's quality levels"), ("theirs", "what engines ship; ° with the published table")];
+    let key =
+        [("ours", "Arealight's quality levels"), ("theirs", "what engines ship; ° with the published table")];
     for (index, (class, text)) in key.into_iter().enumerate() {
         let x = 86.0 + 220.0 * index as f64;
         drawing.dot(class, [x, 18.0], text);

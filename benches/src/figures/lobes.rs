@@ -23,8 +23,10 @@ fn place([x, y]: [f64; 2], direction: DVec3, length: f64) -> [f64; 2] {
 /// A density from horizon to horizon, its largest value drawn `radius` long.
 fn curve(at: [f64; 2], radius: f64, density: impl Fn(DVec3) -> f64) -> Vec<[f64; 2]> {
     let angle = |step: usize| PI * step as f64 / STEPS as f64 - FRAC_PI_2;
-    let values: Vec<(DVec3, f64)> =
-        (0..=STEPS).map(|step| direction(angle(step))).map(|direction| (direction, density(direction))).collect();
+    let values: Vec<(DVec3, f64)> = (0..=STEPS)
+        .map(|step| direction(angle(step)))
+        .map(|direction| (direction, density(direction)))
+        .collect();
     let most = values.iter().fold(f64::MIN_POSITIVE, |most, (_, value)| most.max(*value));
     values.into_iter().map(|(direction, value)| place(at, direction, radius * value / most)).collect()
 }
@@ -35,7 +37,8 @@ fn lobe(inverse: DMat3) -> TransformedDistribution {
 }
 
 fn identity() -> TransformedDistribution {
-    TransformedDistribution::new(Original::ClampedCosine, DMat3::IDENTITY).expect("the identity is invertible")
+    TransformedDistribution::new(Original::ClampedCosine, DMat3::IDENTITY)
+        .expect("the identity is invertible")
 }
 
 /// The clamped cosine, and what matrices of the table make of it beside the true lobes.
@@ -47,7 +50,8 @@ pub fn cosine_to_lobe(table: &LightTable) -> String {
     for (index, (roughness, degrees)) in panels.into_iter().enumerate() {
         let at = [118.0 + 204.0 * index as f64, 185.0];
         let view = direction(-degrees.to_radians());
-        let distribution = if index == 0 { identity() } else { lobe(table.lookup(roughness, view.z).inverse) };
+        let distribution =
+            if index == 0 { identity() } else { lobe(table.lookup(roughness, view.z).inverse) };
         drawing.line("faint", [at[0] - 95.0, at[1]], [at[0] + 95.0, at[1]]);
         drawing.line("hidden", at, [at[0], at[1] - radius - 8.0]);
 
@@ -85,10 +89,11 @@ pub fn table_axes(table: &LightTable) -> String {
     for (row, node) in nodes.into_iter().enumerate() {
         // The axis is sqrt(1 - cos theta)
         let cos_view: f64 = 1.0 - node * node;
-        let view = direction(-cos_view.acos());
+        let angle = (1.0 - cos_view * cos_view).max(0.0).sqrt().atan2(cos_view);
+        let view = direction(-angle);
         let y = top + cell[1] * (row as f64 + 1.0) - 8.0;
         drawing.text("axis", "end", [left - 16.0, y - 18.0], &format!("{node}"));
-        let degrees = format!("{:.0}°", cos_view.acos().to_degrees());
+        let degrees = format!("{:.0}°", angle.to_degrees());
         drawing.text("axis", "end", [left - 16.0, y - 4.0], &degrees);
         for (column, roughness) in roughnesses.into_iter().enumerate() {
             let at = [left + cell[0] * (column as f64 + 0.5), y];

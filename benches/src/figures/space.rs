@@ -65,7 +65,8 @@ fn on_sphere(vertices: &[DVec3]) -> Vec<DVec3> {
 
 /// The quad light of the drawings, in the surface frame, seen in front; the view is on the other side.
 fn light() -> [DVec3; 4] {
-    let (center, u, v) = (DVec3::new(-1.3, 0.1, 0.95), DVec3::new(0.2, 0.5, 0.0), DVec3::new(0.12, -0.03, 0.5));
+    let (center, u, v) =
+        (DVec3::new(-1.3, 0.1, 0.95), DVec3::new(0.2, 0.5, 0.0), DVec3::new(0.12, -0.03, 0.5));
     [center - u - v, center - u + v, center + u + v, center + u - v]
 }
 
@@ -134,7 +135,11 @@ pub fn clip() -> String {
         ("crosses the horizon", "four edges; a part shines from below".to_owned()),
         (
             "clipped",
-            format!("{} edges, one of them on the horizon: form factor {:.3}", above.len(), form_factor(&below).abs()),
+            format!(
+                "{} edges, one of them on the horizon: form factor {:.3}",
+                above.len(),
+                form_factor(&below).abs()
+            ),
         ),
     ];
     for ((view, vertices), (title, text)) in views.into_iter().zip([below.to_vec(), above]).zip(titles) {
@@ -155,7 +160,8 @@ pub fn edge_integral() -> String {
     drawing.bar("paper", [0.0, 0.0], [width, height]);
     let view = View { center: [220.0, 240.0], radius: 180.0 };
     view.dome(&mut drawing);
-    let ends = [DVec3::new(-0.15, -0.75, 0.5), DVec3::new(-0.9, 0.05, 0.45)].map(|end| end.normalize_or(DVec3::Z));
+    let ends =
+        [DVec3::new(-0.15, -0.75, 0.5), DVec3::new(-0.9, 0.05, 0.45)].map(|end| end.normalize_or(DVec3::Z));
     let arc: Vec<DVec3> =
         (0..=24).map(|step| ends[0].lerp(ends[1], f64::from(step) / 24.0).normalize_or(DVec3::Z)).collect();
     let wedge: Vec<DVec3> = std::iter::once(DVec3::ZERO).chain(arc.iter().copied()).collect();

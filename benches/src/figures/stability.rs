@@ -30,7 +30,8 @@ pub fn stability(found: &Stability) -> String {
     let (width, line, top, left, right) = (900.0, 18.0, 44.0, 150.0, 700.0);
     let height = top + line * families.len() as f64 + 46.0;
     let bottom = height - 42.0;
-    let mut drawing = Drawing::new(width, height, "The largest error of each family of hard cases, by method");
+    let mut drawing =
+        Drawing::new(width, height, "The largest error of each family of hard cases, by method");
     drawing.bar("paper", [0.0, 0.0], [width, height]);
     let x = Axis::over([LEAST, 1.0].into_iter(), left, right);
     for tick in x.ticks() {

@@ -111,7 +111,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
     match format {
-        Format::Strip => found.iter().try_for_each(|found| strip::draw(found, crop).save_png(&arguments.output))?,
+        Format::Strip => {
+            found.iter().try_for_each(|found| strip::draw(found, crop).save_png(&arguments.output))?
+        }
         Format::Film => {
             film::save(&found, crop, file).map_err(|error| Failure::output(&arguments.output, error))?;
         }

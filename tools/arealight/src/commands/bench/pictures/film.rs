@@ -70,8 +70,7 @@ pub fn save(pictures: &[Pictures], crop: [u32; 4], file: impl Write) -> Result<(
     let unchanged = COLORS as u8;
     let mut before: Vec<u8> = vec![];
     for pixels in pixels.chunks(4 * usize::from(width) * usize::from(height)) {
-        let indices: Vec<u8> =
-            pixels.chunks_exact(4).map(|rgba| quantizer.index_of(rgba) as u8).collect();
+        let indices: Vec<u8> = pixels.chunks_exact(4).map(|rgba| quantizer.index_of(rgba) as u8).collect();
         let previous = before.iter().map(Some).chain(std::iter::repeat(None));
         let changed: Vec<u8> = indices
             .iter()

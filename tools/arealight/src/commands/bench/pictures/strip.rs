@@ -57,10 +57,8 @@ fn caption(picture: &Picture) -> String {
 pub fn draw(pictures: &Pictures, crop: [u32; 4]) -> Canvas {
     let [.., width, height] = crop;
     let panel = |caption: String, pixels| Panel { caption, pixels };
-    let truth = panel(
-        format!("truth, {} samples", pictures.samples),
-        shown(pictures, &pictures.reference, crop),
-    );
+    let truth =
+        panel(format!("truth, {} samples", pictures.samples), shown(pictures, &pictures.reference, crop));
     let methods: Vec<(Panel, Panel)> = pictures
         .shown
         .iter()
@@ -72,9 +70,9 @@ pub fn draw(pictures: &Pictures, crop: [u32; 4]) -> Canvas {
     let below = width > WIDE * height;
     let places = if below { stacked(methods, truth) } else { columns(methods, truth) };
 
-    let (columns, rows) = places.iter().fold((0, 0), |(columns, rows), (column, row, _)| {
-        (columns.max(column + 1), rows.max(row + 1))
-    });
+    let (columns, rows) = places
+        .iter()
+        .fold((0, 0), |(columns, rows), (column, row, _)| (columns.max(column + 1), rows.max(row + 1)));
     let (width, height) = (width as i32, height as i32);
     let step = (width + GAP, height + LINE + GAP);
     let scale_height = if below { LINE + GAP } else { 0 };
