@@ -221,7 +221,9 @@ mod tests {
     /// A picture of one material, with noise that the two references do not share.
     fn pixels(off_by: f64) -> Pixels {
         let noise = |seed: usize| {
-            (0..4096).map(|i| DVec3::splat(1.0 + if (i * seed) % 2 == 0 { 0.5 } else { -0.5 })).collect()
+            (0..4096)
+                .map(|i| DVec3::splat(1.0 + if (i * seed).is_multiple_of(2) { 0.5 } else { -0.5 }))
+                .collect()
         };
         let truths = [
             noise(1),

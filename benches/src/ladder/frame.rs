@@ -54,8 +54,9 @@ pub fn g_buffer(
     g_buffer.normal.upload(&normal, Usage::COMPUTE_READ)?;
     g_buffer.base_color.upload(&half(base_color), Usage::COMPUTE_READ)?;
     g_buffer.specular.upload(&specular, Usage::COMPUTE_READ)?;
-    // No coat, no sheen: Monte Carlo reads both of every surface
+    // No coat, sheen or second roughness: Monte Carlo reads them of every surface
     g_buffer.coat.upload(&none, Usage::COMPUTE_READ)?;
+    g_buffer.anisotropy.upload(&none, Usage::COMPUTE_READ)?;
     g_buffer.sheen.upload(&none, Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }

@@ -112,7 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     match format {
         Format::Strip => {
-            found.iter().try_for_each(|found| strip::draw(found, crop).save_png(&arguments.output))?
+            found.iter().try_for_each(|found| strip::draw(found, crop).save_png(&arguments.output))?;
         }
         Format::Film => {
             film::save(&found, crop, file).map_err(|error| Failure::output(&arguments.output, error))?;

@@ -1,5 +1,7 @@
 //! Lights that swing: ours beside the truth, as an animated GIF of one palette.
 
+#![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
+
 use super::strip::shown;
 use crate::commands::inspect::canvas::{Align, Canvas, Colour, LINE};
 use arealight_benches::ladder::{DEFAULT, Pictures};

@@ -1,5 +1,7 @@
 //! Ours, a yardstick with the published table, and the truth, side by side or below each other, with maps of the differences.
 
+#![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
+
 use super::super::page::images::{SCALE, color, difference_colors};
 use crate::commands::inspect::canvas::{Align, Canvas, Colour, LINE};
 use crate::picture::{srgb_from_linear, tone_map};
