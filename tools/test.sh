@@ -79,26 +79,12 @@ check_gpu_tests() {
     [[ "${AREALIGHT_REQUIRE_GPU:-}" != 1 || "$ran" -ge "$gpu_test_floor" ]]
 }
 
-# Whether every relative link of the documents leads to a file.
-check_links() {
-    local broken=0 document link
-    while IFS= read -r document; do
-        while IFS= read -r link; do
-            if [[ ! -e "$(dirname "$document")/$link" ]]; then
-                echo "$document: the link to $link leads nowhere"
-                broken=1
-            fi
-        done < <(grep -oE '\]\([^) ]+' "$document" | sed -e 's/^](//' -e 's/#.*//' | grep -vE '^$|^[a-z]+:')
-    done < <(find . -name '*.md' -not -path './target/*' -not -path './.git/*')
-    return "$broken"
-}
-
 # Debian 12's compiler made the SPIR-V that is checked in: there it must be the same to the byte.
 strict=()
 if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 
 step "format" cargo fmt --all --check
-step "links of documents" check_links
+step "links of documents" cargo run --locked --quiet -p xtask -- links
 step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
 step "the product depends on no laboratory" cargo run --locked --quiet -p xtask -- dependencies
 step "the product has few public types" cargo run --locked --quiet -p xtask -- types

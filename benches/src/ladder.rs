@@ -17,7 +17,7 @@ pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
 pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
 pub use names::{LevelNames, UnknownLevel};
-pub use pictures::{Picture, Pictures};
+pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
 pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};

@@ -26,6 +26,7 @@
 //! | [`report`] | what came of it: as text, as Markdown |
 //! | [`pictures`] | pictures as light textures of an engine |
 //! | [`svg`] | drawing charts |
+//! | [`figures`] | the drawings of the documents |
 //! | [`start`] | what a benchmark begins with |
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
@@ -33,6 +34,7 @@
 pub mod budget;
 pub mod compiled;
 pub mod cost;
+pub mod figures;
 pub mod footprints;
 pub mod kernel;
 pub mod ladder;

@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 const HEADS: [&str; 6] = ["family", "error", "backward", "small light", "not finite", "verdict"];
 
 /// The methods that stand side by side in the document's first table.
-const OVERVIEW: [&str; 7] = [
+pub(crate) const OVERVIEW: [&str; 7] = [
     "polygon-exact",
     "quad-exact",
     "quad-difference",
@@ -159,7 +159,7 @@ impl Stability {
     /// A document: what is promised, every family by the methods of `OVERVIEW`, and one table a method.
     pub fn to_markdown(&self) -> String {
         let mut text = format!(
-            "# Hard cases\n\nMade by `arealight bench stability --samples {} --seed {} --markdown FILE` on {}.\n\n{PROMISES}",
+            "# Hard cases, every number\n\nMade by `arealight bench stability --samples {} --seed {} --markdown FILE` on {}. [What they say](../stability.md).\n\n{PROMISES}",
             self.samples, self.seed, self.device
         );
         self.write_overview(&mut text);

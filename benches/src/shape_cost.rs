@@ -6,7 +6,7 @@
 
 use crate::cost::quantile;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
-use crate::svg::{Axis, Drawing, Labels, grid, label};
+use crate::svg::{Axis, Drawing, FILE_STYLE, Labels, grid, label};
 use arealight_cases::hard::ellipse::Family;
 use arealight_engine::host::{Buffer, Host};
 use arealight_engine::{BoundSet, EngineError, Passes, SharedPass};
@@ -232,14 +232,6 @@ pub fn markdown(costs: &[ShapeCost]) -> String {
     text
 }
 
-/// The colours of a chart that is a file of its own.
-const CHART_STYLE: &str = "\
-text { font: 12px system-ui, sans-serif; fill: #1c2430; } .axis { fill: #5b6675; } .grid { stroke: #d8dde4; } .leader { stroke: #5b6675; }
-.paper { fill: #fff; } .ours { fill: #0b6bcb; } .theirs { fill: #c2410c; }
-@media (prefers-color-scheme: dark) { text { fill: #e6e9ee; } .axis { fill: #9aa5b4; } .grid { stroke: #333c48; } .leader { stroke: #9aa5b4; }
-.paper { fill: #14181e; } .ours { fill: #5aa9f5; } .theirs { fill: #fb923c; } }
-";
-
 /// Error against time of the ways to a disk, both logarithmic, as a file in SVG: the library's in blue, yardsticks in orange.
 pub fn chart(costs: &[ShapeCost], device: &str) -> String {
     let (width, height) = (860.0, 440.0);
@@ -270,7 +262,7 @@ pub fn chart(costs: &[ShapeCost], device: &str) -> String {
     for method in &judged {
         label(&mut drawing, &mut labels, place(method), method.0.method, bounds);
     }
-    drawing.into_file(CHART_STYLE)
+    drawing.into_file(FILE_STYLE)
 }
 
 /// Whether a method is the library's, as it is there.

@@ -46,6 +46,21 @@ impl Axis {
     }
 }
 
+/// The colours of a drawing that is a file of its own, for light and dark pages: ours blue, others' orange.
+pub const FILE_STYLE: &str = "\
+text { font: 12px system-ui, sans-serif; fill: #1c2430; } .axis { fill: #5b6675; } .title { font-weight: 600; font-size: 14px; }
+line, polyline { fill: none; } .grid { stroke: #d8dde4; } .leader { stroke: #5b6675; } .paper { fill: #fff; }
+.ours { fill: #0b6bcb; } .theirs { fill: #c2410c; } .noise { fill: #6b7280; } .bad { fill: #b91c1c; }
+.line-ours { stroke: #0b6bcb; stroke-width: 2; } .line-theirs { stroke: #c2410c; stroke-width: 2; stroke-dasharray: 6 4; }
+.line-noise, .front { stroke: #6b7280; stroke-dasharray: 2 4; } .ink { stroke: #1c2430; stroke-width: 1.5; } .ink-head { fill: #1c2430; }
+.faint { stroke: #9aa5b4; } .hidden { stroke: #9aa5b4; stroke-dasharray: 3 4; } .area-ours { fill: #0b6bcb; fill-opacity: .22; }
+.area-theirs { fill: #c2410c; fill-opacity: .16; } .area-ball { fill: #9aa5b4; fill-opacity: .12; }
+@media (prefers-color-scheme: dark) { text { fill: #e6e9ee; } .axis { fill: #9aa5b4; } .grid { stroke: #333c48; } .leader { stroke: #9aa5b4; }
+.paper { fill: #14181e; } .ours { fill: #5aa9f5; } .theirs { fill: #fb923c; } .noise { fill: #9aa5b4; } .bad { fill: #f87171; }
+.line-ours { stroke: #5aa9f5; } .line-theirs { stroke: #fb923c; } .ink { stroke: #e6e9ee; } .ink-head { fill: #e6e9ee; } .faint { stroke: #5b6675; }
+.area-ours { fill: #5aa9f5; } .area-theirs { fill: #fb923c; } }
+";
+
 /// A drawing of a size in its own units, which fills the page's width.
 pub struct Drawing {
     body: String,
@@ -72,6 +87,22 @@ impl Drawing {
     pub fn path(&mut self, class: &str, points: &[[f64; 2]]) {
         let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         let _ = write!(self.body, r#"<polyline class="{class}" points="{}"/>"#, points.join(" "));
+    }
+
+    /// An area within points.
+    pub fn area(&mut self, class: &str, points: &[[f64; 2]]) {
+        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+        let _ = write!(self.body, r#"<polygon class="{class}" points="{}"/>"#, points.join(" "));
+    }
+
+    /// A straight line with a head at its end.
+    pub fn arrow(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
+        self.line(class, from, to);
+        let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+        let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
+        let (dx, dy) = (dx / length, dy / length);
+        let side = |turn: f64| [to[0] - 8.0 * dx + turn * 3.5 * dy, to[1] - 8.0 * dy - turn * 3.5 * dx];
+        self.area(&format!("{class}-head"), &[to, side(1.0), side(-1.0)]);
     }
 
     /// A dot, with a title that is shown when pointed at.

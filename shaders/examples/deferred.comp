@@ -10,9 +10,11 @@ struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
 layout(push_constant) uniform Frame { vec3 camera; uint lamp_count; } frame;
 
+// doc: bridges
 // The bridges: how the library reads what is yours
 vec4 arealight_bridge_table(int layer, ivec2 texel) { return texelFetch(table, ivec3(texel, layer), 0); }
 int arealight_bridge_table_size() { return textureSize(table, 0).x; }
+// doc end
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -21,7 +23,6 @@ void main() {
     }
     vec4 normal_roughness = texelFetch(g_buffer[1], pixel, 0);
     vec4 base_color_metalness = texelFetch(g_buffer[2], pixel, 0);
-    // doc: shade
     ArealightSurface surface;
     surface.position = texelFetch(g_buffer[0], pixel, 0).xyz;
     surface.normal = normal_roughness.xyz;
@@ -29,6 +30,7 @@ void main() {
     surface.roughness = normal_roughness.w;
     arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
 
+    // doc: lights
     ArealightPoint point = arealight_point(surface);
     vec3 radiance = vec3(0.0);
     for (uint i = 0u; i < frame.lamp_count; i++) {
@@ -41,5 +43,6 @@ void main() {
         light.two_sided = false;
         radiance += arealight_radiance(point, light);
     }
+    // doc end
     imageStore(radiance_image, pixel, vec4(radiance, 1.0));
 }

@@ -49,10 +49,15 @@ pub fn g_buffer(
         texels(&|point, _| point.material.base_color.extend(point.material.metalness).to_array());
     let specular =
         texels(&|point, _| point.material.dielectric_f0.extend(point.material.dielectric_f90).to_array());
+    let none = vec![[0.0_f32; 4]; width * height];
     g_buffer.position.upload(&position, Usage::COMPUTE_READ)?;
     g_buffer.normal.upload(&normal, Usage::COMPUTE_READ)?;
     g_buffer.base_color.upload(&half(base_color), Usage::COMPUTE_READ)?;
     g_buffer.specular.upload(&specular, Usage::COMPUTE_READ)?;
+    // No coat, sheen or second roughness: Monte Carlo reads them of every surface
+    g_buffer.coat.upload(&none, Usage::COMPUTE_READ)?;
+    g_buffer.anisotropy.upload(&none, Usage::COMPUTE_READ)?;
+    g_buffer.sheen.upload(&none, Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }
 

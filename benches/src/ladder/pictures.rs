@@ -2,11 +2,12 @@
 
 use super::LONG;
 use super::frame::Frame;
-use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, Method, SPHERE_PUBLISHED};
+use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Method, SPHERE_PUBLISHED};
 use super::reference::{PictureError, Reference};
 use crate::school::{School, YardstickTable};
 use crate::textures::is_software;
 use arealight::{Effects, FormFactor, Fresnel, Horizon, LightTable, Quality};
+use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use arealight_vk::TableFormat;
@@ -46,16 +47,67 @@ pub struct Pictures {
 
 const SIZE: [u32; 2] = [320, 180];
 
-/// How many long steps of progress it tells of.
+/// How many long steps of progress [`make`] tells of.
 pub const STEPS: usize = 11;
+
+/// How many units of progress [`beside_the_truth`] tells of, for each scene.
+pub const STEPS_BESIDE_THE_TRUTH: u64 = 4 * LONG;
 
 /// Runs a frame so often, for its time.
 const REPEATS: usize = 5;
 
+/// What a picture is rendered with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct View {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// Samples of the reference, in both halves.
+    pub samples: u32,
+    /// Frames whose time is taken; with 0 the time is NaN.
+    pub repeats: usize,
+}
+
+/// What of a scene is shaded: its diffuse lobes are added, not coupled, in every method, as the reference adds them.
+fn effects_of(scene: &Scene) -> Effects {
+    scene.effects() - Effects::COUPLED - Effects::COUPLED_BY_ALBEDO
+}
+
+/// Renders scenes, such as the frames of a film, by the two methods that stand beside the truth in a document: the default level, and
+/// a yardstick with the published table. The scenes share the first one's textures.
+///
+/// # Errors
+/// [`EngineError`] where the device fails.
+pub fn beside_the_truth(
+    host: &Host,
+    table: &LightTable,
+    scenes: &[Scene],
+    view: View,
+    progress: &dyn Fn(u64),
+) -> Result<Vec<Pictures>, EngineError> {
+    let mut engine = Engine::new(host.clone(), table, TableFormat::default())?;
+    if let Some(scene) = scenes.first() {
+        engine.load_scene_textures(scene, 256)?;
+    }
+    scenes.iter().map(|scene| render(&engine, scene, &duel(scene), view, progress)).collect()
+}
+
+/// The default level, and the yardstick that is for the scene's lights: clip by cases where they are quads, else the clipped sphere.
+fn duel(scene: &Scene) -> [(&'static str, Method); 2] {
+    let effects = effects_of(scene);
+    let is_quads = !effects.contains(Effects::POLYGON);
+    let (name, school) = if is_quads {
+        (CASES_PUBLISHED, School::ClipByCases)
+    } else {
+        (SPHERE_PUBLISHED, School::SphereHorizon)
+    };
+    let published = Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
+    [(DEFAULT, Method::Level { effects, quality: Quality::default() }), (name, published)]
+}
+
 /// What is shown: yardsticks as they are shipped, with their table, but for scenes that are too much for them; quality levels; and
 /// Monte Carlo.
 fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
-    let effects = scene.effects();
+    let effects = effects_of(scene);
     let level = |quality| Method::Level { effects, quality };
     let yardstick = |school| Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     let exact = Quality::default();
@@ -92,19 +144,31 @@ pub fn make(
     let mut engine = Engine::new(engine.host().clone(), table, TableFormat::default())?;
     engine.load_scene_textures(scene, 256)?;
     let size = if is_software(engine.host()) { SIZE } else { SIZE.map(|side| side * 2) };
+    render(&engine, scene, &methods(scene), View { size, samples, repeats: REPEATS }, progress)
+}
+
+/// Renders a scene, whose textures the engine has, by some methods.
+fn render(
+    engine: &Engine,
+    scene: &Scene,
+    methods: &[(&'static str, Method)],
+    view: View,
+    progress: &dyn Fn(u64),
+) -> Result<Pictures, EngineError> {
+    let size = view.size;
     let aspect = f64::from(size[0]) / f64::from(size[1]);
     let camera = scene.cameras.first().cloned().unwrap_or_else(|| scene.framing_camera(aspect));
     let buffers = SceneBuffers::new(scene, camera.position)?;
     let constants = buffers.constants(&camera, size, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(&engine, &buffers, &scene.lights, constants, size)?;
+    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     renderer.visibility()?;
     let emitted: Vec<DVec3> =
         renderer.radiance()?.into_iter().map(|texel| texel.truncate().as_dvec3()).collect();
     let origin = Vec3::from(constants.camera);
-    let frame = Frame::new(&engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
+    let frame = Frame::new(engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
 
     // Two independent halves, whose difference is the reference's noise
-    let ready = frame.ready(Method::Samples { count: samples.div_ceil(2) })?;
+    let ready = frame.ready(Method::Samples { count: view.samples.div_ceil(2) })?;
     let half = |seed| {
         let half = frame.shaded(&ready, seed)?;
         progress(LONG);
@@ -114,16 +178,17 @@ pub fn make(
     // On a light's own surface its form factor jumps
     let is_judged: Vec<bool> = emitted.iter().map(|emitted| *emitted == DVec3::ZERO).collect();
     let mut shown = vec![];
-    for (name, method) in methods(scene) {
-        let ready = frame.ready(method)?;
+    for (name, method) in methods {
+        let ready = frame.ready(*method)?;
         let reflected = frame.shaded(&ready, 2)?;
         let error = reference.error_of(&reflected, &is_judged);
-        let seconds = (0..REPEATS).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
+        let seconds =
+            (0..view.repeats).map(|_| frame.run(&ready, u32::MAX, 0)).collect::<Result<Vec<_>, _>>()?;
         let milliseconds = 1e3 * crate::cost::quantile(&seconds, 0.5);
         shown.push(Picture { name, reflected, error, milliseconds });
         progress(LONG);
     }
     let (lights, scene) = (scene.lights.len(), scene.name.clone());
-    let (reference, samples) = (reference.mean(), 2 * samples.div_ceil(2));
+    let (reference, samples) = (reference.mean(), 2 * view.samples.div_ceil(2));
     Ok(Pictures { scene, lights, size, emitted, reference, samples, shown })
 }

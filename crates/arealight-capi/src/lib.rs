@@ -1,6 +1,8 @@
 //! Arealight's recorder for hosts in C and C++.
 //!
-//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embedding.md goes through it.
+//! Start with the header, which is the manual of hosts, and with `examples/cpp` of the repository, an engine of one file.
+//!
+//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embed-c.md goes through it.
 //! Here is how it is done:
 //!
 //! | module | holds |

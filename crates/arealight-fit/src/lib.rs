@@ -1,5 +1,17 @@
 //! Fits linearly transformed cosines to a BRDF, and makes a [`arealight::LightTable`] of them.
 //!
+//! # Start here
+//! ```no_run
+//! use arealight_fit::{GgxBrdf, Settings, fit};
+//!
+//! // Your own BRDF: implement `Brdf`
+//! let table = fit(&GgxBrdf, &Settings { size: 32, ..Settings::default() }, &|done, steps| eprintln!("{done} of {steps}"))?;
+//! assert_eq!(table.size(), 32);
+//! # Ok::<(), arealight_fit::FitError>(())
+//! ```
+//!
+//! Seven seconds of two cores for 64 x 64 nodes. `arealight-table` writes it for engines; [`report`] says how good it is.
+//!
 //! # How a texel is fitted
 //! A lobe has four degrees of freedom, the entries of a matrix texel (see [`arealight::table`]); its magnitude
 //! is the BRDF's true albedo ([`Brdf::magnitude`]).

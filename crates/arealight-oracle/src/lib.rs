@@ -1,6 +1,29 @@
 //! Float64 truth for area lights: BRDFs, closed-form integrals and cubature. For tests, fitting and
 //! benchmarks; nothing here is fast enough for a frame.
 //!
+//! # Start here
+//! The light of a lamp on a glossy floor, by cubature of the true BRDF and by the fitted table:
+//!
+//! ```
+//! use arealight::glam::{DVec3, Vec3};
+//! use arealight::{Light, LightShape};
+//! use arealight_oracle::cubature::Settings;
+//! use arealight_oracle::material::Material;
+//! use arealight_oracle::shading::{RelativeLight, ltc, truth};
+//!
+//! let corners = [[-1.0, -1.0, 2.0], [-1.0, 1.0, 2.0], [1.0, 1.0, 2.0], [1.0, -1.0, 2.0]];
+//! let shape = LightShape::Polygon(corners.map(DVec3::from).to_vec());
+//! let lamp = Light { radiance: Vec3::ONE, shape, ..Light::default() };
+//! let light = RelativeLight::new(&lamp, DVec3::ZERO);
+//! let floor = Material { roughness: 0.4, ..Material::default() }.surface();
+//! let view = DVec3::new(0.6, 0.0, 0.8);
+//!
+//! let truth = truth(&floor, DVec3::Z, view, &light, &Settings::default());
+//! let fitted = ltc(&arealight_table::ggx(), &floor, DVec3::Z, view, &light);
+//! assert!((fitted - truth.radiance).abs().max_element() < 0.01);
+//! ```
+//!
+//! # Conventions
 //! Everything happens in the *surface frame* unless a name says otherwise: the shading point is the origin,
 //! z is the normal, and the view direction lies in the xz plane with x not negative.
 //!

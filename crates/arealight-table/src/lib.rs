@@ -1,5 +1,22 @@
 //! Light tables to and from files, and the table that is built in.
 //!
+//! # Start here
+//! ```
+//! use arealight::glam::DVec3;
+//!
+//! let table = arealight_table::ggx(); // the built-in one, of GGX
+//! let sample = table.lookup(0.3, 0.7); // roughness, cosine of the view
+//! assert!(sample.albedo > 0.9 && sample.albedo <= 1.0);
+//! // Towards the light the lobe is a cosine about z, after this matrix
+//! let mirror = DVec3::new(-(1.0_f64 - 0.7 * 0.7).sqrt(), 0.0, 0.7);
+//! assert!((sample.inverse * mirror).normalize().z > 0.99);
+//!
+//! let bytes = arealight_table::write(&table); // OpenEXR; also KTX2, DDS, C and GLSL
+//! assert_eq!(arealight_table::read(&bytes)?, table);
+//! # Ok::<(), arealight_table::ReadError>(())
+//! ```
+//!
+//! # Files
 //! A table file is an OpenEXR image of two or three layers that any EXR viewer opens:
 //!
 //! | layer | channels, 32-bit float | holds |

@@ -4,6 +4,25 @@
 //! and makes no barrier for a resource that the host owns. The host says where its G-buffer is, allocates the
 //! descriptor sets and the memory, and finds Vulkan: [`ash`] is re-exported without its loader.
 //!
+//! # Start here
+//! The repository's `docs/embed-rust.md` goes through each step, and `examples/rust` is a whole engine. Vulkan 1.1 without any optional
+//! feature or extension is enough.
+//!
+//! | step | by |
+//! |---|---|
+//! | from your handles | [`Context::new`], [`Context::with_pipeline_cache`] |
+//! | a pass for your G-buffer | [`ShadePass::new`]; for many lights [`ShadePass::with_tiles`] |
+//! | the table, in memory of yours | `arealight_table::ggx`, [`TableImage`] |
+//! | your images and buffers | [`ShadeResources`], [`ShadePass::write_set`] |
+//! | your barriers | [`ShadePass::accesses`] |
+//! | a frame | [`arealight::PackedLights`], [`ShadeFrame`], [`ShadePass::record`] |
+//! | images on lights, shadows | [`LightTextures`], [`ShadowPass`] |
+//!
+//! The features: `gpu-allocator` lets the recorder take memory by that crate.
+//!
+//! Every `unsafe` function says what it trusts you with: that handles belong together, that they outlive what is made of them, and that
+//! commands are being recorded.
+//!
 //! ```no_run
 //! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources};
 //! use arealight::{plan::ShadeOptions, PackedLights};

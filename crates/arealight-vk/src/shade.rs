@@ -90,7 +90,7 @@ impl ShadePass {
     }
 
     /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of its own
-    /// (docs/embedding.md): [`ShadeOptions::g_buffer`] does not count then.
+    /// (docs/embed-glsl.md): [`ShadeOptions::g_buffer`] does not count then.
     ///
     /// # Safety
     /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.

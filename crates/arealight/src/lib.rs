@@ -4,6 +4,34 @@
 //! noise. This crate says what a light, a table and a kernel *are*; it knows nothing of Vulkan
 //! and of files. Every other crate speaks it.
 //!
+//! # Start here
+//! A light, packed as the GPU reads it, with what it needs of a pipeline:
+//!
+//! ```
+//! use arealight::glam::{DVec3, Vec3};
+//! use arealight::{Effects, Light, LightShape, PackedLights};
+//!
+//! // Counter-clockwise from the front, which is below: a lamp over the floor
+//! let corners = [[-1.0, 2.0, -0.5], [1.0, 2.0, -0.5], [1.0, 2.0, 0.5], [-1.0, 2.0, 0.5]];
+//! let lamp = Light {
+//!     name: "lamp".into(),
+//!     radiance: Vec3::new(8.0, 7.0, 5.0),
+//!     shape: LightShape::Polygon(corners.map(DVec3::from).to_vec()),
+//!     ..Light::default()
+//! };
+//! let globe = Light { shape: LightShape::Sphere { center: DVec3::Y, radius: 0.2 }, ..lamp.clone() };
+//!
+//! let packed = PackedLights::new(&[lamp, globe], DVec3::new(0.0, 1.5, 4.0))?; // relative to a camera there
+//! let summary = packed.summary();
+//! assert_eq!((summary.light_count, summary.quad_count, summary.shape_count), (1, 1, 1));
+//! assert_eq!(summary.effects, Effects::SPHERE);
+//! assert_eq!(packed.lights[0].center, [0.0, 0.5, -4.0]);
+//! # Ok::<(), arealight::LightError>(())
+//! ```
+//!
+//! Then: record a frame with `arealight-vk`, or from C with `arealight-capi`; take the table from `arealight-table`. The repository's
+//! `docs/embed-rust.md` goes through it from a device to the first light.
+//!
 //! # Conventions
 //! - SI radiometry, linear Rec. 709 colour. A light's radiance is W/(m² sr), constant over a one-sided
 //!   emitter whose front is the right-hand side of its vertex order; a two-sided light lights both.
@@ -51,18 +79,29 @@ pub mod table;
 pub mod texture_part;
 pub mod tiles;
 
+#[doc(inline)]
 pub use blockers::{BlockerError, Blockers};
+#[doc(inline)]
 pub use effects::Effects;
 /// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
 pub use glam;
+#[doc(inline)]
 pub use light::{Light, LightError, LightFault};
+#[doc(inline)]
 pub use light_shape::{LightShape, TubeEnds};
+#[doc(inline)]
 pub use light_texture::{LightTexture, TextureMap};
+#[doc(inline)]
 pub use packed_lights::{LightSummary, PackedLights};
+#[doc(inline)]
 pub use pyramid::PyramidSize;
+#[doc(inline)]
 pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+#[doc(inline)]
 pub use table::{LightTable, TableDescription, TableError, TableSample};
+#[doc(inline)]
 pub use texture_part::{TextureError, TexturePart, Wrap};
+#[doc(inline)]
 pub use tiles::TileClass;
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.

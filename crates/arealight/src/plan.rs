@@ -8,7 +8,7 @@ use crate::{Effects, LightSummary, Quality};
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
 /// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, sheen at `g_sheen` and second roughnesses at `g_anisotropy`, alike in every layout. A G-buffer of any other layout is read by a
-/// bridge function in GLSL of the host's (docs/embedding.md).
+/// bridge function in GLSL of the host's (docs/embed-glsl.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum GBufferLayout {

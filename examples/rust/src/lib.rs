@@ -20,6 +20,7 @@
 pub mod command_line;
 pub mod deferred;
 pub mod draw;
+pub mod first_light;
 pub mod forward;
 pub mod g_buffer;
 pub mod gpu;

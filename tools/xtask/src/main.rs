@@ -9,6 +9,7 @@
 //! cargo run -p xtask -- header                   # crates/arealight-capi -> its include/arealight.h
 //! cargo run -p xtask -- matrix                   # does the library compile for hosts of every kind?
 //! cargo run -p xtask -- quotes                   # put the code that documents show into them
+//! cargo run -p xtask -- links                    # do the links of documents lead somewhere?
 //! cargo run -p xtask -- packages                 # is what would be published whole?
 //! cargo run -p xtask -- dependencies             # does the product stand without the laboratory?
 //! cargo run -p xtask -- types                    # has the crate arealight few public types?
@@ -20,6 +21,7 @@ mod dependencies;
 mod header;
 mod includes;
 mod library;
+mod links;
 mod lint;
 mod manifest;
 mod matrix;
@@ -50,6 +52,8 @@ enum Task {
     Header(header::Arguments),
     Matrix(matrix::Arguments),
     Quotes(quotes::Arguments),
+    /// Check that every link of a document leads somewhere, and that docs/SUMMARY.md has every page.
+    Links,
     /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer Rust.
     Packages,
     /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines on those for fitting.
@@ -96,6 +100,7 @@ fn main() -> ExitCode {
         Task::Header(arguments) => header::run(&root, &arguments),
         Task::Matrix(arguments) => matrix::run(&root, &arguments),
         Task::Quotes(arguments) => quotes::run(&root, &arguments),
+        Task::Links => links::run(&root),
         Task::Packages => packages::run(&root),
         Task::Dependencies => dependencies::run(&root),
         Task::Types => types::run(&root),

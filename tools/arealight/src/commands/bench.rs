@@ -5,6 +5,7 @@ mod compiled;
 mod ladder;
 mod materials;
 mod page;
+mod pictures;
 mod shadows;
 mod stability;
 mod textures;
@@ -36,6 +37,7 @@ enum Bench {
     Compare(compare::Arguments),
     Compiled(compiled::Arguments),
     Materials(materials::Arguments),
+    Pictures(pictures::Arguments),
     Shadows(shadows::Arguments),
     Stability(stability::Arguments),
     Textures(textures::Arguments),
@@ -47,6 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
         Some(Bench::Materials(arguments)) => materials::run(arguments),
+        Some(Bench::Pictures(arguments)) => pictures::run(arguments),
         Some(Bench::Shadows(arguments)) => shadows::run(arguments),
         Some(Bench::Stability(arguments)) => stability::run(arguments),
         Some(Bench::Textures(arguments)) => textures::run(arguments),

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-mod canvas;
+pub(super) mod canvas;
 mod channels;
 mod colour;
 mod entries;

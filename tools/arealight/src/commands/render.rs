@@ -307,7 +307,7 @@ fn parse_part(text: &str) -> Result<f32, String> {
 }
 
 /// A width and a height such as `1280x720`.
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=8192).contains(side));
     text.split_once(['x', 'X'])
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))

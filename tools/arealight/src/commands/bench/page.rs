@@ -1,7 +1,7 @@
 //! The report: one page that needs nothing else. Charts are drawn, pictures are within it, and it has no script.
 
 mod charts;
-mod images;
+pub(super) mod images;
 
 use crate::failure::Failure;
 use arealight_benches::ladder::{

@@ -1,12 +1,14 @@
 //! `arealight bench stability`
 
-use super::Ends;
+use super::{Ends, write};
 use crate::failure::Failure;
 use crate::progress;
+use arealight_benches::figures;
 use arealight_benches::method::{METHODS, Method};
 use arealight_benches::shape_stability;
 use arealight_benches::stability::{self, Options};
 use arealight_cases::hard::family::{FAMILIES, Family};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Hold every level of the form factor to its promises, on families of hard cases.
@@ -35,6 +37,9 @@ pub struct Arguments {
     /// Disks, spheres and tubes in the polygons' place.
     #[arg(long, conflicts_with_all = ["family", "level"])]
     shapes: bool,
+    /// Draw the families' errors, ours and the yardsticks'.
+    #[arg(long, value_name = "FILE", conflicts_with = "shapes")]
+    svg: Option<PathBuf>,
     #[command(flatten)]
     ends: Ends,
 }
@@ -71,6 +76,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
+    if let Some(path) = &arguments.svg {
+        write(path, &figures::stability(&found))?;
+    }
     arguments.ends.report(&found, &found.to_markdown(), &found.to_text())?;
     Ok(if found.shortfalls().next().is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }

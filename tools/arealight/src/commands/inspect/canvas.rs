@@ -93,6 +93,16 @@ impl Canvas {
         });
     }
 
+    /// Width and height.
+    pub const fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// The pixels' bytes: red, green, blue, row after row from the top.
+    pub fn bytes(&self) -> &[u8] {
+        &self.pixels
+    }
+
     /// Writes a PNG.
     ///
     /// # Errors

@@ -12,14 +12,18 @@ const COLORS: [[u8; 3]; 6] =
     [[0, 0, 20], [50, 15, 110], [140, 35, 130], [220, 70, 85], [250, 150, 70], [252, 253, 190]];
 
 /// Differences over the mean that the ends of the map stand for.
-pub const SCALE: [f64; 2] = [1e-4, 1.0];
+pub const SCALE: [f64; 2] = [1e-3, 1.0];
+
+/// Steps of the map: its contours are legible, and noise below a step takes no bytes.
+const STEPS: f64 = 18.0;
 
 /// The colour of a difference over the mean.
-fn color(difference: f64) -> [u8; 3] {
+pub fn color(difference: f64) -> [u8; 3] {
     // What is no number is as bad as can be
     let difference = if difference.is_nan() { SCALE[1] } else { difference.clamp(SCALE[0], SCALE[1]) };
     let [low, high] = SCALE.map(f64::log10);
-    let place = ((difference.log10() - low) / (high - low)).clamp(0.0, 1.0) * (COLORS.len() - 1) as f64;
+    let place = ((difference.log10() - low) / (high - low)).clamp(0.0, 1.0);
+    let place = (place * STEPS).round() / STEPS * (COLORS.len() - 1) as f64;
     let index = (place as usize).min(COLORS.len() - 2);
     let share = place - index as f64;
     std::array::from_fn(|i| {
@@ -51,14 +55,19 @@ pub fn picture(size: [u32; 2], pixels: impl Iterator<Item = DVec3>) -> Result<St
 /// # Errors
 /// As [`picture`].
 pub fn differences(size: [u32; 2], found: &[DVec3], reference: &[DVec3]) -> Result<String, Failure> {
+    address(size, difference_colors(found, reference).as_flattened())
+}
+
+/// The colour of each pixel's difference from a reference over its mean.
+pub fn difference_colors(found: &[DVec3], reference: &[DVec3]) -> Vec<[u8; 3]> {
     let mean =
         reference.iter().map(|pixel| pixel.element_sum()).sum::<f64>() / (3 * reference.len().max(1)) as f64;
     let pairs = found.iter().zip(reference);
-    let bytes = pairs.flat_map(|(found, expected)| {
+    let color_of = |(found, expected): (&DVec3, &DVec3)| {
         let off = (*found - *expected).abs();
         color(if off.is_nan() { f64::NAN } else { off.max_element() / mean })
-    });
-    address(size, &bytes.collect::<Vec<u8>>())
+    };
+    pairs.map(color_of).collect()
 }
 
 fn address(size: [u32; 2], rgb: &[u8]) -> Result<String, Failure> {
@@ -81,8 +90,8 @@ mod tests {
     #[test]
     fn differences_run_through_the_colours() {
         assert_eq!(color(0.0), COLORS[0]);
-        assert_eq!(color(1e-4), COLORS[0]);
+        assert_eq!(color(SCALE[0]), COLORS[0]);
         assert_eq!([color(1.0), color(7.0), color(f64::NAN)], [COLORS[5]; 3]);
-        assert!(color(1e-2)[0] > color(1e-3)[0]);
+        assert!(color(1e-1)[0] > color(1e-2)[0]);
     }
 }
