@@ -187,6 +187,19 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     Ok(made)
 }
 
+/// The most vertices of a light, its holes' among them: a count beyond it is not what the host meant.
+const MOST_VERTICES: usize = 1 << 24;
+
+fn check_count(count: usize, field: impl Fn() -> String) -> Result<(), Failure> {
+    if count > MOST_VERTICES {
+        return Err(Failure::argument(format!(
+            "{}: {count} vertices, at most {MOST_VERTICES} a light",
+            field()
+        )));
+    }
+    Ok(())
+}
+
 /// The outline of a polygon or the vertices of a mesh, and the outlines of a polygon's holes.
 ///
 /// # Safety
@@ -196,11 +209,13 @@ unsafe fn read_outlines(
     field: &impl Fn(&'static str) -> String,
 ) -> Result<Vec<Vec<DVec3>>, Failure> {
     let count = light.vertex_count as usize;
+    check_count(count, || field("vertex_count"))?;
     let hole_count = if light.kind == AREALIGHT_LIGHT_POLYGON { light.hole_count as usize } else { 0 };
     // SAFETY: the same contract.
     let (holes, vertices) = unsafe {
         let holes = arguments::array(light.hole_vertex_counts, hole_count, &field("hole_vertex_counts"))?;
         let all = holes.iter().fold(count, |sum, more| sum.saturating_add(*more as usize));
+        check_count(all, || field("hole_vertex_counts"))?;
         (holes, arguments::array(light.vertices, all.saturating_mul(3), &field("vertices"))?)
     };
     let mut vertices = vertices.chunks_exact(3).map(DVec3::from_slice);

@@ -37,6 +37,8 @@
 //! The table does not depend on the number of threads, and all random numbers are fixed. Between machines only
 //! the last bits of the system's sines, logarithms and powers can differ.
 
+#![forbid(unsafe_code)]
+
 mod aim;
 pub mod brdf;
 mod error;

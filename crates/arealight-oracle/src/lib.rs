@@ -46,6 +46,8 @@
 //! | [`visibility`] | what is visible of a flat light behind triangles |
 //! | [`stream`] | random numbers, the same on every machine |
 
+#![forbid(unsafe_code)]
+
 pub mod cubature;
 pub mod ellipse;
 pub mod formula;

@@ -50,6 +50,8 @@
 //! they are compared word by word; so is the hash. Files are treated as hostile: headers are checked before anything
 //! is allocated for texels, and every refusal says what was found, where, and what was expected.
 
+#![forbid(unsafe_code)]
+
 mod attributes;
 mod convert;
 mod dds;

@@ -50,6 +50,7 @@ mod layouts;
 mod light_textures;
 #[cfg(feature = "gpu-allocator")]
 mod memory;
+mod module;
 mod pass;
 mod pipelines;
 mod prune;

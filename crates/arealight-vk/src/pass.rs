@@ -3,6 +3,7 @@
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::layouts::Layouts;
+use crate::module::check_module;
 use crate::prune::prune;
 use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
@@ -121,7 +122,7 @@ impl ComputePass {
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
         // SAFETY: the same contract; the module is the kernel's.
-        unsafe { Self::with_module(context, kernel, &kernel.words(), specialization) }
+        unsafe { Self::of(&Layouts::new(context, kernel)?, kernel, &kernel.words(), specialization) }
     }
 
     /// As [`ComputePass::new`], with a SPIR-V module in the place of the kernel's own.
@@ -130,14 +131,14 @@ impl ComputePass {
     /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry point.
     ///
     /// # Errors
-    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         kernel: &'static Kernel,
         module: &[u32],
         specialization: &[(u32, u32)],
     ) -> Result<Self, Error> {
-        check_module(module)?;
+        check_module(module, kernel)?;
         // SAFETY: the same contract.
         unsafe { Self::of(&Layouts::new(context, kernel)?, kernel, module, specialization) }
     }
@@ -314,15 +315,4 @@ fn make_pipeline(
     unsafe { device.destroy_shader_module(module, None) };
     let pipelines = made.map_err(|(_, result)| result).call("vkCreateComputePipelines")?;
     Ok(pipelines[0])
-}
-
-const SPIRV_MAGIC: u32 = 0x0723_0203;
-
-/// Refuses what is no SPIR-V.
-pub(crate) fn check_module(module: &[u32]) -> Result<(), Error> {
-    if module.first() == Some(&SPIRV_MAGIC) {
-        return Ok(());
-    }
-    let message = "does not begin as SPIR-V does, in this machine's byte order".into();
-    Err(Error::InvalidArgument { field: "module", message })
 }

@@ -19,7 +19,7 @@ pub(crate) struct Pipelines {
 }
 
 impl Pipelines {
-    /// The module is one that [`crate::pass::check_module`] found good.
+    /// The module is one that [`crate::module::check_module`] found good.
     ///
     /// # Safety
     /// As [`Layouts::new`] and [`ComputePass::of`].

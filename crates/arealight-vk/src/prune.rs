@@ -81,7 +81,7 @@ fn drop_unused_bindings(module: &mut Module) {
 }
 
 /// Whether the instructions end where the module does, as their lengths say.
-fn is_framed(module: &[u32]) -> bool {
+pub(crate) fn is_framed(module: &[u32]) -> bool {
     const HEADER: usize = 5;
     let mut rest = module.get(HEADER..).unwrap_or_default();
     while let Some(first) = rest.first() {

@@ -8,7 +8,8 @@ pub use resources::{ResourceAccess, ShadeResources};
 use crate::context::Context;
 use crate::error::Error;
 use crate::layouts::Layouts;
-use crate::pass::{Resource, check_module};
+use crate::module::check_module;
+use crate::pass::Resource;
 use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
 use arealight::gpu::ShadeConstants;
@@ -61,7 +62,7 @@ impl ShadePass {
     /// [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(context: &Context, options: ShadeOptions) -> Result<Self, Error> {
         // SAFETY: the same contract; the module is the kernel's.
-        unsafe { Self::with_module(context, options, SHADE.words()) }
+        unsafe { Self::of_module(context, options, SHADE.words(), None) }
     }
 
     /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::lobe_horizons`] and `tile_lists` are needed then.
@@ -96,12 +97,13 @@ impl ShadePass {
     /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
     ///
     /// # Errors
-    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
         module: Vec<u32>,
     ) -> Result<Self, Error> {
+        check_module(&module, &SHADE)?;
         // SAFETY: the same contract.
         unsafe { Self::of_module(context, options, module, None) }
     }
@@ -120,6 +122,7 @@ impl ShadePass {
         module: Vec<u32>,
         host_set: vk::DescriptorSetLayout,
     ) -> Result<Self, Error> {
+        check_module(&module, &SHADE)?;
         // SAFETY: the same contract.
         unsafe { Self::of_module(context, options, module, Some(host_set)) }
     }
@@ -132,7 +135,6 @@ impl ShadePass {
         mut module: Vec<u32>,
         host_set: Option<vk::DescriptorSetLayout>,
     ) -> Result<Self, Error> {
-        check_module(&module)?;
         check_shadows(options)?;
         store_to(options.format, &mut module);
         // Frames without tiles have none of their bindings

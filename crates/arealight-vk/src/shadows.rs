@@ -3,7 +3,8 @@
 use crate::context::Context;
 use crate::error::Error;
 use crate::layouts::Layouts;
-use crate::pass::{Resource, check_module};
+use crate::module::check_module;
+use crate::pass::Resource;
 use crate::pipelines::Pipelines;
 use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of, push_constants_of_view};
 use arealight::LightSummary;
@@ -122,7 +123,7 @@ impl ShadowPass {
     /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of the device, valid as long as the pass.
     ///
     /// # Errors
-    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] for what is no SPIR-V.
+    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
@@ -131,7 +132,7 @@ impl ShadowPass {
         host_set: vk::DescriptorSetLayout,
     ) -> Result<Self, Error> {
         check_rays(options)?;
-        check_module(&module)?;
+        check_module(&module, &SHADOW_RAYS)?;
         // SAFETY: the same contract.
         unsafe {
             let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings, Some(host_set))?;

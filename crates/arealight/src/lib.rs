@@ -62,6 +62,8 @@
 //! | [`tiles`] | tiles of a picture, sorted by the lights that matter to them |
 //! | [`plan`] | which kernel runs, specialised how, over how many groups |
 
+#![forbid(unsafe_code)]
+
 pub mod blockers;
 pub mod effects;
 pub mod gpu;

@@ -1,7 +1,10 @@
 //! From radiance to a file: supersampled radiance is resolved, and written as it is (EXR) or for a screen (PNG).
 
 use crate::failure::Failure;
+use crate::output;
+use exr::prelude::{Image, SpecificChannels, Vec2, WritableImage as _};
 use glam::Vec3;
+use std::io::Cursor;
 use std::path::Path;
 
 /// Linear radiance, row after row from the top.
@@ -75,16 +78,23 @@ impl Picture {
             let p = self.pixels[y * self.width as usize + x];
             (p.x, p.y, p.z)
         };
-        exr::prelude::write_rgb_file(path, self.width as usize, self.height as usize, pixel)
-            .map_err(|error| Failure::output(path, error))
+        let channels = SpecificChannels::rgb(|position: Vec2<usize>| pixel(position.x(), position.y()));
+        let mut bytes = Cursor::new(Vec::new());
+        Image::from_channels((self.width as usize, self.height as usize), channels)
+            .write()
+            .to_buffered(&mut bytes)
+            .map_err(|error| Failure::output(path, error))?;
+        output::write(path, bytes.get_ref())
     }
 
     fn save_png(&self, path: &Path) -> Result<(), Failure> {
         let bytes = self.pixels.iter().flat_map(|p| p.to_array().map(srgb_from_linear)).collect();
+        let mut png = Cursor::new(Vec::new());
         image::RgbImage::from_raw(self.width, self.height, bytes)
             .expect("three bytes a pixel")
-            .save(path)
-            .map_err(|error| Failure::output(path, error))
+            .write_to(&mut png, image::ImageFormat::Png)
+            .map_err(|error| Failure::output(path, error))?;
+        output::write(path, png.get_ref())
     }
 }
 

@@ -9,6 +9,8 @@
 //! | [`measure`] | how far answers lie from the truth |
 //! | [`hard`] | polygons and ellipses that break form factors in float32, with their truth |
 
+#![forbid(unsafe_code)]
+
 pub mod answers;
 pub mod cases;
 pub mod hard;

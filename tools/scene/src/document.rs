@@ -2,7 +2,7 @@
 
 use crate::SceneError;
 use gltf::json;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// Extensions that a file may require.
 const SUPPORTED_EXTENSIONS: [&str; 7] = [
@@ -104,6 +104,18 @@ impl Document {
         let relative = percent_decode(uri).ok_or_else(|| failed("its name is not UTF-8".into()))?;
         if uri.contains(':') || Path::new(&relative).is_absolute() {
             return Err(failed("only data URIs and relative paths are supported".into()));
+        }
+        // A scene of somebody else's reads nothing that does not lie with it
+        let mut depth = 0_i32;
+        for part in Path::new(&relative).components() {
+            depth += match part {
+                Component::ParentDir => -1,
+                Component::CurDir => 0,
+                _ => 1,
+            };
+            if depth < 0 {
+                return Err(failed("it lies outside of the scene's folder: move it there".into()));
+            }
         }
         let folder = self.folder.as_ref().ok_or_else(|| failed("a scene from memory has no files".into()))?;
         read_file(&folder.join(relative)).map_err(|e| failed(e.to_string()))

@@ -23,6 +23,8 @@
 //! Positions are world positions in `f64`, in the file's unit of length (glTF: metres), right-handed, +Y up.
 //! [`SceneBuffers`] makes them `f32` relative to an origin.
 
+#![forbid(unsafe_code)]
+
 mod accessor;
 mod area_lights;
 mod borders;

@@ -11,7 +11,7 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use arealight_benches::sections::{Markers, replace_section};
 use arealight_engine::{Host, HostOptions};
 use serde::Serialize;
@@ -71,7 +71,10 @@ struct Ends {
 }
 
 impl Ends {
+    /// The device, when it is known that every file can be written.
     fn host(&self) -> Result<Host, Failure> {
+        let json = self.json.as_deref().filter(|path| *path != Path::new("-"));
+        json.into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
         let options = HostOptions { device: self.device.clone(), ..HostOptions::default() };
         Host::new(options).map_err(|error| Failure::Device(error.to_string()))
     }
@@ -93,7 +96,7 @@ impl Ends {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    std::fs::write(path, text).map_err(|error| Failure::output(path, error))
+    output::write(path, text.as_bytes())
 }
 
 /// The document with a section: in its place where it has one, else alone.

@@ -1,7 +1,7 @@
 //! `arealight eval`
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use crate::quality::QualityArguments;
 use crate::{gpu, progress, visible};
 use arealight::{Footprint, FormFactor, Fresnel, Quality};
@@ -88,6 +88,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => None,
     };
 
+    if let Some(path) = &arguments.output {
+        output::check(path)?;
+    }
+
     let start = Instant::now();
     let answers = answer_all(&cases, arguments)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -95,7 +99,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Write before measuring, so that no answer is lost
     let text = write_answers(&answers);
     match &arguments.output {
-        Some(path) => std::fs::write(path, text).map_err(|error| Failure::output(path, error))?,
+        Some(path) => output::write(path, text.as_bytes())?,
         None if known.is_none() => return print(&text),
         None => {}
     }

@@ -1,7 +1,7 @@
 //! `arealight fit`
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use crate::progress;
 use arealight::{Fresnel, Horizon, LightTable, TableSample};
 use arealight_fit::report::{
@@ -9,9 +9,10 @@ use arealight_fit::report::{
 };
 use arealight_fit::{Aim, FitError, GgxBrdf, Settings, formula};
 use arealight_oracle::formula::Formula;
+use arealight_table::{TableFile, Target};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -39,6 +40,12 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let format = |path: &Path| {
+        Target::of_path(path, None)
+            .map_err(|error| Failure::Argument { argument: "--output", message: error.to_string() })
+    };
+    let output = arguments.output.as_deref().map(|path| Ok((path, format(path)?))).transpose()?;
+    output.map_or(Ok(()), |(path, _)| output::check(path))?;
     // Fit
     let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::Split };
     let settings = Settings { size: arguments.size, aim };
@@ -51,8 +58,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let table = table.map_err(refused)?;
 
     // Write it before it is measured: a report that is broken off loses nothing
-    if let Some(path) = &arguments.output {
-        arealight_table::save(&table, path).map_err(|error| Failure::output(path, error))?;
+    if let Some((path, target)) = output {
+        let file = TableFile { table: table.clone(), fit_error: None };
+        let bytes = file.write(target).map_err(|error| Failure::output(path, error))?;
+        output::write(path, &bytes)?;
     }
     let formula = arguments.formula.then(|| formula::fit(&GgxBrdf, &table)).transpose().map_err(refused)?;
     let report = arguments.report.then(|| Report::of(&table, formula.as_ref()));

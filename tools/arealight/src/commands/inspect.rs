@@ -1,7 +1,7 @@
 //! `arealight inspect`
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use crate::progress;
 use crate::quality::Parts;
 use arealight::{Fresnel, LightTable};
@@ -70,6 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.pyramid {
         return run_pyramid(path, arguments);
     }
+    arguments.check_output()?;
     if !(0.0..=1.0).contains(&arguments.f0) {
         let message = format!("{} is not in 0 to 1", arguments.f0);
         return Err(Failure::Argument { argument: "--f0", message });
@@ -100,6 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> {
+    arguments.check_output()?;
     let pyramid = pyramid::make(path, arguments.layer, arguments.device.as_deref())?;
     if let Some(output) = &arguments.output {
         pyramid_picture::draw(&pyramid).save_png(output)?;
@@ -108,6 +110,16 @@ fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> 
 }
 
 impl Arguments {
+    /// Sees to it that the picture can be written, before long work.
+    fn check_output(&self) -> Result<(), Failure> {
+        let Some(path) = &self.output else { return Ok(()) };
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            return output::check(path);
+        }
+        let message = format!("{}: the file's name must end in .png", path.display());
+        Err(Failure::Argument { argument: "--output", message })
+    }
+
     fn material(&self) -> Material {
         let fresnel = match self.fresnel {
             Parts::ByF0 => Fresnel::ByF0,

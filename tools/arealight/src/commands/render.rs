@@ -3,7 +3,7 @@
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
-use crate::output::print;
+use crate::output::{self, print};
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
@@ -71,6 +71,9 @@ pub struct Arguments {
     json: bool,
 }
 
+/// Where pictures go that nobody named a place for.
+const FOLDER: &str = "out";
+
 impl Arguments {
     /// What runs when no command is given: the demo scene, with every default.
     pub fn default_scene() -> Self {
@@ -120,7 +123,7 @@ impl Arguments {
         let stem = self.scene.as_deref().and_then(Path::file_stem).map(PathBuf::from);
         let stem = stem.unwrap_or_else(|| scene.name.clone().into());
         let suffix = if self.reference.is_some() { "-reference.png" } else { ".png" };
-        self.output.clone().unwrap_or_else(|| Path::new("out").join(format!("{}{suffix}", stem.display())))
+        self.output.clone().unwrap_or_else(|| Path::new(FOLDER).join(format!("{}{suffix}", stem.display())))
     }
 }
 
@@ -209,7 +212,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
-    prepare(&output)?;
+    if arguments.output.is_none() {
+        std::fs::create_dir_all(FOLDER).map_err(|error| Failure::output(FOLDER, error))?;
+    }
+    output::check(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
     let camera = choose_camera(&scene, arguments)?;
 
@@ -325,24 +331,6 @@ fn choose_camera(scene: &Scene, arguments: &Arguments) -> Result<Camera, Failure
             message: format!("'{wanted}' is not in {}, which has {names}", arguments.scene_name().display()),
         }
     })
-}
-
-/// Makes the output's folder and opens the file: what cannot be written shows before long work.
-fn prepare(output: &Path) -> Result<(), Failure> {
-    if let Some(folder) = output.parent().filter(|folder| !folder.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
-    }
-    let existed = output.exists();
-    std::fs::OpenOptions::new()
-        .append(true)
-        .create(true)
-        .open(output)
-        .map_err(|error| Failure::output(output, error))?;
-    if !existed {
-        // Leave nothing behind where the work fails
-        std::fs::remove_file(output).map_err(|error| Failure::output(output, error))?;
-    }
-    Ok(())
 }
 
 /// What there is to say of a render.

@@ -1,14 +1,14 @@
 //! `arealight table`
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use crate::progress;
 use arealight::{Fresnel, Horizon, LightTable};
 use arealight_fit::report::{COUNT, Errors, Level, SEED, cases, measure};
 use arealight_fit::{Brdf, GgxBrdf};
 use arealight_table::{
-    Adjusted, FileError, MAX_GLSL_SIZE, Precision, SaveError, TableFile, Target, WriteError, hash,
-    load_published, resampled, rounded,
+    Adjusted, FileError, MAX_GLSL_SIZE, Precision, TableFile, Target, WriteError, hash, load_published,
+    resampled, rounded,
 };
 use serde_json::json;
 use std::fmt::Write as _;
@@ -83,6 +83,8 @@ impl Convert {
         let target = Target::of_path(&self.output, precision)
             .map_err(|error| Failure::Argument { argument: "OUT", message: error.to_string() })?;
 
+        output::check(&self.output)?;
+
         // Read, and bring to size
         let (mut file, adjusted) = self.read()?;
         let size = match (self.size, target) {
@@ -109,8 +111,7 @@ impl Convert {
 
         // Write
         let bytes = file.write(target).map_err(|error| Failure::input(&self.input, error))?;
-        let written = std::fs::write(&self.output, &bytes).map_err(SaveError::from);
-        written.map_err(|error| Failure::output(&self.output, error))?;
+        output::write(&self.output, &bytes)?;
         let summary =
             Summary { arguments: self, file: &file, bytes: bytes.len(), target, adjusted: &adjusted };
         print(&if self.json { summary.to_json() } else { summary.to_text() })

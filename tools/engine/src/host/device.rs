@@ -300,7 +300,9 @@ fn choose(candidates: Vec<Candidate>, wanted: Option<&str>) -> Result<Candidate,
     let asked_for = |one: &Candidate| match wanted.map(|wanted| (wanted, wanted.parse::<usize>())) {
         None => Some(one.index) == default,
         Some((_, Ok(index))) => one.index == index,
-        Some((name, Err(_))) => one.name.to_lowercase().contains(&name.to_lowercase()),
+        Some((name, Err(_))) => {
+            !name.trim().is_empty() && one.name.to_lowercase().contains(&name.to_lowercase())
+        }
     };
     if let Some(found) = usable.into_iter().find(asked_for) {
         return Ok(found);
@@ -381,6 +383,7 @@ mod tests {
     #[test]
     fn what_cannot_be_had_says_what_can() {
         let refused = |wanted| choose(three(), Some(wanted)).map(|one| one.index).unwrap_err();
+        assert!(refused("").to_string().contains("take one of 0: llvmpipe"), "no name is no device's");
         let text = refused("titan").to_string();
         assert!(text.contains("`titan`: take one of 0: llvmpipe (LLVM 15), 2: Radiance RX"), "{text}");
         for one in ["1", "old"] {

@@ -249,3 +249,27 @@ fn scenes_made_by_hand_are_checked_when_packed() {
     let text = pack(|_| {}, DVec3::splat(1e17));
     assert!(text.starts_with("triangles[0][0]: "), "{text}");
 }
+
+#[test]
+fn what_lies_outside_of_the_scene_s_folder_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("scene");
+    std::fs::create_dir(&inner).unwrap();
+    std::fs::write(folder.path().join("secret"), "12345678").unwrap();
+    std::fs::write(inner.join("beside.bin"), [0; 36]).unwrap();
+    let load = |uri: &str| {
+        let root = json!({ "asset": { "version": "2.0" }, "buffers": [{ "byteLength": 8, "uri": uri }] });
+        let path = inner.join("scene.gltf");
+        std::fs::write(&path, root.to_string()).unwrap();
+        Scene::load(&path)
+    };
+    for uri in ["../secret", "a/../../secret", "%2e%2e/secret", "./../secret"] {
+        let error = load(uri).unwrap_err().to_string();
+        assert!(error.contains("outside of the scene's folder"), "{uri}: {error}");
+    }
+    // The twin: what lies beside it is, by any way that stays inside
+    for uri in ["beside.bin", "./beside.bin", "textures/../beside.bin"] {
+        std::fs::create_dir_all(inner.join("textures")).unwrap();
+        load(uri).unwrap();
+    }
+}

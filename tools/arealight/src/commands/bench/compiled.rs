@@ -5,7 +5,7 @@ mod model;
 
 use super::{document, write};
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{self, print};
 use arealight_benches::compiled::{Check, Compiled, matching, rows};
 use arealight_benches::sections::Markers;
 use arealight_engine::host::null_hardware::driver_file;
@@ -88,8 +88,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         _ => Compiled::default(),
     };
     for path in [&arguments.save, &arguments.markdown, &arguments.update].into_iter().flatten() {
-        let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
-        opened.map_err(|error| Failure::output(path, error))?;
+        output::check(path)?;
     }
 
     let driver = driver_file().ok_or_else(|| {

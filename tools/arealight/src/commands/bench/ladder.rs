@@ -3,7 +3,7 @@
 use super::page::page;
 use super::{Ends, write};
 use crate::failure::Failure;
-use crate::progress;
+use crate::{output, progress};
 use arealight_benches::ladder::{self, Options};
 use arealight_scene::Scene;
 use std::fmt::Write as _;
@@ -63,6 +63,7 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     let options = arguments.options();
     let scene = Scene::from_bytes(include_bytes!("../../../../../scenes/demo.glb"), "demo")
         .map_err(|error| Failure::input("demo (built in)", error))?;
+    arguments.html.as_deref().map_or(Ok(()), output::check)?;
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.steps(), "steps");

@@ -5,11 +5,10 @@ mod strip;
 
 use crate::commands::render::parse_size;
 use crate::failure::Failure;
-use crate::progress;
+use crate::{output, progress};
 use arealight_benches::ladder::{STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
 use arealight_engine::{Host, HostOptions};
 use arealight_scene::Scene;
-use std::fs::File;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -96,7 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let format = arguments.format()?;
     let crop = arguments.crop()?;
     let scene = Scene::load(&arguments.scene).map_err(|error| Failure::Scene(error.to_string()))?;
-    let file = File::create(&arguments.output).map_err(|error| Failure::output(&arguments.output, error))?;
+    output::check(&arguments.output)?;
     let options = HostOptions { device: arguments.device.clone(), ..HostOptions::default() };
     let host = Host::new(options).map_err(|error| Failure::Device(error.to_string()))?;
 
@@ -115,7 +114,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             found.iter().try_for_each(|found| strip::draw(found, crop).save_png(&arguments.output))?;
         }
         Format::Film => {
-            film::save(&found, crop, file).map_err(|error| Failure::output(&arguments.output, error))?;
+            let film =
+                film::encode(&found, crop).map_err(|error| Failure::output(&arguments.output, error))?;
+            output::write(&arguments.output, &film)?;
         }
     }
     eprintln!("wrote {}", arguments.output.display());

@@ -2,7 +2,7 @@
 
 use super::{Ends, write};
 use crate::failure::Failure;
-use crate::progress;
+use crate::{output, progress};
 use arealight_benches::figures;
 use arealight_benches::method::{METHODS, Method};
 use arealight_benches::shape_stability;
@@ -69,6 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         families: chosen(&arguments.family, FAMILIES),
         methods: chosen(&arguments.level, METHODS),
     };
+    arguments.svg.as_deref().map_or(Ok(()), output::check)?;
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");

@@ -3,10 +3,9 @@
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
 use crate::failure::Failure;
+use crate::output;
 use image::{ExtendedColorType, ImageEncoder, codecs::png};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
-use std::fs::File;
-use std::io::BufWriter;
 use std::path::Path;
 
 /// An sRGB colour.
@@ -108,14 +107,11 @@ impl Canvas {
     /// # Errors
     /// [`Failure::Output`] if the file cannot be written.
     pub fn save_png(&self, path: &Path) -> Result<(), Failure> {
-        let file = File::create(path).map_err(|error| Failure::output(path, error))?;
-        png::PngEncoder::new_with_quality(
-            BufWriter::new(file),
-            png::CompressionType::Best,
-            png::FilterType::NoFilter,
-        )
-        .write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8)
-        .map_err(|error| Failure::output(path, error))
+        let mut bytes = Vec::new();
+        png::PngEncoder::new_with_quality(&mut bytes, png::CompressionType::Best, png::FilterType::NoFilter)
+            .write_image(&self.pixels, self.width, self.height, ExtendedColorType::Rgb8)
+            .map_err(|error| Failure::output(path, error))?;
+        output::write(path, &bytes)
     }
 }
 

@@ -11,7 +11,6 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use glam::DQuat;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
-use std::io::Write;
 
 const PAPER: Colour = [16, 18, 22];
 const INK: Colour = [230, 233, 238];
@@ -55,8 +54,8 @@ fn draw(pictures: &Pictures, [x, y, width, height]: [u32; 4]) -> Canvas {
     canvas
 }
 
-/// Writes the film. Pixels that stay as they were are transparent, which is what keeps the file small.
-pub fn save(pictures: &[Pictures], crop: [u32; 4], file: impl Write) -> Result<(), EncodingError> {
+/// The film as a GIF. Pixels that stay as they were are transparent, which is what keeps the file small.
+pub fn encode(pictures: &[Pictures], crop: [u32; 4]) -> Result<Vec<u8>, EncodingError> {
     let frames: Vec<Canvas> = pictures.iter().map(|pictures| draw(pictures, crop)).collect();
     let opaque = |frame: &Canvas| -> Vec<u8> {
         frame.bytes().chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect()
@@ -67,7 +66,8 @@ pub fn save(pictures: &[Pictures], crop: [u32; 4], file: impl Write) -> Result<(
     palette.extend([0; 3]);
 
     let [width, height] = frames.first().map_or([0, 0], Canvas::size).map(|side| side as u16);
-    let mut encoder = Encoder::new(file, width, height, &palette)?;
+    let mut film = Vec::new();
+    let mut encoder = Encoder::new(&mut film, width, height, &palette)?;
     encoder.set_repeat(Repeat::Infinite)?;
     let unchanged = COLORS as u8;
     let mut before: Vec<u8> = vec![];
@@ -90,7 +90,8 @@ pub fn save(pictures: &[Pictures], crop: [u32; 4], file: impl Write) -> Result<(
         })?;
         before = indices;
     }
-    Ok(())
+    drop(encoder);
+    Ok(film)
 }
 
 #[cfg(test)]
