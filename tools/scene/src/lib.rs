@@ -8,7 +8,8 @@
 //! # What becomes a light
 //! - Flat geometry with an emissive material: coplanar neighbours merge into one outline, so a quad is one
 //!   light of four vertices. Its radiance is emissiveFactor × `KHR_materials_emissive_strength`, as numbers
-//!   in W/(m² sr). A double-sided material makes a two-sided light. An emissiveTexture is shown where it is mapped onto
+//!   in W/(m² sr). A double-sided material makes a two-sided light, but for the
+//!   parts of a mesh that are closed and face outwards: nobody sees their inside, and each is one-sided. An emissiveTexture is shown where it is mapped onto
 //!   the outline by one affine map: a part of it is a layer of the light textures ([`Scene::light_textures`]), and
 //!   where the mapping has a seam, another light begins. Parts that are black are no lights.
 //! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
@@ -27,6 +28,7 @@ mod accessor;
 mod area_lights;
 mod borders;
 mod camera;
+mod closed;
 mod document;
 mod effects;
 mod emitters;

@@ -39,6 +39,14 @@ impl Loader {
             self.scene.warnings.push(warning);
         }
     }
+
+    /// Notes what is shown as the file means, though not word for word.
+    pub fn note(&mut self, place: impl Into<String>, text: impl Into<String>) {
+        let note = Warning { place: place.into(), text: text.into() };
+        if !self.scene.notes.contains(&note) {
+            self.scene.notes.push(note);
+        }
+    }
 }
 
 pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {

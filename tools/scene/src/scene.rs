@@ -36,6 +36,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// What the file has that is not shown as it says, and what was done instead.
     pub warnings: Vec<Warning>,
+    /// What is shown as the file means, though not word for word: nothing is lost.
+    pub notes: Vec<Warning>,
 }
 
 /// A triangle. Seen from its front the vertices run counter-clockwise, also under mirroring transforms.
@@ -136,12 +138,12 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
-/// Something in the file that is not shown as it says.
+/// Something in the file that is not shown word for word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// The mesh, material, node or extension.
     pub place: String,
-    /// What is wrong and what was done.
+    /// What it is and what was done.
     pub text: String,
 }
 

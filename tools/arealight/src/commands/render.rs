@@ -427,6 +427,7 @@ impl Summary<'_> {
             "effects": effects,
             "surfaces_shaded_with": surfaces.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
             "picked": outcome.picked.map(|level| json!({
                 "levels": LevelNames::from(level.quality),
