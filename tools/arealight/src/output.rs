@@ -1,7 +1,9 @@
 //! Standard output, which may be a pipe that closes early.
 
 use crate::failure::Failure;
+use arealight_scene::{Scene, Warning};
 use std::io::Write as _;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Prints `text` to standard output. A reader that has seen enough, such as `head`, is no failure.
@@ -15,5 +17,16 @@ pub fn print(text: &str) -> Result<ExitCode, Failure> {
             Err(Failure::output("standard output", error))
         }
         _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Prints to standard error what a scene's picture lacks, and what is not shown word for word: the file once, then a line for each kind.
+pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
+    for (word, said) in [("warning", &scene.warnings), ("note", &scene.notes)] {
+        match &Warning::grouped(said)[..] {
+            [] => {}
+            [line] => eprintln!("{word}: {}: {line}", path.display()),
+            lines => eprintln!("{word}: {}:\n    {}", path.display(), lines.join("\n    ")),
+        }
     }
 }

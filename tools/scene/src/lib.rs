@@ -33,6 +33,7 @@ mod document;
 mod effects;
 mod emitters;
 mod error;
+mod extensions;
 mod gpu;
 mod images;
 mod light_textures;
@@ -48,6 +49,7 @@ mod shape_lights;
 mod shown;
 mod tangents;
 mod uv_map;
+mod uv_mapping;
 
 pub use area_lights::LUMENS_PER_WATT;
 pub use camera::Camera;

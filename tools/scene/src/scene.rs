@@ -153,6 +153,24 @@ impl std::fmt::Display for Warning {
     }
 }
 
+impl Warning {
+    /// One line for each text, with the place where it came first and how many more there are.
+    pub fn grouped(warnings: &[Self]) -> Vec<String> {
+        let mut kinds: Vec<(&Self, usize)> = Vec::new();
+        for warning in warnings {
+            match kinds.iter_mut().find(|(first, _)| first.text == warning.text) {
+                Some((_, count)) => *count += 1,
+                None => kinds.push((warning, 1)),
+            }
+        }
+        let line = |(first, count): (&Self, usize)| match count {
+            1 => first.to_string(),
+            more => format!("{} and {} more: {}", first.place, more - 1, first.text),
+        };
+        kinds.into_iter().map(line).collect()
+    }
+}
+
 impl Default for Bounds {
     fn default() -> Self {
         Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }

@@ -3,7 +3,7 @@
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
-use crate::output::print;
+use crate::output::{print, say_what_is_not_shown};
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
@@ -204,9 +204,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo")
             .map_err(|error| Failure::input(&path, error))?,
     };
-    for warning in &scene.warnings {
-        eprintln!("warning: {}: {warning}", path.display());
-    }
+    say_what_is_not_shown(&scene, &path);
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
     prepare(&output)?;

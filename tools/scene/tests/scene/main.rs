@@ -2,6 +2,7 @@
 
 mod closed_lights;
 mod errors;
+mod extensions;
 mod geometry;
 mod hostile;
 mod lights;
