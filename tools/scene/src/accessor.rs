@@ -28,11 +28,11 @@ pub(crate) fn floats<const N: usize>(
         (ComponentType::U8, true) => |b| f32::from(b[0]) / 255.0,
         (ComponentType::U16, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
         // The lowest number of two's complement stands for -1, too
-        (ComponentType::I8, true) => |b| (f32::from(b[0] as i8) / 127.0).max(-1.0),
+        (ComponentType::I8, true) => |b| (f32::from(b[0].cast_signed()) / 127.0).max(-1.0),
         (ComponentType::I16, true) => |b| (f32::from(i16::from_le_bytes([b[0], b[1]])) / 32767.0).max(-1.0),
         (ComponentType::U8, false) => |b| f32::from(b[0]),
         (ComponentType::U16, false) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])),
-        (ComponentType::I8, false) => |b| f32::from(b[0] as i8),
+        (ComponentType::I8, false) => |b| f32::from(b[0].cast_signed()),
         (ComponentType::I16, false) => |b| f32::from(i16::from_le_bytes([b[0], b[1]])),
         (component @ ComponentType::U32, _) => {
             let problem = format!("components of type {component:?} are not supported here");

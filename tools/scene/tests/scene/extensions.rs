@@ -202,3 +202,28 @@ fn textures_are_scaled_turned_and_moved() {
     assert_eq!(corners_of(&json!({ "index": 0, "texCoord": 1 })), [[0.5, 0.25]; 2]);
     assert_eq!(transform(json!({ "texCoord": 1, "scale": [2, 2] })), [[1.0, 0.5]; 2]);
 }
+
+/// The words of docs/gltf.md that no source of the program has, and the tests that do not exist.
+fn wrong_rows(document: &str) -> Vec<String> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let sources = std::fs::read_dir(folder.join("src")).unwrap();
+    let program: String =
+        sources.map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap()).collect();
+    let rows = document.lines().filter(|line| line.starts_with("| ")).skip(1);
+    let is_wrong = |row: &&str| {
+        let columns: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, _, _, words, test, _] = columns[..] else { return true };
+        !program.contains(words.trim_matches('`')) || !folder.join("tests/scene").join(test).is_file()
+    };
+    rows.filter(is_wrong).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_document_has_the_programs_words() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/gltf.md");
+    assert_eq!(wrong_rows(&std::fs::read_to_string(path).unwrap()), [""; 0]);
+    // The twin: other words, and a test that is not there
+    let head = "| a | b | c | d |\n";
+    let bad = ["| x | warned | `is a pity` | lights.rs |", "| x | warned | | nowhere.rs |"];
+    assert_eq!(wrong_rows(&format!("{head}{}", bad.join("\n"))), bad);
+}
