@@ -1,6 +1,7 @@
 //! What commands write: standard output, which may be a pipe that closes early, and files, which are whole or not there.
 
 use crate::failure::Failure;
+use arealight_scene::{Scene, Warning};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -18,6 +19,17 @@ pub fn print(text: &str) -> Result<ExitCode, Failure> {
             Err(Failure::output("standard output", error))
         }
         _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+/// Prints to standard error what a scene's picture lacks, and what is not shown word for word: the file once, then a line for each kind.
+pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
+    for (word, said) in [("warning", &scene.warnings), ("note", &scene.notes)] {
+        match &Warning::grouped(said)[..] {
+            [] => {}
+            [line] => eprintln!("{word}: {}: {line}", path.display()),
+            lines => eprintln!("{word}: {}:\n    {}", path.display(), lines.join("\n    ")),
+        }
     }
 }
 

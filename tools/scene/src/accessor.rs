@@ -14,8 +14,8 @@ struct Elements {
     normalized: bool,
 }
 
-/// Vectors of `N` floats: float components as they are, normalised integers as fractions. None is NaN or
-/// infinite.
+/// Vectors of `N` floats: float components as they are, normalised integers as fractions, others as whole numbers (`KHR_mesh_quantization`).
+/// None is NaN or infinite.
 pub(crate) fn floats<const N: usize>(
     document: &Document,
     accessor: usize,
@@ -27,7 +27,14 @@ pub(crate) fn floats<const N: usize>(
         (ComponentType::F32, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),
         (ComponentType::U8, true) => |b| f32::from(b[0]) / 255.0,
         (ComponentType::U16, true) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])) / 65535.0,
-        (component, _) => {
+        // The lowest number of two's complement stands for -1, too
+        (ComponentType::I8, true) => |b| (f32::from(b[0].cast_signed()) / 127.0).max(-1.0),
+        (ComponentType::I16, true) => |b| (f32::from(i16::from_le_bytes([b[0], b[1]])) / 32767.0).max(-1.0),
+        (ComponentType::U8, false) => |b| f32::from(b[0]),
+        (ComponentType::U16, false) => |b| f32::from(u16::from_le_bytes([b[0], b[1]])),
+        (ComponentType::I8, false) => |b| f32::from(b[0].cast_signed()),
+        (ComponentType::I16, false) => |b| f32::from(i16::from_le_bytes([b[0], b[1]])),
+        (component @ ComponentType::U32, _) => {
             let problem = format!("components of type {component:?} are not supported here");
             return Err(document.invalid(field, problem));
         }

@@ -1,19 +1,8 @@
 //! The file as glTF has it: container, JSON, buffers. Nothing here trusts the file.
 
-use crate::SceneError;
+use crate::{SceneError, extensions};
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
-
-/// Extensions that a file may require.
-const SUPPORTED_EXTENSIONS: [&str; 7] = [
-    "EXT_lights_area",
-    "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_sheen",
-    "KHR_materials_specular",
-];
 
 /// The largest file, buffer or encoded image that is read, in bytes.
 const MAX_FILE_BYTES: u64 = 1 << 32;
@@ -45,7 +34,7 @@ impl Document {
         let (text, blob) =
             split(bytes).map_err(|reason| SceneError::NotGltf { file: file.clone(), reason })?;
         // Parse and check the JSON
-        let root: json::Root = serde_json::from_slice(text)
+        let root = parse_root(text)
             .map_err(|e| SceneError::NotGltf { file: file.clone(), reason: e.to_string() })?;
         let mut document = Self { file, root, buffers: Vec::new(), folder };
         document.check_version_and_extensions()?;
@@ -129,12 +118,11 @@ impl Document {
                 reason: format!("asset.version is '{version}'"),
             });
         }
-        for extension in std::mem::take(&mut self.root.extensions_required) {
-            if !SUPPORTED_EXTENSIONS.contains(&extension.as_str()) {
-                return Err(SceneError::RequiredExtension { file: self.file.clone(), extension });
-            }
-        }
-        Ok(())
+        // The gltf crate would refuse what it does not read itself
+        let required = std::mem::take(&mut self.root.extensions_required);
+        extensions::check_required(&self.file, &required)?;
+        self.root.extensions_used.extend(required);
+        extensions::check_fallbacks(self)
     }
 
     fn check_fields(&self) -> Result<(), SceneError> {
@@ -180,6 +168,20 @@ impl Document {
         bytes.truncate(expected as usize);
         Ok(bytes)
     }
+}
+
+/// The JSON's root. A scene may be without `nodes`, which the gltf crate insists on.
+fn parse_root(text: &[u8]) -> serde_json::Result<json::Root> {
+    let failure = match serde_json::from_slice(text) {
+        Err(error) if error.to_string().contains("missing field `nodes`") => error,
+        other => return other,
+    };
+    let mut root: serde_json::Value = serde_json::from_slice(text)?;
+    let scenes = root.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
+    for scene in scenes.into_iter().flatten().filter_map(serde_json::Value::as_object_mut) {
+        scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
+    }
+    serde_json::from_slice(&serde_json::to_vec(&root)?).map_err(|_| failure)
 }
 
 /// `length` bytes from `offset` on.

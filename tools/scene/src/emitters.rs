@@ -1,5 +1,6 @@
 //! Emissive geometry to polygon lights.
 
+use crate::closed::closed;
 use crate::light_textures::{self, TexturedLight};
 use crate::load::{Lamp, Loader};
 use crate::meshes::Instance;
@@ -21,7 +22,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
         // The node's shape may have been added for another of its primitives
         return loader.scene.lights.len() - 1..loader.scene.lights.len();
     }
-    add_polygons(loader, node, instance);
+    add_sides(loader, node, instance);
     first..loader.scene.lights.len()
 }
 
@@ -37,21 +38,51 @@ pub(crate) fn finish(loader: &mut Loader) {
     scene.lights.retain(shines);
 }
 
-/// Adds an instance's flat parts as lights.
-fn add_polygons(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
+/// Adds an instance's flat parts as lights: those of its closed parts as one-sided ones whatever the material says, for nobody sees their
+/// inside. Where alpha makes holes there is no inside.
+fn add_sides(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     let material = &loader.scene.materials[instance.material as usize];
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());
-    let (radiance, texture) = (material.emission, material.emission_texture);
     let place = format!("light '{}' (node {})", instance.name, node.index);
     if masked {
         loader.warn(place.as_str(), "alphaMode MASK: the light shines where the mask is transparent, too");
     }
+    if !two_sided || masked {
+        add_polygons(loader, &place, instance, &instance.triangles, two_sided);
+        return;
+    }
+    let is_closed = closed(&instance.positions, &instance.triangles, instance.rounding);
+    let part = |wanted: bool| -> Vec<[u32; 3]> {
+        let of_part = instance.triangles.iter().zip(&is_closed).filter(|(_, closed)| **closed == wanted);
+        of_part.map(|(triangle, _)| *triangle).collect()
+    };
+    for (triangles, two_sided) in [(part(true), false), (part(false), true)] {
+        if triangles.is_empty() {
+            continue;
+        }
+        if !two_sided {
+            loader.note(place.as_str(), "doubleSided, but a closed surface: it shines outwards only");
+        }
+        add_polygons(loader, &place, instance, &triangles, two_sided);
+    }
+}
+
+/// Adds the flat parts of some of an instance's triangles as lights.
+fn add_polygons(
+    loader: &mut Loader,
+    place: &str,
+    instance: &Instance,
+    triangles: &[[u32; 3]],
+    two_sided: bool,
+) {
+    let material = &loader.scene.materials[instance.material as usize];
+    let (radiance, texture) = (material.emission, material.emission_texture);
     // Merge what is flat, and mapped alike
     let coordinates = texture.map(|texture| Coordinates {
         uvs: instance.uvs,
         tolerance: light_textures::tolerance(&loader.scene, texture),
     });
-    let outlines = outlines(&instance.positions, &instance.triangles, instance.rounding, coordinates);
+    let outlines = outlines(&instance.positions, triangles, instance.rounding, coordinates);
     let Some(texture) = texture else {
         // One light of one colour, of as many faces as there are flat parts
         let mut shape = LightShape::default();
@@ -60,7 +91,7 @@ fn add_polygons(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
             polygons => polygons.iter().for_each(|outline| shape.add_face(outline)),
         }
         let name = instance.name.clone();
-        push(loader, &place, Light { name, radiance, two_sided, shape, ..Light::default() });
+        push(loader, place, Light { name, radiance, two_sided, shape, ..Light::default() });
         return;
     };
     // An image lies on one plane: each straight part is a light of its own
@@ -68,15 +99,15 @@ fn add_polygons(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
     if outlines.bent {
         let text =
             format!("its texture is on a surface that is not flat: {count} polygon lights, one a flat part");
-        loader.warn(place.as_str(), text);
+        loader.warn(place, text);
     }
     if outlines.seams {
         let text = format!("its texture has seams or bends: {count} polygon lights, one a straight part");
-        loader.warn(place.as_str(), text);
+        loader.warn(place, text);
     }
     if outlines.split > 0 {
         let text = format!("touches itself: {} more polygon lights make it up", outlines.split);
-        loader.warn(place.as_str(), text);
+        loader.warn(place, text);
     }
     let mut uvs = outlines.uvs.into_iter();
     for (number, vertices) in outlines.polygons.into_iter().enumerate() {
@@ -85,7 +116,7 @@ fn add_polygons(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
             if count == 1 { instance.name.clone() } else { format!("{}#{}", instance.name, number + 1) };
         let shape = LightShape::Polygon(vertices);
         let light = Light { name, radiance, two_sided, shape, ..Light::default() };
-        if push(loader, &place, light) {
+        if push(loader, place, light) {
             let owner = loader.scene.lights.len() - 1;
             loader.textured.push(TexturedLight { owner, texture, uvs });
         }

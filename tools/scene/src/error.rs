@@ -29,6 +29,18 @@ pub enum SceneError {
         /// The extension.
         extension: String,
     },
+    /// Data that are only in an extension that is not supported.
+    #[error(
+        "{file}: {field}: is only there in {extension}, which is not supported; export the scene without it"
+    )]
+    OnlyInExtension {
+        /// The scene file.
+        file: String,
+        /// Where, as a path through the JSON.
+        field: String,
+        /// The extension.
+        extension: String,
+    },
     /// A field breaks a rule of glTF.
     #[error("{file}: {field}: {problem}")]
     Invalid {

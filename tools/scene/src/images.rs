@@ -58,8 +58,8 @@ fn decoded(loader: &mut Loader, index: usize) -> Result<u32, SceneError> {
     // Decode them by what they are, whatever the file calls them
     let failed = |source| SceneError::Image { file: document.file.clone(), field: field.clone(), source };
     let format = image::guess_format(&bytes).map_err(failed)?;
-    if !matches!(format, image::ImageFormat::Png | image::ImageFormat::Jpeg) {
-        return Err(document.invalid(field, format!("is {format:?}, must be PNG or JPEG")));
+    if !matches!(format, image::ImageFormat::Png | image::ImageFormat::Jpeg | image::ImageFormat::WebP) {
+        return Err(document.invalid(field, format!("is {format:?}, must be PNG, JPEG or WebP")));
     }
     let mut reader = image::ImageReader::with_format(Cursor::new(&bytes), format);
     let mut limits = image::Limits::default();

@@ -8,7 +8,8 @@
 //! # What becomes a light
 //! - Flat geometry with an emissive material: coplanar neighbours merge into one outline, so a quad is one
 //!   light of four vertices. Its radiance is emissiveFactor × `KHR_materials_emissive_strength`, as numbers
-//!   in W/(m² sr). A double-sided material makes a two-sided light. An emissiveTexture is shown where it is mapped onto
+//!   in W/(m² sr). A double-sided material makes a two-sided light, but for the
+//!   parts of a mesh that are closed and face outwards: nobody sees their inside, and each is one-sided. An emissiveTexture is shown where it is mapped onto
 //!   the outline by one affine map: a part of it is a layer of the light textures ([`Scene::light_textures`]), and
 //!   where the mapping has a seam, another light begins. Parts that are black are no lights.
 //! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
@@ -29,10 +30,12 @@ mod accessor;
 mod area_lights;
 mod borders;
 mod camera;
+mod closed;
 mod document;
 mod effects;
 mod emitters;
 mod error;
+mod extensions;
 mod gpu;
 mod images;
 mod light_textures;
@@ -48,6 +51,7 @@ mod shape_lights;
 mod shown;
 mod tangents;
 mod uv_map;
+mod uv_mapping;
 
 pub use area_lights::LUMENS_PER_WATT;
 pub use camera::Camera;

@@ -2,7 +2,9 @@
 
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
-use crate::{Bounds, Scene, SceneError, Warning, area_lights, emitters, materials, meshes, nodes};
+use crate::{
+    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes,
+};
 use glam::Vec3;
 use std::ops::Range;
 use std::path::Path;
@@ -37,6 +39,14 @@ impl Loader {
         let warning = Warning { place: place.into(), text: text.into() };
         if !self.scene.warnings.contains(&warning) {
             self.scene.warnings.push(warning);
+        }
+    }
+
+    /// Notes what is shown as the file means, though not word for word.
+    pub fn note(&mut self, place: impl Into<String>, text: impl Into<String>) {
+        let note = Warning { place: place.into(), text: text.into() };
+        if !self.scene.notes.contains(&note) {
+            self.scene.notes.push(note);
         }
     }
 }
@@ -87,15 +97,11 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
 }
 
 fn warn_of_what_is_ignored(loader: &mut Loader) {
-    let root = &loader.document.root;
-    let (animations, punctual) =
-        (root.animations.len(), root.extensions_used.iter().any(|e| e == "KHR_lights_punctual"));
+    let animations = loader.document.root.animations.len();
     if animations > 0 {
         loader.warn("animations", format!("{animations} ignored; the scene is shown at rest"));
     }
-    if punctual {
-        loader.warn("KHR_lights_punctual", "points have no area: these lights are left out");
-    }
+    extensions::warn_of_unread(loader);
 }
 
 fn warn_of_what_is_missing(loader: &mut Loader) {

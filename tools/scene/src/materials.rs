@@ -2,6 +2,7 @@
 
 use crate::load::Loader;
 use crate::meshes::Primitive;
+use crate::uv_mapping::Mappings;
 use crate::{SceneError, SceneMaterial, images};
 use arealight_oracle::material::Material;
 use glam::Vec3;
@@ -37,7 +38,7 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.anisotropy_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
-        let text = "has no TEXCOORD_0: its textures are read at (0, 0)";
+        let text = format!("has no TEXCOORD_{}: its textures are read at (0, 0)", primitive.uv_set);
         loader.warn(primitive.field.clone(), text);
     } else if !primitive.has_tangents && material.anisotropy_strength > 0.0 {
         let text = "has neither TANGENT nor TEXCOORD_0: its anisotropy has some direction";
@@ -56,6 +57,7 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     };
     let mut reader = Reader { place: format!("material '{name}'"), loader };
     reader.warn_of_unknown_extensions(&source);
+    reader.warn_of_mappings(&source);
     // Factors
     let pbr = &source.pbr_metallic_roughness;
     let [r, g, b, alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
@@ -83,21 +85,17 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
     let emission = reader.emission(&source);
     // Textures
-    let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), "baseColorTexture", true)?;
-    let metallic_roughness_texture =
-        reader.texture(pbr.metallic_roughness_texture.as_ref(), "metallicRoughnessTexture", false)?;
-    let emission_texture = reader.texture(source.emissive_texture.as_ref(), "emissiveTexture", true)?;
-    let (normal_texture, normal_scale) =
-        reader.normal_texture(source.normal_texture.as_ref(), "normalTexture")?;
-    let coat_texture = reader.texture(clearcoat.texture.as_ref(), "clearcoatTexture", false)?;
-    let coat_roughness_texture =
-        reader.texture(clearcoat.roughness_texture.as_ref(), "clearcoatRoughnessTexture", false)?;
+    let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), true)?;
+    let metallic_roughness_texture = reader.texture(pbr.metallic_roughness_texture.as_ref(), false)?;
+    let emission_texture = reader.texture(source.emissive_texture.as_ref(), true)?;
+    let (normal_texture, normal_scale) = reader.normal_texture(source.normal_texture.as_ref())?;
+    let coat_texture = reader.texture(clearcoat.texture.as_ref(), false)?;
+    let coat_roughness_texture = reader.texture(clearcoat.roughness_texture.as_ref(), false)?;
     let (coat_normal_texture, coat_normal_scale) =
-        reader.normal_texture(clearcoat.normal_texture.as_ref(), "clearcoatNormalTexture")?;
-    let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), "sheenColorTexture", true)?;
-    let sheen_roughness_texture =
-        reader.texture(sheen.roughness_texture.as_ref(), "sheenRoughnessTexture", false)?;
-    let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), "anisotropyTexture", false)?;
+        reader.normal_texture(clearcoat.normal_texture.as_ref())?;
+    let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), true)?;
+    let sheen_roughness_texture = reader.texture(sheen.roughness_texture.as_ref(), false)?;
+    let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), false)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -219,36 +217,25 @@ impl Reader<'_> {
         Vec3::ZERO
     }
 
-    fn texture(
-        &mut self,
-        info: Option<&json::texture::Info>,
-        field: &str,
-        srgb: bool,
-    ) -> Result<Option<u32>, SceneError> {
+    fn texture(&mut self, info: Option<&json::texture::Info>, srgb: bool) -> Result<Option<u32>, SceneError> {
         let Some(info) = info else { return Ok(None) };
-        let transformed = info.extensions.as_ref().is_some_and(|e| e.others.contains_key(TRANSFORM));
-        self.warn_of_coordinates(field, info.tex_coord, transformed);
         images::resolve(self.loader, info.index.value(), srgb).map(Some)
     }
 
     fn normal_texture(
         &mut self,
         info: Option<&json::material::NormalTexture>,
-        field: &str,
     ) -> Result<(Option<u32>, f32), SceneError> {
         let Some(info) = info else { return Ok((None, 1.0)) };
-        let transformed = info.extensions.as_ref().is_some_and(|e| e.others.contains_key(TRANSFORM));
-        self.warn_of_coordinates(field, info.tex_coord, transformed);
         let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
         Ok((Some(images::resolve(self.loader, info.index.value(), false)?), scale))
     }
 
-    fn warn_of_coordinates(&mut self, field: &str, tex_coord: u32, transformed: bool) {
-        if tex_coord != 0 {
-            self.warn(format!("{field}.texCoord {tex_coord} is not supported: TEXCOORD_0 is used"));
-        }
-        if transformed {
-            self.warn(format!("{field}: {TRANSFORM} is not supported: ignored"));
+    fn warn_of_mappings(&mut self, source: &json::Material) {
+        let Mappings { first, others, .. } = Mappings::of(source);
+        if !others.is_empty() {
+            let others = others.join(", ");
+            self.warn(format!("{others}: mapped otherwise than {first}, drawn as that is"));
         }
     }
 
@@ -272,7 +259,6 @@ pub(crate) fn has_tangents(material: &json::Material) -> bool {
 }
 
 const ANISOTROPY: &str = "KHR_materials_anisotropy";
-const TRANSFORM: &str = "KHR_texture_transform";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
 const SHEEN: &str = "KHR_materials_sheen";
 

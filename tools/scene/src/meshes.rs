@@ -2,6 +2,7 @@
 
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
+use crate::uv_mapping::{Mappings, UvMapping};
 use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor, materials, tangents};
 use glam::{DMat3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json;
@@ -17,7 +18,9 @@ pub(crate) struct Primitive {
     mesh_name: Option<String>,
     /// Index of its material in the file.
     pub material: Option<usize>,
-    /// Whether it has texture coordinates of its own.
+    /// Which texture coordinates its material is drawn with: the number in `TEXCOORD_n`.
+    pub uv_set: u32,
+    /// Whether it has them.
     pub has_uvs: bool,
     /// Whether it has tangents: its own, or by texture coordinates.
     pub has_tangents: bool,
@@ -26,6 +29,8 @@ pub(crate) struct Primitive {
     normals: Vec<Vec3>,
     /// As many as positions; zero where there is none.
     uvs: Vec<Vec2>,
+    /// The same for the emissive texture, where it is mapped otherwise.
+    light_uvs: Option<Vec<Vec2>>,
     /// Indices of vertices that exist.
     triangles: Vec<[u32; 3]>,
     /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says what they are.
@@ -40,7 +45,7 @@ pub(crate) struct Instance<'a> {
     pub material: u32,
     /// World positions.
     pub positions: Vec<DVec3>,
-    /// Texture coordinates, as many as positions; zero where the file has none.
+    /// The emissive texture's coordinates, as many as positions; zero where the file has none.
     pub uvs: &'a [Vec2],
     /// Counter-clockwise from the front, without those that have no area.
     pub triangles: Vec<[u32; 3]>,
@@ -116,15 +121,25 @@ fn read(
         Some(accessor) => accessor::floats::<3>(document, accessor, &place("NORMAL"))?,
         None => vec![[0.0; 3]; count],
     };
-    let coordinates = attribute(Semantic::TexCoords(0));
-    let uvs = match coordinates {
-        Some(accessor) => accessor::floats::<2>(document, accessor, &place("TEXCOORD_0"))?,
-        None => vec![[0.0; 2]; count],
-    };
-    for (name, length) in [("NORMAL", normals.len()), ("TEXCOORD_0", uvs.len())] {
-        if length != count {
-            return Err(document.invalid(place(name), format!("{length} for {count} positions")));
+    let material = source.material.map(|m| m.value());
+    let mappings = material.and_then(|index| document.root.materials.get(index)).map(Mappings::of);
+    let Mappings { drawn, light, .. } = mappings.unwrap_or_default();
+    let coordinates = attribute(Semantic::TexCoords(drawn.set));
+    let mapped = |mapping: UvMapping| match attribute(Semantic::TexCoords(mapping.set)) {
+        Some(accessor) => {
+            let place = place(&format!("TEXCOORD_{}", mapping.set));
+            let uvs = accessor::floats::<2>(document, accessor, &place)?;
+            if uvs.len() != count {
+                return Err(document.invalid(place, format!("{} for {count} positions", uvs.len())));
+            }
+            Ok(uvs.into_iter().map(|uv| mapping.apply(Vec2::from_array(uv))).collect())
         }
+        None => Ok(vec![Vec2::ZERO; count]),
+    };
+    let uvs: Vec<Vec2> = mapped(drawn)?;
+    let light_uvs = if light == drawn { None } else { Some(mapped(light)?) };
+    if normals.len() != count {
+        return Err(document.invalid(place("NORMAL"), format!("{} for {count} positions", normals.len())));
     }
     // Corners, three a triangle
     let corners = match source.indices {
@@ -140,8 +155,6 @@ fn read(
         loader.warn(field.as_str(), format!("{left_over} corners are no whole triangle: left out"));
     }
     let normals: Vec<Vec3> = normals.into_iter().map(Vec3::from_array).collect();
-    let uvs: Vec<Vec2> = uvs.into_iter().map(Vec2::from_array).collect();
-    let material = source.material.map(|m| m.value());
     // Tangents
     let mut tangents = None;
     if material
@@ -157,11 +170,13 @@ fn read(
         field,
         mesh_name,
         material,
+        uv_set: drawn.set,
         has_uvs: coordinates.is_some(),
         has_tangents: tangents.is_some(),
         positions,
         normals,
         uvs,
+        light_uvs,
         triangles,
         tangents: tangents.unwrap_or_default(),
     }))
@@ -241,7 +256,7 @@ pub(crate) fn place<'a>(
         name: name.map_or_else(|| format!("node {}", node.index), Clone::clone),
         material,
         positions,
-        uvs: &primitive.uvs,
+        uvs: primitive.light_uvs.as_ref().unwrap_or(&primitive.uvs),
         triangles: kept,
         rounding: largest * stretch * f64::from(f32::EPSILON),
     })

@@ -32,6 +32,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
     let mut seen = vec![false; nodes.len()];
     let mut placed = Vec::new();
     let mut skinned = Vec::new();
+    let mut hidden = 0;
     // Traverse depth first with a stack of our own: a file may nest deeper than the thread's stack
     let mut stack: Vec<(usize, DAffine3)> =
         roots.into_iter().rev().map(|root| (root, DAffine3::IDENTITY)).collect();
@@ -47,6 +48,10 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
         let columns = world.to_cols_array();
         if columns.iter().any(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
             return Err(document.not_finite(format!("{}: its world transform", field()), columns));
+        }
+        if is_hidden(node) {
+            hidden += 1;
+            continue;
         }
         if node.skin.is_some() {
             skinned.push(index);
@@ -67,7 +72,19 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
     for index in skinned {
         loader.warn(format!("nodes[{index}]"), "skin ignored; the mesh is shown at rest");
     }
+    if hidden > 0 {
+        loader.note(
+            "KHR_node_visibility",
+            format!("{hidden} hidden nodes, and what is below them, are left out"),
+        );
+    }
     Ok(placed)
+}
+
+/// Whether the file hides a node and all that is below it, by `KHR_node_visibility`.
+fn is_hidden(node: &json::Node) -> bool {
+    let said = node.extensions.as_ref().and_then(|extensions| extensions.others.get("KHR_node_visibility"));
+    said.and_then(|said| said.get("visible")).and_then(Value::as_bool) == Some(false)
 }
 
 /// The default scene's nodes; without one the first scene's, without scenes every node that has no parent.

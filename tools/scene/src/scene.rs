@@ -36,6 +36,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// What the file has that is not shown as it says, and what was done instead.
     pub warnings: Vec<Warning>,
+    /// What is shown as the file means, though not word for word: nothing is lost.
+    pub notes: Vec<Warning>,
 }
 
 /// A triangle. Seen from its front the vertices run counter-clockwise, also under mirroring transforms.
@@ -136,18 +138,36 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
-/// Something in the file that is not shown as it says.
+/// Something in the file that is not shown word for word.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// The mesh, material, node or extension.
     pub place: String,
-    /// What is wrong and what was done.
+    /// What it is and what was done.
     pub text: String,
 }
 
 impl std::fmt::Display for Warning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: {}", self.place, self.text)
+    }
+}
+
+impl Warning {
+    /// One line for each text, with the place where it came first and how many more there are.
+    pub fn grouped(warnings: &[Self]) -> Vec<String> {
+        let mut kinds: Vec<(&Self, usize)> = Vec::new();
+        for warning in warnings {
+            match kinds.iter_mut().find(|(first, _)| first.text == warning.text) {
+                Some((_, count)) => *count += 1,
+                None => kinds.push((warning, 1)),
+            }
+        }
+        let line = |(first, count): (&Self, usize)| match count {
+            1 => first.to_string(),
+            more => format!("{} and {} more: {}", first.place, more - 1, first.text),
+        };
+        kinds.into_iter().map(line).collect()
     }
 }
 

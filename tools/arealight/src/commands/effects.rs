@@ -1,7 +1,7 @@
 //! `arealight effects`: what a scene needs, and why.
 
 use crate::failure::Failure;
-use crate::output::print;
+use crate::output::{print, say_what_is_not_shown};
 use arealight::Effects;
 use arealight_scene::{RequiredEffect, Scene, required_effects};
 use serde_json::json;
@@ -23,9 +23,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let path = &arguments.scene;
     let scene = Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?;
-    for warning in &scene.warnings {
-        eprintln!("warning: {}: {warning}", path.display());
-    }
+    say_what_is_not_shown(&scene, path);
     let required = required_effects(&scene);
     print(&if arguments.json { to_json(arguments, &required) } else { to_text(&required) })
 }

@@ -3,7 +3,7 @@
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
-use crate::output::{self, print};
+use crate::output::{self, print, say_what_is_not_shown};
 use crate::picture::{Exposure, Picture};
 use crate::progress;
 use crate::quality::QualityArguments;
@@ -207,9 +207,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo")
             .map_err(|error| Failure::input(&path, error))?,
     };
-    for warning in &scene.warnings {
-        eprintln!("warning: {}: {warning}", path.display());
-    }
+    say_what_is_not_shown(&scene, &path);
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
     if arguments.output.is_none() {
@@ -415,6 +413,7 @@ impl Summary<'_> {
             "effects": effects,
             "surfaces_shaded_with": surfaces.names(),
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
             "picked": outcome.picked.map(|level| json!({
                 "levels": LevelNames::from(level.quality),

@@ -76,7 +76,7 @@ fn fields_that_break_rules_are_named() {
             "accessors[0].count: 18446744073709551615, at most",
         ),
         (|r| r["accessors"][0]["type"] = json!("VEC4"), "POSITION: accessors[0] is Vec4, should be Vec3"),
-        (|r| r["accessors"][0]["componentType"] = json!(5123), "POSITION: components of type U16"),
+        (|r| r["accessors"][0]["componentType"] = json!(5125), "POSITION: components of type U32"),
         (|r| r["accessors"][0]["byteOffset"] = json!(u64::MAX), "do not fit bufferViews[0]"),
         (|r| r["accessors"][1]["count"] = json!(3), "NORMAL: 3 for 4 positions"),
         (|r| r["accessors"][3]["componentType"] = json!(5122), "indices: I16 cannot be an index"),
@@ -195,7 +195,7 @@ fn images_that_cannot_be_read_are_named() {
     };
     for (bytes, text) in [
         (&b"no image at all"[..], "images[0]: "),
-        (b"GIF89a.........", "images[0]: is Gif, must be PNG or JPEG"),
+        (b"GIF89a.........", "images[0]: is Gif, must be PNG, JPEG or WebP"),
         (b"\x89PNG\r\n\x1a\n....", "images[0]: "),
     ] {
         let error = error(textured(bytes));

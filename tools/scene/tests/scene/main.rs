@@ -1,6 +1,8 @@
 //! Scenes from files made here, good and bad, and the project's own.
 
+mod closed_lights;
 mod errors;
+mod extensions;
 mod geometry;
 mod hostile;
 mod lights;

@@ -161,11 +161,13 @@ fn what_is_wrong_with_a_coat_is_named() {
     assert!(text.contains("material '#0': KHR_materials_clearcoat"), "{text}");
     let missing = message(json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 7 } }));
     assert!(missing.contains("textures[7]"), "{missing}");
-    let transformed = json!({ "clearcoatFactor": 1, "clearcoatRoughnessTexture": {
-        "index": 0, "extensions": { "KHR_texture_transform": {} } } });
+    let transformed = json!({ "clearcoatFactor": 1, "clearcoatTexture": { "index": 0 }, "clearcoatRoughnessTexture": {
+        "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1 } } } });
     assert_eq!(
         warnings(&load(textured(clearcoat(&transformed)))),
-        ["material '#0': clearcoatRoughnessTexture: KHR_texture_transform is not supported: ignored"]
+        [
+            "material '#0': clearcoatTexture: mapped otherwise than clearcoatRoughnessTexture, drawn as that is"
+        ]
     );
 }
 
@@ -263,11 +265,9 @@ fn texture_features_that_are_missing_are_said() {
     let attributes = &mut writer.root["meshes"][0]["primitives"][0]["attributes"];
     attributes.as_object_mut().unwrap().remove("TEXCOORD_0");
     let expected = [
+        "material '#0': normalTexture, emissiveTexture: mapped otherwise than baseColorTexture, drawn as that is",
         "material '#0': KHR_materials_specular: its textures are not supported: ignored",
-        "material '#0': baseColorTexture.texCoord 1 is not supported: TEXCOORD_0 is used",
-        "material '#0': emissiveTexture: KHR_texture_transform is not supported: ignored",
-        "material '#0': normalTexture: KHR_texture_transform is not supported: ignored",
-        "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_0: its textures are read at (0, 0)",
+        "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_1: its textures are read at (0, 0)",
     ];
     assert_eq!(warnings(&load(writer)), expected);
 }

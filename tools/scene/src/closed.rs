@@ -1,0 +1,141 @@
+//! Closed meshes: what has an inside, which nobody sees.
+
+use crate::Bounds;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// How far vertices may be apart to be one, relative to the diagonal of all: what [`crate::outlines`] welds by.
+const WELD: f64 = 1e-6;
+
+/// Which triangles belong to a connected part that is closed (each edge is shared by exactly two of its triangles, which run along it in
+/// opposite directions) and faces outwards (its signed volume is positive). `rounding` is how far positions may be off in any case.
+pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<bool> {
+    let corners = welded(positions, triangles, rounding);
+    let parts = connected(&corners);
+    let mut is_closed = vec![true; triangles.len()];
+    // An edge is good where it is passed once in each direction
+    let mut passed: HashMap<[usize; 2], [u32; 2]> = HashMap::new();
+    // A triangle with two corners in one place, as at a sphere's pole, has no sides
+    let has_sides = |[a, b, c]: &&[usize; 3]| a != b && b != c && c != a;
+    for edge in corners.iter().filter(has_sides).flat_map(edges) {
+        let way = usize::from(edge[0] > edge[1]);
+        passed.entry(sorted(edge)).or_default()[way] += 1;
+    }
+    for (triangle, part) in corners.iter().zip(&parts).filter(|(triangle, _)| has_sides(triangle)) {
+        if edges(triangle).iter().any(|edge| passed[&sorted(*edge)] != [1, 1]) {
+            is_closed[*part] = false;
+        }
+    }
+    // Six times the volume, about a corner of the part, which costs no digits where the mesh is far away
+    let mut volumes = vec![0.0; triangles.len()];
+    for (triangle, part) in triangles.iter().zip(&parts) {
+        let origin = positions[triangles[*part][0] as usize];
+        let [a, b, c] = triangle.map(|index| positions[index as usize] - origin);
+        volumes[*part] += a.cross(b).dot(c);
+    }
+    parts.iter().map(|part| is_closed[*part] && volumes[*part] > 0.0).collect()
+}
+
+/// The triangles' corners, with one number for all vertices in one place.
+fn welded(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<[usize; 3]> {
+    let used = || triangles.iter().flatten().map(|index| *index as usize);
+    let size = used().map(|index| positions[index]).collect::<Bounds>().diagonal();
+    let cell = (size * WELD + rounding).max(f64::MIN_POSITIVE);
+    let mut known: HashMap<[i64; 3], usize> = HashMap::new();
+    let mut numbers = vec![usize::MAX; positions.len()];
+    for index in used() {
+        if numbers[index] != usize::MAX {
+            continue;
+        }
+        // A vertex may be on the other side of a cell's wall than the one it is equal to
+        let place = (positions[index] / cell).floor();
+        let key = |x: i64, y: i64, z: i64| [place.x as i64 + x, place.y as i64 + y, place.z as i64 + z];
+        let around = (0..27).map(|i| key(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+        let near = around
+            .filter_map(|key| known.get(&key).copied())
+            .find(|other| positions[*other].distance(positions[index]) <= cell);
+        numbers[index] = near.unwrap_or(index);
+        if near.is_none() {
+            known.insert(key(0, 0, 0), index);
+        }
+    }
+    triangles.iter().map(|triangle| triangle.map(|index| numbers[index as usize])).collect()
+}
+
+/// The part of each triangle: the first triangle that is joined to it by edges.
+fn connected(corners: &[[usize; 3]]) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..corners.len()).collect();
+    let mut owner: HashMap<[usize; 2], usize> = HashMap::new();
+    for (number, triangle) in corners.iter().enumerate() {
+        for edge in edges(triangle) {
+            let neighbour = *owner.entry(sorted(edge)).or_insert(number);
+            let (a, b) = (root(&mut parent, neighbour), root(&mut parent, number));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    (0..corners.len()).map(|number| root(&mut parent, number)).collect()
+}
+
+/// The representative of a set, with the way to it halved.
+fn root(parent: &mut [usize], mut at: usize) -> usize {
+    while parent[at] != at {
+        parent[at] = parent[parent[at]];
+        at = parent[at];
+    }
+    at
+}
+
+fn edges(&[a, b, c]: &[usize; 3]) -> [[usize; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
+    [a.min(b), a.max(b)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tetrahedron that faces outwards, each face with vertices of its own.
+    fn tetrahedron(at: DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+        let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let positions = faces.iter().flatten().map(|corner: &usize| at + corners[*corner]).collect();
+        (positions, (0..4).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect())
+    }
+
+    #[test]
+    fn a_tetrahedron_is_closed_and_without_a_face_it_is_not() {
+        let (positions, mut triangles) = tetrahedron(DVec3::new(1e3, 0.0, -1e3));
+        assert_eq!(closed(&positions, &triangles, 0.0), [true; 4]);
+        // Inside out; with one face turned around; twice in one place; without a face
+        let inside_out: Vec<_> = triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        assert_eq!(closed(&positions, &inside_out, 0.0), [false; 4]);
+        let mut turned = triangles.clone();
+        turned[2].swap(0, 1);
+        assert_eq!(closed(&positions, &turned, 0.0), [false; 4]);
+        let doubled = [&triangles[..], &triangles[..]].concat();
+        assert_eq!(closed(&positions, &doubled, 0.0), [false; 8]);
+        triangles.pop();
+        assert_eq!(closed(&positions, &triangles, 0.0), [false; 3]);
+    }
+
+    #[test]
+    fn each_part_is_judged_by_itself() {
+        let (mut positions, mut triangles) = tetrahedron(DVec3::ZERO);
+        let (more, _) = tetrahedron(DVec3::splat(5.0));
+        positions.extend(more);
+        triangles.extend((4..7).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]));
+        let [yes, no] = [true, false];
+        assert_eq!(closed(&positions, &triangles, 0.0), [yes, yes, yes, yes, no, no, no]);
+    }
+
+    #[test]
+    fn vertices_are_welded_up_to_rounding() {
+        let (mut positions, triangles) = tetrahedron(DVec3::ZERO);
+        positions[0] += 1e-4;
+        assert_eq!(closed(&positions, &triangles, 2e-4), [true; 4]);
+        assert_eq!(closed(&positions, &triangles, 0.0), [false; 4]);
+    }
+}

@@ -1,0 +1,134 @@
+//! Extensions: which are read, which cost looks where they are not, and which leave nothing to show.
+
+use crate::SceneError;
+use crate::document::Document;
+use crate::load::Loader;
+use gltf::json;
+use std::collections::BTreeSet;
+
+/// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
+const READ: [&str; 13] = [
+    "EXT_lights_area",
+    "EXT_texture_webp",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_mesh_quantization",
+    "KHR_node_visibility",
+    "KHR_texture_transform",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+];
+
+/// What a scene is shown without, with a warning, also where a file requires it; and every other `KHR_materials` extension.
+const COSTS_LOOKS: [&str; 9] = [
+    "EXT_lights_ies",
+    "EXT_lights_image_based",
+    "KHR_animation_pointer",
+    "KHR_audio_emitter",
+    "KHR_interactivity",
+    "KHR_lights_punctual",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "MSFT_lod",
+];
+
+const MATERIALS: &str = "KHR_materials_";
+const DRACO: &str = "KHR_draco_mesh_compression";
+const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+const WEBP: &str = "EXT_texture_webp";
+
+/// Refuses what a file requires and nothing can be shown without.
+pub(crate) fn check_required(file: &str, required: &[String]) -> Result<(), SceneError> {
+    let may_be_required =
+        |name: &str| READ.contains(&name) || COSTS_LOOKS.contains(&name) || name.starts_with(MATERIALS);
+    match required.iter().find(|name| !may_be_required(name)) {
+        Some(name) => Err(SceneError::RequiredExtension { file: file.to_owned(), extension: name.clone() }),
+        None => Ok(()),
+    }
+}
+
+/// Makes textures that are WebP alone refer to that image, and refuses data that are only in an extension that is not read.
+pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError> {
+    let file = document.file.clone();
+    let refused = |field: String, name: &str| {
+        Err(SceneError::OnlyInExtension { file: file.clone(), field, extension: name.to_owned() })
+    };
+    let root = &mut document.root;
+    for (t, texture) in root.textures.iter_mut().enumerate() {
+        if texture.source.value() != NO_IMAGE {
+            continue;
+        }
+        let others = texture.extensions.iter().flat_map(|extensions| &extensions.others);
+        let webp =
+            others.clone().find(|(name, _)| *name == WEBP).and_then(|(_, webp)| webp["source"].as_u64());
+        if let Some(image) = webp.and_then(|image| u32::try_from(image).ok()) {
+            texture.source = json::Index::new(image);
+        } else if let Some((name, _)) = others.clone().next() {
+            return refused(format!("textures[{t}]"), name);
+        }
+    }
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let is_compressed = primitive.extensions.as_ref().is_some_and(|e| e.others.contains_key(DRACO));
+            let is_empty = |accessor: usize| {
+                let accessor = root.accessors.get(accessor);
+                accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
+            };
+            if is_compressed && primitive.attributes.values().any(|accessor| is_empty(accessor.value())) {
+                return refused(format!("meshes[{m}].primitives[{p}]"), DRACO);
+            }
+        }
+    }
+    for (v, view) in root.buffer_views.iter().enumerate() {
+        let names = view.extensions.iter().flat_map(|extensions| extensions.others.keys());
+        let compressed = names.clone().find(|name| MESHOPT.contains(&name.as_str()));
+        let buffer = root.buffers.get(view.buffer.value());
+        let has_data = buffer.is_some_and(|b| b.uri.is_some()) || view.buffer.value() == 0;
+        if let Some(name) = compressed.filter(|_| !has_data) {
+            return refused(format!("bufferViews[{v}]"), name);
+        }
+    }
+    Ok(())
+}
+
+/// What stands for a texture without an image.
+const NO_IMAGE: usize = u32::MAX as usize;
+
+/// Warns once of each extension that is not read. A material's are said where it is used.
+pub(crate) fn warn_of_unread(loader: &mut Loader) {
+    let root = &loader.document.root;
+    let mut names: BTreeSet<&String> = root.extensions_used.iter().collect();
+    names.extend(root.extensions.iter().flat_map(|extensions| extensions.others.keys()));
+    let nodes = root.nodes.iter().flat_map(|node| &node.extensions);
+    names.extend(nodes.flat_map(|extensions| extensions.others.keys()));
+    let is_unread = |name: &&&String| {
+        let of_materials = name.starts_with(MATERIALS) && name.as_str() != "KHR_materials_variants";
+        !of_materials && !READ.contains(&name.as_str())
+    };
+    let unread: Vec<String> = names.iter().filter(is_unread).map(|name| (*name).clone()).collect();
+    for name in unread {
+        let text = loss(&name);
+        loader.warn(name, text);
+    }
+}
+
+/// What a scene lacks without an extension.
+fn loss(name: &str) -> &'static str {
+    match name {
+        "KHR_lights_punctual" => "points have no area: these lights are left out",
+        "EXT_lights_image_based" => "light from all around is left out",
+        "EXT_mesh_gpu_instancing" => "is not supported: one instance is shown, at its node",
+        "KHR_materials_variants" => "the default materials are shown",
+        "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {
+            "is not supported: the textures' other images are shown"
+        }
+        DRACO | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "is not supported: the uncompressed data are read"
+        }
+        _ => "is not supported: ignored",
+    }
+}

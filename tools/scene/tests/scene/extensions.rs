@@ -1,0 +1,229 @@
+//! Extensions that a file uses or requires: read, left out with a warning, or refused by name.
+
+use crate::shapes::panel;
+use crate::writer::Writer;
+use crate::{emitter_with, error, load, panel_with, warnings};
+use arealight_scene::{Scene, Warning};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+fn requiring(names: &[&str]) -> Writer {
+    let mut writer = panel_with(json!({}));
+    writer.root["extensionsRequired"] = json!(names);
+    writer.root["extensionsUsed"] = json!(names);
+    writer
+}
+
+#[test]
+fn what_costs_looks_alone_is_a_warning_also_where_it_is_required() {
+    let mut writer = requiring(&["KHR_lights_punctual", "KHR_materials_variants", "KHR_materials_unlit"]);
+    writer.root["materials"][0]["extensions"] = json!({ "KHR_materials_unlit": {} });
+    let expected = [
+        "KHR_lights_punctual: points have no area: these lights are left out",
+        "KHR_materials_variants: the default materials are shown",
+        "material '#0': KHR_materials_unlit is not supported: ignored",
+    ];
+    assert_eq!(warnings(&load(writer)), expected);
+    // The twin: what the shape of things depends on is refused
+    for name in ["EXT_meshopt_compression", "KHR_texture_basisu", "ACME_surfaces"] {
+        let expected =
+            format!("test.glb: extensionsRequired: {name} is not supported; export the scene without it");
+        assert_eq!(error(requiring(&[name])), expected);
+    }
+}
+
+#[test]
+fn what_is_read_may_be_required() {
+    let writer = requiring(&["KHR_texture_transform", "KHR_mesh_quantization", "KHR_node_visibility"]);
+    assert_eq!(warnings(&load(writer)), [""; 0]);
+}
+
+#[test]
+fn unknown_extensions_are_said_once_each() {
+    let mut writer = panel_with(json!({}));
+    writer.root["extensions"] = json!({ "ACME_weather": {} });
+    writer.root["nodes"][0]["extensions"] = json!({ "ACME_sound": {}, "EXT_mesh_gpu_instancing": {} });
+    writer.node(json!({ "extensions": { "ACME_sound": {} } }));
+    let expected = [
+        "ACME_sound: is not supported: ignored",
+        "ACME_weather: is not supported: ignored",
+        "EXT_mesh_gpu_instancing: is not supported: one instance is shown, at its node",
+    ];
+    assert_eq!(warnings(&load(writer)), expected);
+}
+
+#[test]
+fn data_that_are_only_in_an_extension_are_refused_by_its_name() {
+    type Change = (fn(&mut Value), &'static str);
+    let changes: [Change; 3] = [
+        (
+            |r| {
+                r["meshes"][0]["primitives"][0]["extensions"] = json!({ "KHR_draco_mesh_compression": {} });
+                r["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+            },
+            "meshes[0].primitives[0]: is only there in KHR_draco_mesh_compression, which is not supported",
+        ),
+        (
+            |r| {
+                r["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
+            },
+            "textures[0]: is only there in KHR_texture_basisu, which is not supported",
+        ),
+        (
+            |r| {
+                r["bufferViews"][0]["extensions"] = json!({ "EXT_meshopt_compression": {} });
+                r["bufferViews"][0]["buffer"] = json!(1);
+            },
+            "bufferViews[0]: is only there in EXT_meshopt_compression, which is not supported",
+        ),
+    ];
+    for (change, text) in changes {
+        let mut writer = panel_with(json!({}));
+        change(&mut writer.root);
+        let error = error(writer);
+        assert!(error.contains(text), "{error}");
+    }
+    // The twin: with data beside it, they are read
+    let mut writer = panel_with(json!({}));
+    writer.root["meshes"][0]["primitives"][0]["extensions"] = json!({ "KHR_draco_mesh_compression": {} });
+    assert_eq!(load(writer).triangles.len(), 2);
+}
+
+#[test]
+fn textures_may_be_webp_alone() {
+    let mut bytes = Vec::new();
+    let picture = image::RgbImage::from_pixel(2, 3, image::Rgb([9, 80, 200]));
+    image::codecs::webp::WebPEncoder::new_lossless(&mut bytes)
+        .encode(&picture, 2, 3, image::ExtendedColorType::Rgb8)
+        .unwrap();
+    let mut writer = panel_with(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }));
+    writer.texture("webp", &bytes);
+    writer.root["textures"] = json!([{ "extensions": { "EXT_texture_webp": { "source": 0 } } }]);
+    let scene = load(writer);
+    let image = &scene.images[0];
+    assert_eq!((image.width, image.height, image.texels[5].to_le_bytes()), (2, 3, [9, 80, 200, 255]));
+    assert_eq!(warnings(&scene), [""; 0]);
+}
+
+#[test]
+fn hidden_nodes_and_what_is_below_them_are_left_out() {
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
+    writer.root["scenes"][0]["nodes"] = json!([1]);
+    let parent = |visible: bool| json!({ "children": [0], "extensions": { "KHR_node_visibility": { "visible": visible } } });
+    writer.push("nodes", parent(false));
+    let bytes =
+        |root: &Value, writer: &Writer| Writer { root: root.clone(), buffer: writer.buffer.clone() }.glb();
+    let scene = Scene::from_bytes(&bytes(&writer.root, &writer), "hidden").unwrap();
+    assert_eq!((scene.lights.len(), scene.triangles.len(), scene.notes.len()), (0, 0, 1));
+    writer.root["nodes"][1] = parent(true);
+    let scene = load(writer);
+    assert_eq!((scene.lights.len(), scene.notes.len()), (1, 0));
+}
+
+#[test]
+fn scenes_may_be_without_nodes() {
+    let scene = Scene::from_bytes(br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"name":"bare"}]}"#, "");
+    let scene = scene.unwrap();
+    assert_eq!((scene.name.as_str(), scene.triangles.len()), ("bare", 0));
+}
+
+#[test]
+fn quantized_meshes_are_read() {
+    // A square of bytes as they are, normals of normalised bytes, coordinates of 16 bits with a sign
+    let mut writer = emitter_with(&panel(1.0, 1.0), json!({ "scale": [0.01, 0.01, 0.01] }));
+    let positions: Vec<u8> = [[-100_i8, 0, 0], [100, 0, 0], [100, 50, 0], [-100, 50, 0]]
+        .iter()
+        .flatten()
+        .map(|x| *x as u8)
+        .collect();
+    let normals: Vec<u8> = [[0_i8, 0, 127]; 4].iter().flatten().map(|x| *x as u8).collect();
+    let uvs: Vec<u8> = [[0_i16, -32768], [32767, 0], [16384, 0], [0, 0]]
+        .iter()
+        .flatten()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    for (accessor, bytes, component, kind, normalized) in
+        [(0, positions, 5120, "VEC3", false), (1, normals, 5120, "VEC3", true), (2, uvs, 5122, "VEC2", true)]
+    {
+        let view = writer.view(&bytes);
+        writer.root["accessors"][accessor] = json!({ "bufferView": view, "componentType": component,
+            "count": 4, "type": kind, "normalized": normalized });
+    }
+    writer.root["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let scene = load(writer);
+    assert!((scene.lights[0].shape.area_vector() - DVec3::Z).length() < 1e-7);
+    assert_eq!(scene.triangles[0].normals[0], glam::Vec3::Z);
+    let uvs: Vec<_> = scene.triangles.iter().flat_map(|triangle| triangle.uvs).collect();
+    let lowest = uvs.iter().fold(0.0_f32, |lowest, uv| lowest.min(uv.y));
+    assert_eq!(lowest, -1.0, "the lowest number is -1, not less");
+    assert!(uvs.iter().any(|uv| uv.x == 1.0));
+}
+
+#[test]
+fn warnings_of_one_kind_are_one_line() {
+    let warning = |place: &str, text: &str| Warning { place: place.into(), text: text.into() };
+    let all =
+        [warning("a", "is odd"), warning("b", "is even"), warning("c", "is odd"), warning("d", "is odd")];
+    assert_eq!(Warning::grouped(&all), ["a and 2 more: is odd", "b: is even"]);
+}
+
+/// Coordinates of a panel's upper left corner, (-1, 0.5) in the file, and of the lower right one, (1, -0.5).
+fn corners_of(info: &Value) -> [[f32; 2]; 2] {
+    let mut writer = panel_with(json!({ "pbrMetallicRoughness": { "baseColorTexture": info } }));
+    let second = writer.floats(&[[0.5_f32, 0.25]; 4]);
+    writer.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
+    let mut png = Vec::new();
+    image::RgbImage::new(2, 2)
+        .write_to(&mut std::io::Cursor::new(&mut png), image::ImageFormat::Png)
+        .unwrap();
+    writer.texture("picture", &png);
+    let scene = load(writer);
+    assert_eq!(warnings(&scene), [""; 0]);
+    let at = |x: f32, y: f32| {
+        let mut corners = scene.triangles.iter().flat_map(|t| t.positions.iter().zip(t.uvs));
+        let corner = corners.find(|(p, _)| p.x as f32 == x && p.y as f32 == y).unwrap();
+        corner.1.to_array().map(|x| (x * 1e5).round() / 1e5)
+    };
+    [at(-1.0, 0.5), at(1.0, -0.5)]
+}
+
+#[test]
+fn textures_are_scaled_turned_and_moved() {
+    let transform =
+        |values: Value| corners_of(&json!({ "index": 0, "extensions": { "KHR_texture_transform": values } }));
+    // The twin: as they are
+    assert_eq!(corners_of(&json!({ "index": 0 })), [[-1.0, 0.5], [1.0, -0.5]]);
+    let moved = json!({ "offset": [0.25, 0.5], "scale": [2, 3] });
+    assert_eq!(transform(moved), [[-1.75, 2.0], [2.25, -1.0]]);
+    // A quarter turn takes (u, v) to (v, -u): after the scale, before the offset
+    let turned = json!({ "offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [2, 3] });
+    assert_eq!(transform(turned), [[1.5, 3.0], [-1.5, -1.0]]);
+    // Other coordinates
+    assert_eq!(corners_of(&json!({ "index": 0, "texCoord": 1 })), [[0.5, 0.25]; 2]);
+    assert_eq!(transform(json!({ "texCoord": 1, "scale": [2, 2] })), [[1.0, 0.5]; 2]);
+}
+
+/// The words of docs/gltf.md that no source of the program has, and the tests that do not exist.
+fn wrong_rows(document: &str) -> Vec<String> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let sources = std::fs::read_dir(folder.join("src")).unwrap();
+    let program: String =
+        sources.map(|file| std::fs::read_to_string(file.unwrap().path()).unwrap()).collect();
+    let rows = document.lines().filter(|line| line.starts_with("| ")).skip(1);
+    let is_wrong = |row: &&str| {
+        let columns: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, _, _, words, test, _] = columns[..] else { return true };
+        !program.contains(words.trim_matches('`')) || !folder.join("tests/scene").join(test).is_file()
+    };
+    rows.filter(is_wrong).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_document_has_the_programs_words() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/gltf.md");
+    assert_eq!(wrong_rows(&std::fs::read_to_string(path).unwrap()), [""; 0]);
+    // The twin: other words, and a test that is not there
+    let head = "| a | b | c | d |\n";
+    let bad = ["| x | warned | `is a pity` | lights.rs |", "| x | warned | | nowhere.rs |"];
+    assert_eq!(wrong_rows(&format!("{head}{}", bad.join("\n"))), bad);
+}
