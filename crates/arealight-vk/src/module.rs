@@ -5,7 +5,7 @@ use crate::prune::is_framed;
 use arealight::kernels::{BindingKind, Kernel};
 use rspirv::dr::{Instruction, Module, Operand, load_words};
 use rspirv::spirv::{Decoration, ExecutionMode, ExecutionModel, Op, StorageClass, Word};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 const MAGIC: u32 = 0x0723_0203;
 
@@ -13,17 +13,17 @@ const MAGIC: u32 = 0x0723_0203;
 const VERSIONS: std::ops::RangeInclusive<u32> = 0x0001_0000..=0x0001_0600;
 const MOST_IDS: u32 = 4_194_303;
 
-/// Refuses what is no whole module of SPIR-V with the kernel's entry point, workgroup and bindings of set 0. What its functions do is not
-/// looked at: a module that passes may still be invalid, which a validator says.
+/// Refuses what is no whole module of SPIR-V with the kernel's entry point, workgroup and bindings of set 0, and ids that are not defined. Types and
+/// control flow are not looked at: a module that passes may still be invalid, which a validator says.
 pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> {
     let fault = |message: String| Error::InvalidArgument { field: "module", message };
     // The header, and the lengths of instructions
-    let &[magic, version, _, ids, reserved, ..] = words else {
-        return Err(fault(format!("{} words are no SPIR-V, whose header has five", words.len())));
-    };
-    if magic != MAGIC {
+    if words.first() != Some(&MAGIC) {
         return Err(fault("does not begin as SPIR-V does, in this machine's byte order".into()));
     }
+    let &[_, version, _, ids, reserved, ..] = words else {
+        return Err(fault(format!("{} words are no SPIR-V, whose header has five", words.len())));
+    };
     if !VERSIONS.contains(&version) {
         let [_, major, minor, _] = version.to_be_bytes();
         return Err(fault(format!("is of SPIR-V {major}.{minor}; versions 1.0 to 1.6 are known")));
@@ -35,8 +35,24 @@ pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> 
         return Err(fault("is cut off, or the length of an instruction is wrong".into()));
     }
     let module = load_words(words).map_err(|error| fault(format!("cannot be read: {error}")))?;
+    check_ids(&module, ids).map_err(fault)?;
     check_entry_point(&module, kernel).map_err(fault)?;
     check_bindings(&module, kernel).map_err(fault)
+}
+
+/// Refuses ids that are used and not defined, or not below the header's bound.
+fn check_ids(module: &Module, bound: u32) -> Result<(), String> {
+    let defined: HashSet<Word> = module.all_inst_iter().filter_map(|one| one.result_id).collect();
+    if let Some(id) = defined.iter().find(|id| !(1..bound).contains(*id)) {
+        return Err(format!("defines %{id}, and states that ids are below {bound}"));
+    }
+    let used = module
+        .all_inst_iter()
+        .flat_map(|one| one.operands.iter().filter_map(Operand::id_ref_any).chain(one.result_type));
+    match used.into_iter().find(|id| !defined.contains(id)) {
+        Some(id) => Err(format!("uses %{id}, which it does not define")),
+        None => Ok(()),
+    }
 }
 
 fn check_entry_point(module: &Module, kernel: &Kernel) -> Result<(), String> {
@@ -146,7 +162,7 @@ fn kind(variable: &Instruction, types: &HashMap<Word, &Instruction>) -> Option<F
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::kernels::{CLASSIFY, SHADE, SHADOW_RAYS};
+    use arealight::kernels::{ALL, SHADE, SHADOW_RAYS};
 
     fn refusal(words: &[u32]) -> String {
         check_module(words, &SHADE).unwrap_err().to_string()
@@ -154,11 +170,26 @@ mod tests {
 
     #[test]
     fn our_own_modules_pass_and_another_kernel_s_does_not() {
-        for kernel in [&SHADE, &SHADOW_RAYS, &CLASSIFY] {
+        for kernel in ALL {
             check_module(&kernel.words(), kernel).unwrap();
         }
         let text = refusal(&SHADOW_RAYS.words());
         assert!(text.contains("of kernel 'shade'") || text.contains("binding"), "{text}");
+    }
+
+    #[test]
+    fn no_part_of_a_module_is_one() {
+        let whole = SHADOW_RAYS.words();
+        // Ends of instructions are the hard ones: each part is framed
+        let (mut at, mut ends) = (5, vec![0, 1, 4, 5]);
+        while at < whole.len() {
+            ends.push(at);
+            at += (whole[at] >> 16) as usize;
+        }
+        let step = ends.len() / 100;
+        for end in ends.into_iter().step_by(step).chain([whole.len() - 1]) {
+            assert!(check_module(&whole[..end], &SHADOW_RAYS).is_err(), "{end} of {} words", whole.len());
+        }
     }
 
     #[test]
@@ -169,7 +200,7 @@ mod tests {
             words[at] = word;
             refusal(&words)
         };
-        assert!(refusal(&[]).contains("0 words"));
+        assert!(refusal(&[]).contains("does not begin"));
         assert!(refusal(&[MAGIC]).contains("1 words"), "four bytes of junk");
         assert!(with(0, MAGIC.swap_bytes()).contains("byte order"));
         assert!(with(1, 0x0009_0000).contains("is of SPIR-V 9.0"));
@@ -192,6 +223,6 @@ mod tests {
             words[at] ^= 1 << (step * 7 % 32);
             refused += usize::from(check_module(&words, &SHADE).is_err());
         }
-        assert!(refused > 40, "{refused} of 400");
+        assert!(refused > 150, "{refused} of 400");
     }
 }

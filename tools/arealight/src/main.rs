@@ -11,21 +11,25 @@ mod quality;
 mod shadows;
 mod visible;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Analytic area lights for Vulkan engines: a polygon, a material and a view go in; radiance comes out.
 #[derive(Parser)]
-#[command(name = "arealight", version, about, max_term_width = 100, after_help = AFTER_HELP)]
+#[command(name = "arealight", version, about, max_term_width = 100, after_help = AFTER_HELP, arg_required_else_help = true)]
 struct CommandLine {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Command,
 }
 
 const AFTER_HELP: &str = "\
-Without a command, the demo scene is rendered.
+For example:
+  arealight render                                 the demo scene, into out/
+  arealight render scenes/room.glb -o room.exr
+  arealight compare room.exr reference.exr -o difference.png
+  arealight export DIR                             the GLSL library, tables and SPIR-V for your engine
 
-Exit codes: 0 success, 1 an answer is farther from the truth than eval --tolerance allows, or a \
+Exit codes: 0 success, 1 an answer or a picture is farther from the truth than --tolerance allows, or a \
 level falls short of its promises in bench stability or misses a bar in bench textures, \
 or a kernel takes more than bench compiled --check allows, \
 2 wrong arguments, 3 a bad input file, 4 no usable Vulkan device, 5 an output file cannot be written, \
@@ -42,20 +46,25 @@ enum Command {
     Table(commands::table::Arguments),
     Devices(commands::devices::Arguments),
     Export(commands::export::Arguments),
+    Compare(commands::compare::Arguments),
+    Completions(commands::shell::Completions),
+    Man(commands::shell::Man),
 }
 
 fn main() -> ExitCode {
     let result = match CommandLine::parse().command {
-        None => commands::render::run(&commands::render::Arguments::default_scene()),
-        Some(Command::Render(arguments)) => commands::render::run(&arguments),
-        Some(Command::Eval(arguments)) => commands::eval::run(&arguments),
-        Some(Command::Effects(arguments)) => commands::effects::run(&arguments),
-        Some(Command::Fit(arguments)) => commands::fit::run(&arguments),
-        Some(Command::Inspect(arguments)) => commands::inspect::run(&arguments),
-        Some(Command::Bench(arguments)) => commands::bench::run(&arguments),
-        Some(Command::Table(arguments)) => commands::table::run(&arguments),
-        Some(Command::Devices(arguments)) => commands::devices::run(&arguments),
-        Some(Command::Export(arguments)) => commands::export::run(&arguments),
+        Command::Render(arguments) => commands::render::run(&arguments),
+        Command::Eval(arguments) => commands::eval::run(&arguments),
+        Command::Effects(arguments) => commands::effects::run(&arguments),
+        Command::Fit(arguments) => commands::fit::run(&arguments),
+        Command::Inspect(arguments) => commands::inspect::run(&arguments),
+        Command::Bench(arguments) => commands::bench::run(&arguments),
+        Command::Table(arguments) => commands::table::run(&arguments),
+        Command::Devices(arguments) => commands::devices::run(&arguments),
+        Command::Export(arguments) => commands::export::run(&arguments),
+        Command::Compare(arguments) => commands::compare::run(&arguments),
+        Command::Completions(arguments) => commands::shell::completions(&arguments, CommandLine::command()),
+        Command::Man(arguments) => commands::shell::man(&arguments, CommandLine::command()),
     };
     match result {
         Ok(code) => code,

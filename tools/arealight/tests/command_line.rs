@@ -47,11 +47,15 @@ fn help_and_version() {
     let help = run(folder.path(), &["--help"]);
     assert!(help.status.success());
     for command in
-        ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "eval --tolerance"]
+        ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "--tolerance"]
     {
         assert!(text(&help.stdout).contains(command), "{command}");
     }
     assert!(run(folder.path(), &["--version"]).status.success());
+    // Without a command it says what there is
+    let nothing = run(folder.path(), &[]);
+    assert_eq!(nothing.status.code(), Some(2));
+    assert!(text(&nothing.stderr).contains("Commands:"), "{}", text(&nothing.stderr));
 }
 
 #[test]
@@ -386,4 +390,48 @@ fn eval_answers_in_order_with_reasons_and_measures() {
         }
     }
     assert_eq!(answered, 160, "untextured lights of every shape are answered");
+}
+
+#[test]
+fn pictures_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let picture = |name: &str, size: usize, value: f32| {
+        let path = folder.path().join(name);
+        exr::prelude::write_rgb_file(&path, size, size, |x, _| (value, value, value + x as f32)).unwrap();
+    };
+    picture("a.exr", 8, 1.0);
+    picture("b.exr", 8, 1.1);
+    picture("small.exr", 4, 1.0);
+    let same = run(folder.path(), &["compare", "a.exr", "a.exr", "--tolerance", "0"]);
+    assert!(
+        same.status.success() && text(&same.stdout).contains("RMSE / mean    0.000 %"),
+        "{}",
+        text(&same.stdout)
+    );
+    let apart =
+        run(folder.path(), &["compare", "b.exr", "a.exr", "--json", "-o", "map.png", "--tolerance", "0.01"]);
+    assert_eq!(apart.status.code(), Some(1));
+    let found: serde_json::Value = serde_json::from_slice(&apart.stdout).unwrap();
+    // A tenth in every channel, over a mean of 1 + 3.5 / 3
+    let error = found["rmse_over_mean"].as_f64().unwrap();
+    assert!((error - 0.1 / (1.0 + 3.5 / 3.0)).abs() < 1e-6, "{found}");
+    let map = image::open(folder.path().join("map.png")).unwrap();
+    assert_eq!((map.width(), map.height()), (8, 8));
+    refuse(folder.path(), &["compare", "a.exr", "small.exr"], 3, &["8 x 8", "4 x 4"]);
+    refuse(folder.path(), &["compare", "a.exr", "missing.exr"], 3, &["missing.exr"]);
+}
+
+#[test]
+fn shells_and_man_know_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = run(folder.path(), &["completions", shell]);
+        assert!(script.status.success() && text(&script.stdout).contains("inspect"), "{shell}");
+    }
+    assert!(run(folder.path(), &["man", "."]).status.success());
+    for page in ["arealight.1", "arealight-render.1", "arealight-bench-shadows.1"] {
+        let text = std::fs::read_to_string(folder.path().join(page)).unwrap();
+        assert!(text.contains(".SH"), "{page}");
+    }
+    refuse(folder.path(), &["man", "missing"], 5, &["missing"]);
 }

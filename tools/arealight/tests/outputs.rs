@@ -23,29 +23,43 @@ fn names(folder: &Path) -> Vec<String> {
 #[cfg(unix)]
 #[test]
 fn where_the_disk_is_full_the_old_file_stays() {
-    let folder = tempfile::tempdir().unwrap();
-    let answers = folder.path().join("answers.json");
-    std::fs::write(&answers, "old").unwrap();
-    // Files of more than a block are refused, as by a full disk
-    let limited = |limit: &str| {
-        let script =
-            format!("trap '' XFSZ; ulimit -f {limit}; exec \"$0\" eval --on oracle \"$1\" -o answers.json");
+    use std::os::unix::fs::PermissionsExt;
+    let cases = cases();
+    // Files of more than so many blocks are refused, as by a full disk
+    let limited = |folder: &Path, blocks: &str, arguments: &[&str]| {
+        let script = "trap '' XFSZ; ulimit -f \"$1\"; shift; exec \"$@\"";
         Command::new("sh")
-            .args(["-c", &script, env!("CARGO_BIN_EXE_arealight"), &cases()])
-            .current_dir(folder.path())
+            .args(["-c", script, "sh", blocks, env!("CARGO_BIN_EXE_arealight")])
+            .args(arguments)
+            .current_dir(folder)
             .output()
             .unwrap()
     };
-    let refused = limited("1");
-    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
-    assert_eq!(refused.status.code(), Some(5), "{said}");
-    assert!(said.contains("answers.json: cannot write"), "{said}");
-    assert_eq!(std::fs::read_to_string(&answers).unwrap(), "old");
-    assert_eq!(names(folder.path()), ["answers.json"]);
-    // The twin: with room it is replaced
-    assert_eq!(limited("unlimited").status.code(), Some(0));
-    assert!(std::fs::read_to_string(&answers).unwrap().len() > 1000);
-    assert_eq!(names(folder.path()), ["answers.json"]);
+    for (file, arguments) in [
+        ("answers.json", vec!["eval", &cases, "--on", "oracle", "-o"]),
+        ("table.ktx2", vec!["table", "convert", "built-in"]),
+        ("lobes.png", vec!["inspect", "-o"]),
+        ("fit.exr", vec!["fit", "--size", "8", "-o"]),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(file);
+        let arguments = [&arguments[..], &[file]].concat();
+        std::fs::write(&path, "old").unwrap();
+        std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o640)).unwrap();
+
+        let refused = limited(folder.path(), "1", &arguments);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(5), "{file}: {said}");
+        assert!(said.contains(&format!("{file}: cannot write")), "{said}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old", "{file}");
+        assert_eq!(names(folder.path()), [file]);
+
+        // The twin: with room it is replaced, and keeps its permissions
+        assert_eq!(limited(folder.path(), "unlimited", &arguments).status.code(), Some(0), "{file}");
+        let there = std::fs::metadata(&path).unwrap();
+        assert!(there.len() > 512 && there.permissions().mode() & 0o777 == 0o640, "{file}");
+        assert_eq!(names(folder.path()), [file]);
+    }
 }
 
 #[test]

@@ -29,12 +29,16 @@ impl Images {
     /// Why it cannot be read, in words.
     pub fn load(&mut self, path: &str) -> Result<Arc<Texture>, String> {
         let folder = &self.folder;
-        let read = || load_exr(&folder.join(path)).map(Arc::new);
+        let read = || load_image(&folder.join(path)).map(Arc::new);
         self.known.entry(path.to_owned()).or_insert_with(read).clone()
     }
 }
 
-fn load_exr(path: &Path) -> Result<Texture, String> {
+/// An image: OpenEXR, linear, its channels R, G and B.
+///
+/// # Errors
+/// Why it cannot be read, in words.
+pub fn load_image(path: &Path) -> Result<Texture, String> {
     // The header first: what it says is not yet to be trusted with memory
     let header = exr::meta::MetaData::read_from_file(path, true).map_err(|error| error.to_string())?;
     for layer in &header.headers {

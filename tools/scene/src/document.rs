@@ -107,7 +107,12 @@ impl Document {
             }
         }
         let folder = self.folder.as_ref().ok_or_else(|| failed("a scene from memory has no files".into()))?;
-        read_file(&folder.join(relative)).map_err(|e| failed(e.to_string()))
+        let real = |path: &Path| path.canonicalize().map_err(|error| failed(error.to_string()));
+        let path = real(&folder.join(relative))?;
+        if !path.starts_with(real(folder)?) {
+            return Err(failed("a link leads outside of the scene's folder".into()));
+        }
+        read_file(&path).map_err(|e| failed(e.to_string()))
     }
 
     fn check_version_and_extensions(&mut self) -> Result<(), SceneError> {

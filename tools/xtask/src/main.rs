@@ -15,6 +15,8 @@
 //! cargo run -p xtask -- types                    # has the crate arealight few public types?
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod cargo;
 mod compile;
 mod dependencies;

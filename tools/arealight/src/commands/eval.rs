@@ -65,7 +65,7 @@ enum Method {
 }
 
 /// Reads the value of `--tolerance`.
-fn tolerance(text: &str) -> Result<f64, String> {
+pub fn tolerance(text: &str) -> Result<f64, String> {
     let value: Option<f64> = text.parse().ok();
     value
         .filter(|value| value.is_finite() && *value >= 0.0)

@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 pub(super) mod canvas;
 mod channels;
-mod colour;
+pub mod colour;
 mod entries;
 mod error_maps;
 mod errors;

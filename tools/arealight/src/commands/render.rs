@@ -75,26 +75,6 @@ pub struct Arguments {
 const FOLDER: &str = "out";
 
 impl Arguments {
-    /// What runs when no command is given: the demo scene, with every default.
-    pub fn default_scene() -> Self {
-        Self {
-            scene: None,
-            output: None,
-            size: [1280, 720],
-            camera: None,
-            device: None,
-            reference: None,
-            exposure: 0.0,
-            supersample: 2,
-            surfaces: SurfaceChoice::Required,
-            tiles: None,
-            shadows: None,
-            quality: QualityArguments::default(),
-            budget: BudgetArguments::default(),
-            json: false,
-        }
-    }
-
     /// What the shade pass has to do.
     fn load(&self, scene: &Scene) -> FrameLoad {
         let pixels: f64 = self.size.map(|side| f64::from(side * self.supersample)).iter().product();

@@ -267,6 +267,12 @@ fn what_lies_outside_of_the_scene_s_folder_is_not_read() {
         let error = load(uri).unwrap_err().to_string();
         assert!(error.contains("outside of the scene's folder"), "{uri}: {error}");
     }
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(folder.path().join("secret"), inner.join("link")).unwrap();
+        let error = load("link").unwrap_err().to_string();
+        assert!(error.contains("a link leads outside"), "{error}");
+    }
     // The twin: what lies beside it is, by any way that stays inside
     for uri in ["beside.bin", "./beside.bin", "textures/../beside.bin"] {
         std::fs::create_dir_all(inner.join("textures")).unwrap();

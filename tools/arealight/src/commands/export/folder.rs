@@ -3,6 +3,7 @@
 use super::File;
 use super::manifest::{NAME, recorded, sha256};
 use crate::failure::Failure;
+use crate::output;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -57,14 +58,7 @@ impl Folder {
             let path = self.path.join(&file.path);
             let folder = path.parent().unwrap_or(&self.path);
             std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
-            let temporary = path.with_extension("arealight-new");
-            let written = std::fs::write(&temporary, &file.bytes);
-            let moved = written.and_then(|()| std::fs::rename(&temporary, &path));
-            if let Err(error) = moved {
-                // What cannot be removed was never made
-                let _ = std::fs::remove_file(&temporary);
-                return Err(Failure::output(&path, error));
-            }
+            output::write(&path, &file.bytes)?;
         }
         Ok(())
     }

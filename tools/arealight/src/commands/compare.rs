@@ -1,0 +1,150 @@
+//! `arealight compare`
+
+use crate::commands::inspect::canvas::Canvas;
+use crate::commands::inspect::colour::diverging;
+use crate::failure::Failure;
+use crate::output::{self, print};
+use arealight_cases::images::load_image;
+use arealight_oracle::texture::Texture;
+use glam::DVec3;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Compare two pictures of radiance, such as one of ours with its reference.
+///
+/// Both are OpenEXR files of one size. The errors are of A against B: the root of the mean squared difference over the mean of B, the ratio of the means, and
+/// the largest difference. For example: arealight compare ours.exr reference.exr -o map.png
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// The picture to judge (.exr)
+    #[arg(value_name = "A.exr")]
+    judged: PathBuf,
+    /// What it is judged by (.exr)
+    #[arg(value_name = "B.exr")]
+    truth: PathBuf,
+    /// Write a map of the difference as PNG: blue where A is darker than B, red where it is brighter
+    #[arg(short, long, value_name = "FILE.png")]
+    output: Option<PathBuf>,
+    /// The difference that has the strongest colour of the map, over the mean of B
+    #[arg(long, default_value_t = 0.25, requires = "output")]
+    scale: f64,
+    /// Exit with 1 where the error is larger than this: the root of the mean squared difference over the mean
+    #[arg(long, value_parser = super::eval::tolerance)]
+    tolerance: Option<f64>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// How far one picture is from another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Difference {
+    /// Root of the mean squared difference of all channels, over the mean of the second picture.
+    error: f64,
+    /// Mean of the first over that of the second.
+    ratio: f64,
+    /// The largest difference of a channel, and the pixel that has it.
+    largest: (f64, [usize; 2]),
+    /// Mean of the second picture.
+    mean: f64,
+}
+
+impl Difference {
+    /// Of pictures of one size.
+    fn new(judged: &Texture, truth: &Texture) -> Self {
+        let pairs = || judged.texels().iter().zip(truth.texels());
+        let count = 3.0 * pairs().count() as f64;
+        let mean = |sum: f64| sum / count;
+        let average = mean(truth.texels().iter().map(|texel| texel.element_sum()).sum());
+        let square = mean(pairs().map(|(a, b)| (*a - *b).length_squared()).sum());
+        let mut largest = (0.0, 0);
+        for (index, (a, b)) in pairs().enumerate() {
+            let apart = (*a - *b).abs().max_element();
+            if apart > largest.0 {
+                largest = (apart, index);
+            }
+        }
+        let width = truth.width().max(1);
+        Self {
+            error: square.sqrt() / average,
+            ratio: mean(judged.texels().iter().map(|texel| texel.element_sum()).sum()) / average,
+            largest: (largest.0, [largest.1 % width, largest.1 / width]),
+            mean: average,
+        }
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let Arguments { judged, truth, output, scale, tolerance, json } = arguments;
+    if let Some(path) = output {
+        if !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
+            let message = format!("{}: the file's name must end in .png", path.display());
+            return Err(Failure::Argument { argument: "--output", message });
+        }
+        output::check(path)?;
+    }
+    if !(scale.is_finite() && *scale > 0.0) {
+        return Err(Failure::Argument { argument: "--scale", message: format!("{scale} is not above 0") });
+    }
+    let read = |path: &Path| load_image(path).map_err(|error| Failure::input(path, error));
+    let (a, b) = (read(judged)?, read(truth)?);
+    let sizes = [&a, &b].map(|picture| [picture.width(), picture.height()]);
+    if sizes[0] != sizes[1] {
+        let [[x, y], [w, h]] = sizes;
+        let message = format!("has {x} x {y} pixels, and {} has {w} x {h}", truth.display());
+        return Err(Failure::input(judged, message));
+    }
+    let found = Difference::new(&a, &b);
+    if found.mean.is_nan() || found.mean <= 0.0 {
+        return Err(Failure::input(truth, "is black on average: an error has nothing to be relative to"));
+    }
+
+    if let Some(path) = output {
+        map(&a, &b, scale * found.mean).save_png(path)?;
+    }
+    let Difference { error, ratio, largest: (largest, [x, y]), mean } = found;
+    let text = if *json {
+        let value = json!({
+            "rmse_over_mean": error, "mean_ratio": ratio, "largest": largest, "largest_at": [x, y], "mean": mean,
+            "output": output,
+        });
+        format!("{value:#}\n")
+    } else {
+        format!(
+            "RMSE / mean    {:.3} %\nmean / mean    {ratio:.4}\nlargest        {largest:.3e} at pixel ({x}, {y}); the mean is {mean:.3e}\n",
+            100.0 * error
+        )
+    };
+    print(&text)?;
+    let is_far = tolerance.is_some_and(|most| error.is_nan() || error > most);
+    Ok(if is_far { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// The differences of the channels' means, `full` being the strongest colour's.
+fn map(judged: &Texture, truth: &Texture, full: f64) -> Canvas {
+    let [width, height] = [truth.width() as u32, truth.height() as u32];
+    let mut canvas = Canvas::new(width, height, [255; 3]);
+    let mean = |texel: DVec3| texel.element_sum() / 3.0;
+    canvas.rectangle((0, 0), (width.cast_signed(), height.cast_signed()), |x, y| {
+        let index = y as usize * truth.width() + x as usize;
+        diverging((mean(judged.texels()[index]) - mean(truth.texels()[index])) / full)
+    });
+    canvas
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_relative_to_the_second_picture() {
+        let picture = |texels: [f64; 4]| Texture::new(2, 2, texels.map(DVec3::splat).to_vec()).unwrap();
+        let truth = picture([1.0, 2.0, 3.0, 2.0]);
+        let same = Difference::new(&truth, &truth);
+        assert_eq!((same.error, same.ratio, same.largest), (0.0, 1.0, (0.0, [0, 0])));
+        let other = Difference::new(&picture([1.0, 2.0, 5.0, 2.0]), &truth);
+        // One of four pixels is off by 2, over a mean of 2
+        assert_eq!((other.error, other.ratio, other.largest), (0.5, 1.25, (2.0, [0, 1])));
+    }
+}
