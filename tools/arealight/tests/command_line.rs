@@ -46,9 +46,7 @@ fn help_and_version() {
     let folder = tempfile::tempdir().unwrap();
     let help = run(folder.path(), &["--help"]);
     assert!(help.status.success());
-    for command in
-        ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "--tolerance"]
-    {
+    for command in ["render", "eval", "effects", "fit", "inspect", "devices", "Exit codes", "--tolerance"] {
         assert!(text(&help.stdout).contains(command), "{command}");
     }
     assert!(run(folder.path(), &["--version"]).status.success());
