@@ -1,9 +1,9 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four, COAT_BINDING, SHEEN_BINDING and
-// ANISOTROPY_BINDING where it shades coats, sheen, and lobes of two roughnesses or rough diffuse ones, and G_BUFFER_LAYOUT where it knows other layouts than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of
-// its own.
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING, SHEEN_BINDING and ANISOTROPY_BINDING
+// where it shades coats, sheen, and specular lobes of two roughnesses or rough diffuse ones; G_BUFFER_LAYOUT where it knows other layouts
+// than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
 
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
