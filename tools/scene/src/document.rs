@@ -107,6 +107,8 @@ impl Document {
             }
         }
         let folder = self.folder.as_ref().ok_or_else(|| failed("a scene from memory has no files".into()))?;
+        // A scene that is named without a folder lies in the current one
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
         let real = |path: &Path| path.canonicalize().map_err(|error| failed(error.to_string()));
         let path = real(&folder.join(relative))?;
         if !path.starts_with(real(folder)?) {
