@@ -1,9 +1,11 @@
 //! The shade pass over a G-buffer of one pixel.
 
 use crate::TestEngine;
-use arealight::plan::{RadianceFormat, ShadeOptions};
-use arealight::{Light, LightShape, PackedLights};
+use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
+use arealight::{Effects, Light, LightShape, PackedLights};
+use arealight_engine::EvalPoint;
 use arealight_engine::host::{Image, ImageDescription, Usage};
+use arealight_oracle::material::{Material, Surface};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use bytemuck::Pod;
@@ -12,6 +14,31 @@ use half::f16;
 
 /// What is in the images for radiance before a pass.
 pub const BEFORE: Vec4 = Vec4::new(0.25, 0.5, 1.0, 1.0);
+
+/// Where surfaces of a [`OnePixel`] are seen from.
+pub const CAMERA: Vec3 = Vec3::new(1.0, 0.5, 2.0);
+
+/// Every layout of a G-buffer.
+pub const LAYOUTS: [GBufferLayout; 4] =
+    [GBufferLayout::Arealight, GBufferLayout::Unreal, GBufferLayout::Unity, GBufferLayout::Octahedral];
+
+/// The material of a new [`OnePixel`], in our own layout.
+pub fn material() -> Material {
+    Material {
+        base_color: Vec3::new(0.8, 0.6, 0.4),
+        metalness: 0.25,
+        roughness: 0.5,
+        dielectric_f0: Vec3::new(0.8, 0.6, 0.4),
+        dielectric_f90: 0.25,
+        ..Material::default()
+    }
+}
+
+/// A surface at a pixel's place under [`lamp`], without a G-buffer.
+pub fn under_lamp(surface: Surface) -> EvalPoint {
+    let view = CAMERA.as_dvec3();
+    EvalPoint { surface, position: DVec3::ZERO, normal: DVec3::Z, view, light: lamp() }
+}
 
 /// One pixel that sees a point, through a G-buffer that the test makes itself.
 pub struct OnePixel<'a> {
@@ -54,6 +81,16 @@ impl<'a> OnePixel<'a> {
             anisotropy: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
+    }
+
+    /// Under [`lamp`], of surfaces that need these effects beside both lobes and a reflectance of their own.
+    ///
+    /// # Panics
+    /// Where the device fails.
+    pub fn shade_under_lamp(&self, layout: GBufferLayout, effects: Effects) -> Vec3 {
+        let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
+        let options = ShadeOptions { surfaces, g_buffer: layout, ..ShadeOptions::default() };
+        self.shade(options, &[lamp()], CAMERA, None).truncate()
     }
 
     /// The one image of a pass that has one.

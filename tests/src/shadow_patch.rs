@@ -21,8 +21,6 @@ pub const SIDE: u32 = 64;
 pub struct ShadowPatch {
     /// The surface's material.
     pub material: Material,
-    /// What `g_anisotropy` has of it.
-    pub anisotropy: [f32; 4],
     /// From the point to the camera.
     pub view: Vec3,
     /// What shines.
@@ -144,7 +142,7 @@ impl ShadowPatch {
             filled(engine, material.dielectric_f0.extend(material.dielectric_f90).to_array()),
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
             filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
-            filled(engine, self.anisotropy),
+            filled(engine, [0.0; 4]),
         ];
         let [position, normal, base_color, specular, coat, sheen, anisotropy] = images
             .each_ref()

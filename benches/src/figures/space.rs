@@ -96,6 +96,22 @@ fn draw_light(drawing: &mut Drawing, view: View, vertices: &[DVec3], class: &str
     drawing.path(class, &view.all(&closed(vertices)));
 }
 
+/// Two lights beside each other, each with a title and a line below it.
+fn draw_captioned(
+    drawing: &mut Drawing,
+    views: [View; 2],
+    lights: [&[DVec3]; 2],
+    captions: [(&str, String); 2],
+) {
+    for ((view, vertices), (title, text)) in views.into_iter().zip(lights).zip(captions) {
+        view.dome(drawing);
+        draw_light(drawing, view, vertices, "line-theirs");
+        let x = view.center[0] + 40.0;
+        drawing.text("title", "middle", [x, 292.0], title);
+        drawing.text("axis", "middle", [x, 310.0], &text);
+    }
+}
+
 /// A light above a glossy surface, and the same light in cosine space.
 pub fn polygon_to_cosine_space(table: &LightTable) -> String {
     let (width, height) = (860.0, 330.0);
@@ -111,13 +127,7 @@ pub fn polygon_to_cosine_space(table: &LightTable) -> String {
             format!("the cosine has: form factor {:.3}", transformed_form_factor(&inverse, &light()).abs()),
         ),
     ];
-    for ((view, vertices), (title, text)) in views.into_iter().zip([light(), moved]).zip(captions) {
-        view.dome(&mut drawing);
-        draw_light(&mut drawing, view, &vertices, "line-theirs");
-        let x = view.center[0] + 40.0;
-        drawing.text("title", "middle", [x, 292.0], title);
-        drawing.text("axis", "middle", [x, 310.0], &text);
-    }
+    draw_captioned(&mut drawing, views, [&light(), &moved], captions);
     drawing.arrow("ink", [395.0, 165.0], [455.0, 165.0]);
     drawing.text("title", "middle", [425.0, 152.0], "M⁻¹");
     drawing.into_file(FILE_STYLE)
@@ -142,13 +152,7 @@ pub fn clip() -> String {
             ),
         ),
     ];
-    for ((view, vertices), (title, text)) in views.into_iter().zip([below.to_vec(), above]).zip(titles) {
-        view.dome(&mut drawing);
-        draw_light(&mut drawing, view, &vertices, "line-theirs");
-        let x = view.center[0] + 40.0;
-        drawing.text("title", "middle", [x, 292.0], title);
-        drawing.text("axis", "middle", [x, 310.0], &text);
-    }
+    draw_captioned(&mut drawing, views, [&below, &above], titles);
     drawing.arrow("ink", [395.0, 165.0], [455.0, 165.0]);
     drawing.into_file(FILE_STYLE)
 }

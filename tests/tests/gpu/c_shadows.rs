@@ -28,7 +28,6 @@ fn patch() -> ShadowPatch {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.5);
     ShadowPatch {
         material: Material { roughness: 0.5, ..Material::default() },
-        anisotropy: [0.0; 4],
         view: Vec3::new(0.0, -1.0, 1.0),
         lights: vec![lamp()],
         blockers: vec![

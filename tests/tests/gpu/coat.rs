@@ -1,12 +1,12 @@
 //! Clear coats on the GPU: against the float64 twin, against no coat, and where they are hard.
 
-use arealight::plan::{GBufferLayout, ShadeOptions};
+use arealight::plan::GBufferLayout;
 use arealight::{Effects, MIN_ALPHA, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::frame::SurfaceFrame;
-use arealight_oracle::material::{Coat, Surface};
+use arealight_oracle::material::{Coat, Material, Surface};
 use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
+use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, sampled, under_lamp};
 use arealight_tests::{Random, TestEngine, lambert_surface, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
@@ -155,54 +155,28 @@ fn octahedron(direction: Vec3) -> [f32; 2] {
 #[test]
 fn every_layout_has_its_coats_in_an_image_of_their_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let camera = Vec3::new(1.0, 0.5, 2.0);
     let shade = |layout, effects, coat: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
         pixel.coat = sampled(&engine, Format::R32G32B32A32_SFLOAT, coat);
-        let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
-        pixel
-            .shade(
-                ShadeOptions { surfaces, g_buffer: layout, ..ShadeOptions::default() },
-                &[lamp()],
-                camera,
-                None,
-            )
-            .truncate()
+        pixel.shade_under_lamp(layout, effects)
     };
     let coats = Effects::COAT | Effects::COAT_NORMAL;
     // Down to the lower half of the octahedron
     for normal in [Vec3::new(0.3, -0.2, 0.9), Vec3::new(0.9, 0.3, -0.2)] {
         let [x, y] = octahedron(normal);
         let texel = [0.75, 0.3, x, y];
-        for layout in
-            [GBufferLayout::Arealight, GBufferLayout::Unreal, GBufferLayout::Unity, GBufferLayout::Octahedral]
-        {
+        for layout in LAYOUTS {
             let without = shade(layout, Effects::empty(), texel);
             assert_eq!(shade(layout, coats, [0.0, 0.3, x, y]), without, "{layout:?}: no weight, no coat");
             assert_ne!(shade(layout, coats, texel), without, "{layout:?}");
             assert_ne!(shade(layout, coats, texel), shade(layout, Effects::COAT, texel), "{layout:?}");
         }
         // Against a point without a G-buffer
-        let material = arealight_oracle::material::Material {
-            base_color: Vec3::new(0.8, 0.6, 0.4),
-            metalness: 0.25,
-            roughness: 0.5,
-            dielectric_f0: Vec3::new(0.8, 0.6, 0.4),
-            dielectric_f90: 0.25,
-            coat: 0.75,
-            coat_roughness: 0.3,
-            ..arealight_oracle::material::Material::default()
-        };
+        let material = Material { coat: 0.75, coat_roughness: 0.3, ..material() };
         let given = |normal: Option<Vec3>| {
             let surface = material.surface();
             let coat = surface.coat.map(|coat| Coat { normal: normal.map(Vec3::as_dvec3), ..coat });
-            EvalPoint {
-                surface: Surface { coat, ..surface },
-                position: DVec3::ZERO,
-                normal: DVec3::Z,
-                view: camera.as_dvec3(),
-                light: lamp(),
-            }
+            under_lamp(Surface { coat, ..surface })
         };
         for (effects, given) in [(coats, given(Some(normal))), (Effects::COAT, given(None))] {
             let expected = engine.eval(&[given], Quality::default()).unwrap()[0];

@@ -62,8 +62,7 @@ fn a_host_says_itself_what_blocks() {
     passes.blocker_set = Some(own.set);
     let (_, material, view) = surfaces().remove(0);
     let (_, light) = symmetric_lights().remove(0);
-    let patch =
-        ShadowPatch { material, anisotropy: [0.0; 4], view, lights: vec![light], blockers: Vec::new() };
+    let patch = ShadowPatch { material, view, lights: vec![light], blockers: Vec::new() };
     let found = patch.run(&passes).mean();
     assert!((found - 0.5).abs() < 4e-3, "{found}");
     // The twin: its rectangle elsewhere
@@ -101,13 +100,7 @@ fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
         flat(2.0, &[[-1.5, -0.6], [-1.5, 0.6], [-0.2, 0.6], [-0.2, -0.6]]),
     ];
     for (surface, material, view) in surfaces() {
-        let patch = ShadowPatch {
-            material,
-            anisotropy: [0.0; 4],
-            view,
-            lights: lights.to_vec(),
-            blockers: Vec::new(),
-        };
+        let patch = ShadowPatch { material, view, lights: lights.to_vec(), blockers: Vec::new() };
         let plain = PatchPasses::new(&engine, options, arealight::plan::ShadowFilter::Off);
         let alone = lights
             .clone()

@@ -111,13 +111,8 @@ fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
     let passes = PatchPasses::new(&engine, options, ShadowFilter::Off);
     for (kind, light) in symmetric_lights() {
         for (surface, material, view) in surfaces() {
-            let patch = ShadowPatch {
-                material,
-                anisotropy: [0.0; 4],
-                view,
-                lights: vec![light.clone()],
-                blockers: plate_over_half(0.01),
-            };
+            let patch =
+                ShadowPatch { material, view, lights: vec![light.clone()], blockers: plate_over_half(0.01) };
             let found = patch.run(&passes);
             assert!(found.unshadowed[0].max_element() > 1e-4, "{kind}, {surface}: {}", found.unshadowed[0]);
             // 16,384 rays, more evenly spread than random ones, which would err by .004
@@ -171,13 +166,7 @@ fn what_arrives_of_a_quad_is_what_the_oracle_sees_of_it() {
     let passes = PatchPasses::new(&engine, options(), ShadowFilter::Off);
     let mut largest = 0.0_f64;
     for (surface, material, view) in surfaces() {
-        let patch = ShadowPatch {
-            material,
-            anisotropy: [0.0; 4],
-            view,
-            lights: vec![light.clone()],
-            blockers: blockers.clone(),
-        };
+        let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: blockers.clone() };
         let found = patch.run(&passes).mean();
         let exact = exact(&light, &patch);
         assert!((0.05..0.95).contains(&exact), "{surface}: {exact}, the case says nothing");
@@ -201,13 +190,7 @@ fn lights_are_picked_by_what_they_add() {
     let at = |x: f32, y: f32| Vec3::new(x, y, 1.0);
     let blockers = rectangle([at(-0.3, -0.3), at(0.3, -0.3), at(0.3, 0.3), at(-0.3, 0.3)]);
     for (surface, material, view) in surfaces() {
-        let patch = ShadowPatch {
-            material,
-            anisotropy: [0.0; 4],
-            view,
-            lights: lights.clone(),
-            blockers: blockers.clone(),
-        };
+        let patch = ShadowPatch { material, view, lights: lights.clone(), blockers: blockers.clone() };
         let found = patch.run(&passes);
         let hidden = ShadowPatch { lights: vec![lights[1].clone()], ..patch.clone() };
         let hidden = hidden.run(&passes);
@@ -242,13 +225,7 @@ fn rays_leave_the_pocket_and_the_hole_of_a_light_alone() {
     let beyond = rectangle([at(-0.24, -0.4), at(0.6, -0.4), at(0.6, 0.4), at(-0.24, 0.4)]);
     for (kind, light) in [("pocket", pocket), ("hole", frame)] {
         for (surface, material, view) in surfaces() {
-            let patch = ShadowPatch {
-                material,
-                anisotropy: [0.0; 4],
-                view,
-                lights: vec![light.clone()],
-                blockers: within.clone(),
-            };
+            let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: within.clone() };
             let found = patch.run(&passes).mean();
             // Eight draws in the pocket after one another are as likely as .4^8 = 7e-4 for a lobe that looks into it
             assert!(found > 0.99, "{kind}, {surface}: {found}");
@@ -265,13 +242,7 @@ fn the_filter_takes_the_noise_and_leaves_the_mean() {
     let Some(engine) = TestEngine::new() else { return };
     let (_, material, view) = surfaces().remove(0);
     let (_, light) = symmetric_lights().remove(0);
-    let patch = ShadowPatch {
-        material,
-        anisotropy: [0.0; 4],
-        view,
-        lights: vec![light],
-        blockers: plate_over_half(0.5),
-    };
+    let patch = ShadowPatch { material, view, lights: vec![light], blockers: plate_over_half(0.5) };
     let one_ray = ShadeOptions { shadow_rays: 1, ..options() };
     let deviation = |found: &PatchShadows| {
         let parts = found.radiance.iter().zip(&found.unshadowed).map(|(a, b)| f64::from(a.y / b.y));
@@ -300,13 +271,8 @@ fn coats_and_both_horizons_draw_from_their_own_lobes() {
         ShadeOptions { quality: Quality { fresnel: Fresnel::Split, ..Quality::default() }, ..options() },
     ] {
         let view = Vec3::new(-1.0, 0.0, 0.8);
-        let patch = ShadowPatch {
-            material,
-            anisotropy: [0.0; 4],
-            view,
-            lights: vec![light.clone()],
-            blockers: plate_over_half(0.01),
-        };
+        let patch =
+            ShadowPatch { material, view, lights: vec![light.clone()], blockers: plate_over_half(0.01) };
         let found = patch.run(&PatchPasses::new(&engine, options, ShadowFilter::Off)).mean();
         assert!((found - 0.5).abs() < 4e-3, "{options:?}: {found}");
     }
@@ -317,7 +283,7 @@ fn tiles_pick_the_lights_that_frames_pick() {
     let Some(engine) = TestEngine::new() else { return };
     let (_, material, view) = surfaces().remove(3);
     let lights: Vec<Light> = symmetric_lights().into_iter().map(|(_, light)| light).collect();
-    let patch = ShadowPatch { material, anisotropy: [0.0; 4], view, lights, blockers: plate_over_half(0.3) };
+    let patch = ShadowPatch { material, view, lights, blockers: plate_over_half(0.3) };
     let [frame, tiles] = [
         PatchPasses::new(&engine, options(), ShadowFilter::Off),
         PatchPasses::with_tiles(&engine, options()),

@@ -1,11 +1,11 @@
 //! Sheen on the GPU: against the float64 twin, against none, and in its image of a G-buffer.
 
-use arealight::plan::{GBufferLayout, ShadeOptions};
+use arealight::plan::GBufferLayout;
 use arealight::{Effects, Quality};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Coat, Material, Sheen, Surface};
 use arealight_tests::materials::{lobe_qualities, shape_lights, under_polygon};
-use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
+use arealight_tests::one_pixel::{LAYOUTS, OnePixel, material, sampled, under_lamp};
 use arealight_tests::{Random, TestEngine, point, rounding};
 use arealight_vk::ash::vk::Format;
 use glam::{DVec3, Vec3, Vec4};
@@ -145,41 +145,20 @@ fn at_the_normal_sheen_does_not_jump() {
 #[test]
 fn every_layout_has_its_sheen_in_an_image_of_its_own() {
     let Some(engine) = TestEngine::new() else { return };
-    let camera = Vec3::new(1.0, 0.5, 2.0);
     let texel = [0.9_f32, 0.5, 0.2, 0.4];
     let shade = |layout, effects, sheen: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);
         pixel.sheen = sampled(&engine, Format::R32G32B32A32_SFLOAT, sheen);
-        let surfaces = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | effects;
-        let options = ShadeOptions { surfaces, g_buffer: layout, ..ShadeOptions::default() };
-        pixel.shade(options, &[lamp()], camera, None).truncate()
+        pixel.shade_under_lamp(layout, effects)
     };
-    for layout in
-        [GBufferLayout::Arealight, GBufferLayout::Unreal, GBufferLayout::Unity, GBufferLayout::Octahedral]
-    {
+    for layout in LAYOUTS {
         let without = shade(layout, Effects::empty(), texel);
         assert_eq!(shade(layout, Effects::SHEEN, [0.0, 0.0, 0.0, 0.4]), without, "{layout:?}: black is none");
         assert_ne!(shade(layout, Effects::SHEEN, texel), without, "{layout:?}");
     }
     // Against a point without a G-buffer
-    let material = Material {
-        base_color: Vec3::new(0.8, 0.6, 0.4),
-        metalness: 0.25,
-        roughness: 0.5,
-        dielectric_f0: Vec3::new(0.8, 0.6, 0.4),
-        dielectric_f90: 0.25,
-        sheen_color: Vec3::new(0.9, 0.5, 0.2),
-        sheen_roughness: 0.4,
-        ..Material::default()
-    };
-    let given = EvalPoint {
-        surface: material.surface(),
-        position: DVec3::ZERO,
-        normal: DVec3::Z,
-        view: camera.as_dvec3(),
-        light: lamp(),
-    };
-    let expected = engine.eval(&[given], Quality::default()).unwrap()[0];
+    let material = Material { sheen_color: Vec3::new(0.9, 0.5, 0.2), sheen_roughness: 0.4, ..material() };
+    let expected = engine.eval(&[under_lamp(material.surface())], Quality::default()).unwrap()[0];
     let found = shade(GBufferLayout::Arealight, Effects::SHEEN, texel);
     // Radiance of 3 and three lobes
     assert!((found - expected).abs().max_element() < 2e-5, "{found} and {expected}");

@@ -1,11 +1,8 @@
 //! Closed meshes: what has an inside, which nobody sees.
 
-use crate::Bounds;
+use crate::{Bounds, weld};
 use glam::DVec3;
 use std::collections::HashMap;
-
-/// How far vertices may be apart to be one, relative to the diagonal of all: what [`crate::outlines`] welds by.
-const WELD: f64 = 1e-6;
 
 /// Which triangles belong to a connected part that is closed (each edge is shared by exactly two of its triangles, which run along it in
 /// opposite directions) and faces outwards (its signed volume is positive). `rounding` is how far positions may be off in any case.
@@ -14,9 +11,9 @@ pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64)
     let parts = connected(&corners);
     let mut is_closed = vec![true; triangles.len()];
     // An edge is good where it is passed once in each direction
-    let mut passed: HashMap<[usize; 2], [u32; 2]> = HashMap::new();
+    let mut passed: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
     // A triangle with two corners in one place, as at a sphere's pole, has no sides
-    let has_sides = |[a, b, c]: &&[usize; 3]| a != b && b != c && c != a;
+    let has_sides = |[a, b, c]: &&[u32; 3]| a != b && b != c && c != a;
     for edge in corners.iter().filter(has_sides).flat_map(edges) {
         let way = usize::from(edge[0] > edge[1]);
         passed.entry(sorted(edge)).or_default()[way] += 1;
@@ -37,35 +34,16 @@ pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64)
 }
 
 /// The triangles' corners, with one number for all vertices in one place.
-fn welded(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<[usize; 3]> {
-    let used = || triangles.iter().flatten().map(|index| *index as usize);
-    let size = used().map(|index| positions[index]).collect::<Bounds>().diagonal();
-    let cell = (size * WELD + rounding).max(f64::MIN_POSITIVE);
-    let mut known: HashMap<[i64; 3], usize> = HashMap::new();
-    let mut numbers = vec![usize::MAX; positions.len()];
-    for index in used() {
-        if numbers[index] != usize::MAX {
-            continue;
-        }
-        // A vertex may be on the other side of a cell's wall than the one it is equal to
-        let place = (positions[index] / cell).floor();
-        let key = |x: i64, y: i64, z: i64| [place.x as i64 + x, place.y as i64 + y, place.z as i64 + z];
-        let around = (0..27).map(|i| key(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-        let near = around
-            .filter_map(|key| known.get(&key).copied())
-            .find(|other| positions[*other].distance(positions[index]) <= cell);
-        numbers[index] = near.unwrap_or(index);
-        if near.is_none() {
-            known.insert(key(0, 0, 0), index);
-        }
-    }
-    triangles.iter().map(|triangle| triangle.map(|index| numbers[index as usize])).collect()
+fn welded(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<[u32; 3]> {
+    let size = triangles.iter().flatten().map(|&i| positions[i as usize]).collect::<Bounds>().diagonal();
+    let (_, numbers) = weld::weld(positions, triangles, weld::tolerance(size, rounding));
+    triangles.iter().map(|triangle| triangle.map(|index| numbers[&index])).collect()
 }
 
 /// The part of each triangle: the first triangle that is joined to it by edges.
-fn connected(corners: &[[usize; 3]]) -> Vec<usize> {
+fn connected(corners: &[[u32; 3]]) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..corners.len()).collect();
-    let mut owner: HashMap<[usize; 2], usize> = HashMap::new();
+    let mut owner: HashMap<[u32; 2], usize> = HashMap::new();
     for (number, triangle) in corners.iter().enumerate() {
         for edge in edges(triangle) {
             let neighbour = *owner.entry(sorted(edge)).or_insert(number);
@@ -85,11 +63,11 @@ fn root(parent: &mut [usize], mut at: usize) -> usize {
     at
 }
 
-fn edges(&[a, b, c]: &[usize; 3]) -> [[usize; 2]; 3] {
+fn edges(&[a, b, c]: &[u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]]
 }
 
-fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
+fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 

@@ -52,6 +52,7 @@ mod shown;
 mod tangents;
 mod uv_map;
 mod uv_mapping;
+mod weld;
 
 pub use area_lights::LUMENS_PER_WATT;
 pub use camera::Camera;

@@ -10,6 +10,7 @@ use gltf::json;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
 use serde::Deserialize;
+use serde::de::DeserializeOwned;
 
 /// The scene's index of a primitive's material.
 pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32, SceneError> {
@@ -170,38 +171,37 @@ impl Reader<'_> {
         ((color * by_index).min(Vec3::ONE) * weight, weight)
     }
 
+    /// What an extension says that the gltf crate does not read; its defaults without it.
+    fn extension<T: Default + DeserializeOwned>(
+        &self,
+        source: &json::Material,
+        name: &str,
+    ) -> Result<T, SceneError> {
+        let extension = source.extensions.as_ref().and_then(|e| e.others.get(name));
+        let Some(extension) = extension else { return Ok(T::default()) };
+        let field = || format!("{}: {name}", self.place);
+        T::deserialize(extension).map_err(|error| self.loader.document.invalid(field(), error.to_string()))
+    }
+
     /// The coat; nothing of it where its factor is zero.
-    fn clearcoat(&mut self, source: &json::Material) -> Result<Clearcoat, SceneError> {
-        let extension = source.extensions.as_ref().and_then(|e| e.others.get(CLEARCOAT));
-        let Some(extension) = extension else { return Ok(Clearcoat::default()) };
-        let read = Clearcoat::deserialize(extension);
-        let field = format!("{}: {CLEARCOAT}", self.place);
-        let coat = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+    fn clearcoat(&self, source: &json::Material) -> Result<Clearcoat, SceneError> {
+        let coat: Clearcoat = self.extension(source, CLEARCOAT)?;
         Ok(if coat.factor == 0.0 { Clearcoat::default() } else { coat })
     }
 
     /// The sheen; nothing of it where its colour is black.
-    fn sheen(&mut self, source: &json::Material) -> Result<Sheen, SceneError> {
-        let extension = source.extensions.as_ref().and_then(|e| e.others.get(SHEEN));
-        let Some(extension) = extension else { return Ok(Sheen::default()) };
-        let read = Sheen::deserialize(extension);
-        let field = format!("{}: {SHEEN}", self.place);
-        let sheen = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+    fn sheen(&self, source: &json::Material) -> Result<Sheen, SceneError> {
+        let sheen: Sheen = self.extension(source, SHEEN)?;
         Ok(if sheen.color_factor == [0.0; 3] { Sheen::default() } else { sheen })
     }
 
     /// The anisotropy; nothing of it where its strength is zero.
     fn anisotropy(&mut self, source: &json::Material) -> Result<Anisotropy, SceneError> {
-        let extension = source.extensions.as_ref().and_then(|e| e.others.get(ANISOTROPY));
-        let Some(extension) = extension else { return Ok(Anisotropy::default()) };
-        let read = Anisotropy::deserialize(extension);
-        let field = format!("{}: {ANISOTROPY}", self.place);
-        let anisotropy = read.map_err(|error| self.loader.document.invalid(field, error.to_string()))?;
+        let mut anisotropy: Anisotropy = self.extension(source, ANISOTROPY)?;
         if !anisotropy.rotation.is_finite() {
             self.warn(format!("anisotropyRotation {} is not finite: 0 is used", anisotropy.rotation));
+            anisotropy.rotation = 0.0;
         }
-        let rotation = if anisotropy.rotation.is_finite() { anisotropy.rotation } else { 0.0 };
-        let anisotropy = Anisotropy { rotation, ..anisotropy };
         Ok(if anisotropy.strength == 0.0 { Anisotropy::default() } else { anisotropy })
     }
 

@@ -12,12 +12,9 @@
 use crate::Bounds;
 use crate::borders::{borders, with_holes};
 use crate::uv_map::{UvMap, UvTolerance};
+use crate::weld;
 use glam::{DVec2, DVec3, Vec2};
 use std::collections::{HashMap, HashSet, VecDeque};
-
-/// How far vertices may be apart to be one, relative to the diagonal of all: below what is visible, above the
-/// rounding of transforms.
-const WELD: f64 = 1e-6;
 
 /// How far a vertex may be off the plane of its polygon, or off the straight line it is removed from,
 /// relative to the diagonal of all.
@@ -60,7 +57,7 @@ pub(crate) fn outlines(
     coordinates: Option<Coordinates>,
 ) -> Outlines {
     let size = triangles.iter().flatten().map(|&i| positions[i as usize]).collect::<Bounds>().diagonal();
-    let weld = size * WELD + rounding;
+    let weld = weld::tolerance(size, rounding);
     let mesh = Mesh::new(positions, triangles, weld, coordinates.map(|c| c.uvs));
     let flat = size * FLAT + rounding;
     let tolerance = UvTolerance { uv: coordinates.map_or(DVec2::ZERO, |c| c.tolerance), position: weld };
@@ -153,7 +150,7 @@ impl Mesh {
         tolerance: f64,
         coordinates: Option<&[Vec2]>,
     ) -> Self {
-        let (positions, index) = weld(positions, triangles, tolerance);
+        let (positions, index) = weld::weld(positions, triangles, tolerance);
         let mut mesh = Self { positions, ..Self::default() };
         let mut known = HashSet::new();
         for triangle in triangles {
@@ -307,39 +304,6 @@ impl Loop {
         }
         vertices
     }
-}
-
-/// Gives vertices within `tolerance` of each other one index: new positions, and the new index of each used
-/// old one.
-fn weld(positions: &[DVec3], triangles: &[[u32; 3]], tolerance: f64) -> (Vec<DVec3>, HashMap<u32, u32>) {
-    let anchor = triangles.first().map_or(DVec3::ZERO, |t| positions[t[0] as usize]);
-    let cell = |p: DVec3| ((p - anchor) / tolerance.max(f64::MIN_POSITIVE)).floor().as_i64vec3();
-    let mut cells: HashMap<glam::I64Vec3, Vec<u32>> = HashMap::new();
-    let mut welded: Vec<DVec3> = Vec::new();
-    let mut index = HashMap::new();
-    for &old in triangles.iter().flatten() {
-        if index.contains_key(&old) {
-            continue;
-        }
-        let position = positions[old as usize];
-        let home = cell(position);
-        // Look in the cells around for a vertex that is near enough
-        let around =
-            (0..27).map(|i| home.wrapping_add(glam::I64Vec3::new(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
-        let near = around
-            .filter_map(|cell| cells.get(&cell))
-            .flatten()
-            .find(|&&i| welded[i as usize].distance(position) <= tolerance)
-            .copied();
-        let new = near.unwrap_or_else(|| {
-            welded.push(position);
-            let new = (welded.len() - 1) as u32;
-            cells.entry(home).or_default().push(new);
-            new
-        });
-        index.insert(old, new);
-    }
-    (welded, index)
 }
 
 /// The outline without the vertices that lie on straight edges, to `tolerance`; none if nothing is left.
