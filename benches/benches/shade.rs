@@ -3,7 +3,7 @@
 //! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
 //! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
 
-use arealight::{Effects, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight::{Effects, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use arealight_engine::{Engine, Host, HostOptions, Reference, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -50,7 +50,7 @@ fn shade(criterion: &mut Criterion) {
         ("exact", effects, exact),
         ("difference", effects, Quality { form_factor: FormFactor::Difference, ..exact }),
         ("exact, both horizons", effects, Quality { horizon: Horizon::Both, ..exact }),
-        ("exact, split", effects, Quality { fresnel: Fresnel::Split, ..exact }),
+        ("exact, two lobes", effects, Quality { specular_lobes: SpecularLobes::Two, ..exact }),
         // The difference is what the table's lookup costs
         ("exact, lobes by formula", effects, Quality { lobes: Lobes::Formula, ..exact }),
         ("exact, diffuse only", effects - Effects::GLOSSY, exact),

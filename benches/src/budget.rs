@@ -171,7 +171,7 @@ impl Profile {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::{Footprint, FormFactor, Fresnel, Horizon, Lobes};
+    use arealight::{Footprint, FormFactor, Horizon, Lobes, SpecularLobes};
 
     const FORMULA: Quality = {
         let mut quality = EXACT;
@@ -181,14 +181,14 @@ mod tests {
     const EXACT: Quality = Quality {
         form_factor: FormFactor::Exact,
         horizon: Horizon::Cosine,
-        fresnel: Fresnel::ByF0,
+        specular_lobes: SpecularLobes::One,
         lobes: Lobes::Table,
         footprint: Footprint::Round,
     };
 
     /// The formula has no table to read, and takes half as long for few lights.
     fn profile() -> Profile {
-        let split = Quality { fresnel: Fresnel::Split, ..EXACT };
+        let split = Quality { specular_lobes: SpecularLobes::Two, ..EXACT };
         let level = |quality, error, fixed, per_light| ProfileLevel {
             quality,
             textured: false,
@@ -215,7 +215,7 @@ mod tests {
     fn the_most_accurate_level_that_is_fast_enough_is_picked() {
         let pick = |limit| profile().within(budget(10, Limit::Milliseconds(limit)));
         // 16, 11 and 10.5 ms
-        assert_eq!(pick(16.0).unwrap().quality.fresnel, Fresnel::Split);
+        assert_eq!(pick(16.0).unwrap().quality.specular_lobes, SpecularLobes::Two);
         assert_eq!(pick(15.99).unwrap().quality, EXACT);
         assert_eq!(pick(10.6).unwrap().quality, FORMULA);
         let error = pick(10.0).unwrap_err();
@@ -243,7 +243,7 @@ mod tests {
         let pick = |limit| profile().within(budget(1, Limit::Error(limit)));
         assert_eq!(pick(0.5).unwrap().quality, FORMULA);
         assert_eq!(pick(0.02).unwrap().quality, EXACT);
-        assert_eq!(pick(0.015).unwrap().quality.fresnel, Fresnel::Split);
+        assert_eq!(pick(0.015).unwrap().quality.specular_lobes, SpecularLobes::Two);
         let error = pick(0.001).unwrap_err();
         assert!(error.to_string().contains("the most accurate errs 0.01000"), "{error}");
     }

@@ -2,7 +2,7 @@
 
 use crate::shadow_levels::pictures::Pictures;
 use arealight::plan::ShadeOptions;
-use arealight::{Effects, LightTable};
+use arealight::{Effects, LightTable, Quality, SpecularLobes};
 use arealight_engine::host::{Host, Usage};
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
@@ -41,6 +41,8 @@ pub struct MaterialResult {
     /// Root of the mean squared difference, over the reference's mean. The references' noise is not in it: squares are products of the differences from two
     /// of them. 0 where noise makes the mean negative.
     pub error: f64,
+    /// `error` with two specular lobes ([`SpecularLobes::Two`]).
+    pub two_lobes: f64,
     /// The same of the reference itself, of one of the two: its noise.
     pub noise: f64,
 }
@@ -75,13 +77,14 @@ pub enum MaterialsError {
 
 /// Two independent pictures of the truth, and ours.
 struct Pixels {
-    ours: Vec<DVec3>,
+    /// By one specular lobe and by two.
+    ours: [Vec<DVec3>; 2],
     truths: [Vec<DVec3>; 2],
     /// Index into the scene's materials; none where nothing or a lamp is seen.
     materials: Vec<Option<usize>>,
 }
 
-/// Renders a scene without shadows, at the exact level, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
+/// Renders a scene without shadows, at the exact level by one specular lobe and by two, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
 /// [`Options::samples`].
 ///
 /// # Errors
@@ -137,9 +140,13 @@ fn render(
     let materials = positions.iter().map(material).collect();
     // Ours, and the truth
     let surfaces = scene.effects() & Effects::SURFACES;
-    pictures.begin()?;
-    pictures.renderer.shade_as(ShadeOptions { surfaces, ..ShadeOptions::default() })?;
-    let ours = pictures.radiance()?;
+    let mut ours = |specular_lobes| -> Result<_, EngineError> {
+        let quality = Quality { specular_lobes, ..Quality::default() };
+        pictures.begin()?;
+        pictures.renderer.shade_as(ShadeOptions { surfaces, quality, ..ShadeOptions::default() })?;
+        pictures.radiance()
+    };
+    let ours = [ours(SpecularLobes::One)?, ours(SpecularLobes::Two)?];
     let mut truth = |seed| {
         let mut told = 0;
         pictures.begin()?;
@@ -157,27 +164,31 @@ impl Pixels {
     /// Of a material; none where no pixel shows it, or it reflects nothing.
     fn errors(&self, material: usize) -> Option<MaterialResult> {
         let mut pixels = 0;
-        let [mut mean, mut truth, mut square, mut noise] = [0.0; 4];
+        let [mut mean, mut truth, mut noise] = [0.0; 3];
+        let mut squares = [0.0; 2];
         for (index, shown) in self.materials.iter().enumerate() {
             if *shown != Some(material) {
                 continue;
             }
-            let (ours, [first, second]) =
-                (self.ours[index], self.truths.each_ref().map(|truth| truth[index]));
+            let [first, second] = self.truths.each_ref().map(|truth| truth[index]);
             pixels += 1;
-            mean += ours.element_sum();
+            mean += self.ours[0][index].element_sum();
             truth += 0.5 * (first + second).element_sum();
-            square += (ours - first).dot(ours - second);
+            for (square, ours) in squares.iter_mut().zip(&self.ours) {
+                *square += (ours[index] - first).dot(ours[index] - second);
+            }
             noise += 0.5 * (first - second).length_squared();
         }
         let count = 3.0 * f64::from(pixels);
         let reference = truth / count;
+        let error = |square: f64| (square / count).max(0.0).sqrt() / reference;
         (reference > 0.0).then(|| MaterialResult {
             name: String::new(),
             effects: String::new(),
             pixels: pixels as usize,
             ratio: mean / truth,
-            error: (square / count).max(0.0).sqrt() / reference,
+            error: error(squares[0]),
+            two_lobes: error(squares[1]),
             noise: (noise / count).sqrt() / reference,
         })
     }
@@ -192,10 +203,14 @@ impl MaterialErrors {
     /// The table.
     pub fn to_text(&self) -> String {
         let mut text = format!("{}: {} samples a pixel, two references\n\n", self.device, self.samples);
-        text += "material              pixels  mean / reference  RMSE / mean  reference's noise\n";
-        for MaterialResult { name, pixels, ratio, error, noise, .. } in &self.materials {
-            let (error, noise) = (100.0 * error, 100.0 * noise);
-            let _ = writeln!(text, "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {noise:15.2} %");
+        text +=
+            "material              pixels  mean / reference  RMSE / mean  by two lobes  reference's noise\n";
+        for MaterialResult { name, pixels, ratio, error, two_lobes, noise, .. } in &self.materials {
+            let [error, two_lobes, noise] = [error, two_lobes, noise].map(|part| 100.0 * part);
+            let _ = writeln!(
+                text,
+                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {noise:15.2} %"
+            );
         }
         text
     }
@@ -203,12 +218,13 @@ impl MaterialErrors {
     /// The same as Markdown, with the command that repeats it.
     pub fn to_markdown(&self, command: &str) -> String {
         let mut text = format!(
-            "By `{command}` on {}: the exact level beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
+            "By `{command}` on {}: the exact level, by one specular lobe and by two, beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
             self.device
         );
-        text += "| material | effects | mean over reference | RMSE over mean |\n|---|---|---|---|\n";
-        for MaterialResult { name, effects, ratio, error, .. } in &self.materials {
-            let _ = writeln!(text, "| {name} | {effects} | {ratio:.4} | {:.2} % |", 100.0 * error);
+        text += "| material | effects | mean over reference | RMSE over mean | by two lobes |\n|---|---|---|---|---|\n";
+        for MaterialResult { name, effects, ratio, error, two_lobes, .. } in &self.materials {
+            let [error, two_lobes] = [error, two_lobes].map(|part| 100.0 * part);
+            let _ = writeln!(text, "| {name} | {effects} | {ratio:.4} | {error:.2} % | {two_lobes:.2} % |");
         }
         text
     }
@@ -227,8 +243,11 @@ mod tests {
         let truths = [noisy(1), noisy(2)];
         let mut materials = vec![Some(3); 4096];
         materials.push(None);
-        let mut pixels = Pixels { ours: vec![DVec3::splat(1.0 + off_by); 4096], truths, materials };
-        pixels.ours.push(DVec3::splat(100.0));
+        let ours = [off_by, 0.5 * off_by].map(|off_by| vec![DVec3::splat(1.0 + off_by); 4096]);
+        let mut pixels = Pixels { ours, truths, materials };
+        for ours in &mut pixels.ours {
+            ours.push(DVec3::splat(100.0));
+        }
         for truth in &mut pixels.truths {
             truth.push(DVec3::ZERO);
         }
@@ -241,6 +260,7 @@ mod tests {
         assert!(right.error < 1e-6 && (right.ratio - 1.0).abs() < 1e-9, "{right:?}");
         assert!((right.noise - 0.5).abs() < 1e-9, "{right:?}");
         let wrong = pixels(0.05).errors(3).unwrap();
+        assert!((wrong.two_lobes - 0.025).abs() < 1e-9, "{wrong:?}");
         assert!((wrong.error - 0.05).abs() < 1e-9 && (wrong.ratio - 1.05).abs() < 1e-9, "{wrong:?}");
         assert_eq!(wrong.pixels, 4096);
         assert!(pixels(0.0).errors(2).is_none(), "no pixel shows it");

@@ -147,9 +147,9 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
     Buffer lobe_horizons = {}, tile_lists = {};
     if (tiles) {
         uint64_t horizon_size = 0;
-        check(arealight_lobe_horizons(arealight, nullptr, &horizon_size));
+        check(arealight_lobe_horizons(arealight, AREALIGHT_SPECULAR_LOBES_ONE, nullptr, &horizon_size));
         lobe_horizons = engine.buffer(horizon_size, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-        check(arealight_lobe_horizons(arealight, lobe_horizons.mapped, &horizon_size));
+        check(arealight_lobe_horizons(arealight, AREALIGHT_SPECULAR_LOBES_ONE, lobe_horizons.mapped, &horizon_size));
         ArealightTileMemory lists;
         check(arealight_pass_tile_memory(pass, WIDTH, HEIGHT, &lists));
         tile_lists = engine.buffer(lists.size, lists.usage);

@@ -59,7 +59,7 @@ ArealightGpuLobeHorizon lobe_horizon(float roughness, float cosine) {
 vec2 horizon_range(float f0, float f90, ArealightGpuLobeHorizon horizon) {
     // What part of the ratio Schlick's lobe has, by arealight_schlick_share and the lobes' heights
     vec2 part = vec2(0.0, 1.0);
-    if (!AREALIGHT_SPLITS_FRESNEL) {
+    if (!AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
         vec2 weight = (f90 - f0) * horizon.weight;
         part = f0 >= 0.0 && f90 > f0 ? weight / (f0 + weight + 1e-30) : vec2(0.0, f0 <= 1.0 ? 0.0 : 1.0);
     }

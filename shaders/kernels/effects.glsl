@@ -2,7 +2,7 @@
 #define EFFECTS_GLSL
 
 // The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including kernel has the
-// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, FRESNEL, LOBES and FOOTPRINT, or defines the option of one that it lacks;
+// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, SPECULAR_LOBES, LOBES and FOOTPRINT, or defines the option of one that it lacks;
 // what EFFECTS lacks is not in the pipeline.
 
 const uint EFFECT_DIFFUSE = 1u;
@@ -57,7 +57,7 @@ const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
 // Values of the constants of the quality, which are 0 else.
 const int FORM_FACTOR_DIFFERENCE = 1;
 const int HORIZON_BOTH = 1;
-const int FRESNEL_SPLIT = 1;
+const int SPECULAR_LOBES_TWO = 1;
 const int LOBES_FORMULA = 1;
 
 #define AREALIGHT_DIFFUSE ((EFFECTS & EFFECT_DIFFUSE) != 0u)
@@ -80,7 +80,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_DIFFERENCE (FORM_FACTOR == FORM_FACTOR_DIFFERENCE)
 #endif
 #define AREALIGHT_SURFACE_HORIZON (HORIZON == HORIZON_BOTH)
-#define AREALIGHT_FRESNEL_SPLIT (FRESNEL == FRESNEL_SPLIT)
+#define AREALIGHT_TWO_SPECULAR_LOBES (SPECULAR_LOBES == SPECULAR_LOBES_TWO)
 #define AREALIGHT_FORMULA (LOBES == LOBES_FORMULA)
 #ifndef AREALIGHT_FOOTPRINT
 #define AREALIGHT_FOOTPRINT FOOTPRINT

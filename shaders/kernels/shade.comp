@@ -13,7 +13,7 @@ layout(constant_id = 1) const int FORM_FACTOR = 0;
 layout(constant_id = 2) const int POSITION_SOURCE = 0;
 layout(constant_id = 3) const int OUTPUT = 0;
 layout(constant_id = 4) const int HORIZON = 0;
-layout(constant_id = 5) const int FRESNEL = 0;
+layout(constant_id = 5) const int SPECULAR_LOBES = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 7) const int FOOTPRINT = 0;
 // Whether the frame has convex quads without an image

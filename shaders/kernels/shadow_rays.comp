@@ -38,14 +38,14 @@ float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
 
 // The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each reflects of the light.
 int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
-    if (!AREALIGHT_HAS_LAYER && !AREALIGHT_SPLITS_FRESNEL) {
+    if (!AREALIGHT_HAS_LAYER && !AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
         return AREALIGHT_LOBE_SPECULAR;
     }
     int chosen = AREALIGHT_LOBE_SPECULAR;
     float sum = 0.0;
     for (int lobe = AREALIGHT_LOBE_SPECULAR; lobe < AREALIGHT_LOBE_END; lobe++) {
         if (arealight_has_lobe(lobe)) {
-            float albedo = abs(arealight_luminance(point.lobes[lobe].albedo));
+            float albedo = arealight_luminance(point.lobes[lobe].albedo);
             float weight = albedo * picked_light_weight(light, point.lobes[lobe].space * point.to_frame);
             if (weight > 0.0 && arealight_choose(random, sum, weight)) {
                 chosen = lobe;

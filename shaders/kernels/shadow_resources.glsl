@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint EFFECTS = 0xffffffffu;
 layout(constant_id = 2) const int POSITION_SOURCE = 0;
 layout(constant_id = 4) const int HORIZON = 0;
-layout(constant_id = 5) const int FRESNEL = 0;
+layout(constant_id = 5) const int SPECULAR_LOBES = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 15) const int SHADOW_RAYS = 1;

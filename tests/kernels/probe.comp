@@ -57,7 +57,7 @@ ProbeResults common_of(vec3 vector, vec3 fallback, float number) {
 // The columns of the lobe's transform from the world, and what the table holds of the lobe.
 ProbeResults table_of(vec3 normal, vec3 view, float roughness) {
     ArealightFrame frame = arealight_surface_frame(normal, view);
-    ArealightTableSample table = arealight_table_lookup(frame, roughness);
+    ArealightTableSample table = arealight_table_lookup(frame, roughness, false);
     mat3 transform = arealight_table_space(frame, table.matrix, table.alpha) * arealight_frame_matrix(frame);
     return ProbeResults(vec4(transform[0], table.albedo), vec4(transform[1], table.schlick),
                         vec4(transform[2], table.alpha), table.schlick_matrix);

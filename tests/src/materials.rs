@@ -1,7 +1,7 @@
 //! What the tests of materials share: shading points, and comparisons with the float64 twins.
 
 use crate::{Comparison, Random, TestEngine, point};
-use arealight::{Fresnel, Horizon, Light, LightShape, LightTable, Lobes, Quality, TubeEnds};
+use arealight::{Horizon, Light, LightShape, LightTable, Lobes, Quality, SpecularLobes, TubeEnds};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
@@ -16,7 +16,7 @@ pub fn lobe_qualities() -> [Quality; 4] {
     [
         quality,
         Quality { horizon: Horizon::Both, ..quality },
-        Quality { fresnel: Fresnel::Split, ..quality },
+        Quality { specular_lobes: SpecularLobes::Two, ..quality },
         Quality { lobes: Lobes::Formula, ..quality },
     ]
 }

@@ -161,7 +161,11 @@ impl ShadowPatch {
         let picks = host.storage_buffer("picks", &picks).unwrap();
         let tiles = shade.tile_memory([SIDE; 2]).map(|memory| {
             let lists = host.buffer("tile lists", memory.size, memory.usage, Location::Device).unwrap();
-            (lists, host.storage_buffer("lobe horizons", engine.lobe_horizons()).unwrap())
+            (
+                lists,
+                host.storage_buffer("lobe horizons", engine.lobe_horizons(options.quality.specular_lobes))
+                    .unwrap(),
+            )
         });
         let (tile_lists, lobe_horizons) =
             tiles.as_ref().map(|(lists, horizons)| (buffer(lists), buffer(horizons))).unzip();

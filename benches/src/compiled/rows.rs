@@ -6,7 +6,9 @@ use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, LightSummary, Lobes, Quality, TileClass};
+use arealight::{
+    Effects, Footprint, FormFactor, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass,
+};
 use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
 use ash::vk;
@@ -99,9 +101,9 @@ pub fn rows() -> Vec<Row> {
     let (exact, none) = (Quality::default(), Effects::empty());
     let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
-    let split = Quality { fresnel: Fresnel::Split, ..exact };
+    let two_lobes = Quality { specular_lobes: SpecularLobes::Two, ..exact };
     let formula = Quality { lobes: Lobes::Formula, ..exact };
-    let everything = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..difference };
+    let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
     let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
     let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
@@ -117,10 +119,10 @@ pub fn rows() -> Vec<Row> {
         // Quads, by quality level
         quads("quads", "exact", LOBES, exact),
         quads("quads", "both horizons", LOBES, both),
-        quads("quads", "split Fresnel", LOBES, split),
+        quads("quads", "two specular lobes", LOBES, two_lobes),
         quads("quads", "difference", LOBES, difference),
         quads("quads", "formula", LOBES, formula),
-        quads("quads", "difference, both horizons, split Fresnel", LOBES, everything),
+        quads("quads", "difference, both horizons, two specular lobes", LOBES, everything),
         // Quads, by lobe
         quads("quads", "exact, diffuse alone", Effects::DIFFUSE, exact),
         quads("quads", "exact, specular alone", Effects::GLOSSY, exact),

@@ -11,10 +11,10 @@ const COMPILED: [(&str, &str, &str); 9] = [
     ("clip by cases", "shade_yardstick", "clip by cases"),
     ("exact", "shade", "exact"),
     ("formula", "shade", "formula"),
-    ("split", "shade", "split Fresnel"),
+    ("two lobes", "shade", "two specular lobes"),
     ("both horizons", "shade", "both horizons"),
     ("difference", "shade", "difference"),
-    ("everything", "shade", "difference, both horizons, split Fresnel"),
+    ("everything", "shade", "difference, both horizons, two specular lobes"),
 ];
 
 /// The kernels of published quality have another table, read by the same code.

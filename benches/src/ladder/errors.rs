@@ -4,7 +4,7 @@ use super::methods::{Method, Workload};
 use super::points::{Point, lights, points};
 use crate::footprints;
 use crate::school::YardstickTable;
-use arealight::{Fresnel, Horizon, Light, LightTable, Lobes, Quality};
+use arealight::{Horizon, Light, LightTable, Lobes, Quality, SpecularLobes};
 use arealight_fit::{Aim, GgxBrdf, fit_at};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::frame::SurfaceFrame;
@@ -95,7 +95,7 @@ pub struct Known {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Integrand {
     both_horizons: bool,
-    fresnel: Fresnel,
+    specular_lobes: SpecularLobes,
     lobes: LobesFrom,
 }
 
@@ -142,7 +142,7 @@ impl Known {
                 lights.iter().map(|light| truth(&surface, normal, view, light, &CUBATURE).radiance).sum();
             let cos_view = SurfaceFrame::new(normal, view).cos_view();
             // Where no lobe can be fitted, the table's is as good as any
-            let fit = fit_at(&GgxBrdf, &Aim::Split, table, surface.alpha.sqrt(), cos_view)
+            let fit = fit_at(&GgxBrdf, &Aim::ByF0, table, surface.alpha.sqrt(), cos_view)
                 .unwrap_or_else(|_| table.clone());
             progress(1);
             (integral, fit)
@@ -162,7 +162,7 @@ impl Known {
             matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let integrand = Integrand {
             both_horizons: quality.horizon == Horizon::Both,
-            fresnel: quality.fresnel,
+            specular_lobes: quality.specular_lobes,
             lobes: if has_published { LobesFrom::Published } else { LobesFrom::Ours(quality.lobes) },
         };
         let of_table = self.integrals(integrand, table).to_vec();
@@ -202,10 +202,10 @@ impl Known {
     }
 
     fn integrate(&self, of: Integrand, table: &LightTable) -> Vec<DVec3> {
-        let Integrand { both_horizons, fresnel, lobes } = of;
+        let Integrand { both_horizons, specular_lobes, lobes } = of;
         let horizon = if both_horizons { Horizon::Both } else { Horizon::Cosine };
         let kind = if let LobesFrom::Ours(kind) = lobes { kind } else { Lobes::Table };
-        let quality = Quality { horizon, fresnel, lobes: kind, ..Quality::default() };
+        let quality = Quality { horizon, specular_lobes, lobes: kind, ..Quality::default() };
         let points = self.points.par_iter().zip(&self.relative).zip(&self.fits);
         let integral = |((point, lights), fit): ((&Point, &Vec<RelativeLight>), &LightTable)| {
             let (surface, normal, view) = (point.surface(), point.normal.as_dvec3(), point.view());
@@ -255,8 +255,11 @@ mod tests {
         let mut known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
         let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;
         // The table's lobes in float64: all that is left is the fit's and the table's
-        let of_table =
-            Integrand { both_horizons: false, fresnel: Fresnel::ByF0, lobes: LobesFrom::Ours(Lobes::Table) };
+        let of_table = Integrand {
+            both_horizons: false,
+            specular_lobes: SpecularLobes::One,
+            lobes: LobesFrom::Ours(Lobes::Table),
+        };
         let of_table = known.integrate(of_table, &table);
         let errors = known.judge(exact, &table, &of_table);
         assert_eq!(errors.integral, 0.0);

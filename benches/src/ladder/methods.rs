@@ -3,7 +3,7 @@
 use super::points::LightKind;
 use crate::school::{School, YardstickTable};
 use arealight::kernels::{Kernel, SHADE};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 
 /// The shade kernel with the form factors that others ship.
 pub static SHADE_YARDSTICK: Kernel = Kernel {
@@ -88,7 +88,7 @@ pub const SAMPLES: [u32; 6] = [1, 4, 16, 64, 256, 1024];
 const EXACT: Quality = Quality {
     form_factor: FormFactor::Exact,
     horizon: Horizon::Cosine,
-    fresnel: Fresnel::ByF0,
+    specular_lobes: SpecularLobes::One,
     lobes: Lobes::Table,
     footprint: Footprint::Round,
 };
@@ -128,18 +128,18 @@ pub fn workloads() -> Vec<Workload> {
         ),
         plain(DEFAULT, "the default: clipped in cosine space", EXACT),
         plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
-        plain("split", "a lobe each for F0 and Schlick's part", Quality { fresnel: Fresnel::Split, ..EXACT }),
+        plain("two lobes", "two specular lobes", Quality { specular_lobes: SpecularLobes::Two, ..EXACT }),
         plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
         plain("difference", "precise for small lights", DIFFERENCE),
         plain(
-            "split + both",
-            "split, at both horizons",
-            Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..EXACT },
+            "two lobes + both",
+            "two specular lobes, at both horizons",
+            Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..EXACT },
         ),
         plain(
             "everything",
-            "split, both horizons, difference",
-            Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..DIFFERENCE },
+            "two specular lobes, both horizons, difference",
+            Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..DIFFERENCE },
         ),
     ];
     let far = vec![

@@ -1,6 +1,6 @@
 //! The levels of a quality as words, for files.
 
-use arealight::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight::{Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use serde::{Deserialize, Serialize};
 
 /// A [`Quality`] in words, those of the options of `arealight render`.
@@ -10,8 +10,8 @@ pub struct LevelNames {
     pub form_factor: String,
     /// `--horizon`
     pub horizon: String,
-    /// `--fresnel`
-    pub fresnel: String,
+    /// `--specular-lobes`
+    pub specular_lobes: String,
     /// `--lobes`
     pub lobes: String,
     /// `--footprint`
@@ -33,7 +33,7 @@ pub struct UnknownLevel {
 const FORM_FACTORS: [(&str, FormFactor); 2] =
     [("exact", FormFactor::Exact), ("difference", FormFactor::Difference)];
 const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Horizon::Both)];
-const FRESNELS: [(&str, Fresnel); 2] = [("by-f0", Fresnel::ByF0), ("split", Fresnel::Split)];
+const SPECULAR_LOBES: [(&str, SpecularLobes); 2] = [("one", SpecularLobes::One), ("two", SpecularLobes::Two)];
 const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
 const FOOTPRINTS: [(&str, Footprint); 3] =
     [("round", Footprint::Round), ("ellipse", Footprint::Ellipse), ("split", Footprint::Split)];
@@ -47,7 +47,7 @@ impl From<Quality> for LevelNames {
         Self {
             form_factor: name(&FORM_FACTORS, quality.form_factor),
             horizon: name(&HORIZONS, quality.horizon),
-            fresnel: name(&FRESNELS, quality.fresnel),
+            specular_lobes: name(&SPECULAR_LOBES, quality.specular_lobes),
             lobes: name(&LOBES, quality.lobes),
             footprint: name(&FOOTPRINTS, quality.footprint),
         }
@@ -72,7 +72,7 @@ impl LevelNames {
         Ok(Quality {
             form_factor: find(&FORM_FACTORS, "form_factor", &self.form_factor)?,
             horizon: find(&HORIZONS, "horizon", &self.horizon)?,
-            fresnel: find(&FRESNELS, "fresnel", &self.fresnel)?,
+            specular_lobes: find(&SPECULAR_LOBES, "specular_lobes", &self.specular_lobes)?,
             lobes: find(&LOBES, "lobes", &self.lobes)?,
             footprint: find(&FOOTPRINTS, "footprint", &self.footprint)?,
         })

@@ -6,7 +6,7 @@ use super::methods::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Method, SPHER
 use super::reference::{PictureError, Reference};
 use crate::school::{School, YardstickTable};
 use crate::textures::is_software;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, LightTable, Quality};
+use arealight::{Effects, FormFactor, Horizon, LightTable, Quality, SpecularLobes};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, SceneRenderer};
 use arealight_scene::{Scene, SceneBuffers};
@@ -111,13 +111,13 @@ fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let level = |quality| Method::Level { effects, quality };
     let yardstick = |school| Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     let exact = Quality::default();
-    let both = Quality { fresnel: Fresnel::Split, horizon: Horizon::Both, ..exact };
+    let both = Quality { specular_lobes: SpecularLobes::Two, horizon: Horizon::Both, ..exact };
     let mut methods = vec![
         (CLIPLESS_PUBLISHED, yardstick(School::Clipless)),
         (SPHERE_PUBLISHED, yardstick(School::SphereHorizon)),
         (CASES_PUBLISHED, yardstick(School::ClipByCases)),
         ("exact", level(exact)),
-        ("split", level(Quality { fresnel: Fresnel::Split, ..exact })),
+        ("two lobes", level(Quality { specular_lobes: SpecularLobes::Two, ..exact })),
         ("both horizons", level(Quality { horizon: Horizon::Both, ..exact })),
         ("everything", level(Quality { form_factor: FormFactor::Difference, ..both })),
         ("Monte Carlo, 1 sample", Method::Samples { count: 1 }),

@@ -95,11 +95,11 @@
 // And at the surface's horizon: nothing leaks from behind the surface.
 #define AREALIGHT_HORIZON_BOTH 1
 
-// One integral a glossy lobe.
-#define AREALIGHT_FRESNEL_BY_F0 0
+// One integral a light and specular lobe.
+#define AREALIGHT_SPECULAR_LOBES_ONE 0
 
-// Two: exact in the reflectance and its colour.
-#define AREALIGHT_FRESNEL_SPLIT 1
+// Two, at .4 to .6 times the error.
+#define AREALIGHT_SPECULAR_LOBES_TWO 1
 
 // The glossy lobe is the table's.
 #define AREALIGHT_LOBES_TABLE 0
@@ -402,8 +402,8 @@ typedef struct ArealightPassOptions {
     uint32_t form_factor;
     // One of AREALIGHT_HORIZON_*.
     uint32_t horizon;
-    // One of AREALIGHT_FRESNEL_*.
-    uint32_t fresnel;
+    // One of AREALIGHT_SPECULAR_LOBES_*.
+    uint32_t specular_lobes;
     // One of AREALIGHT_LOBES_*.
     uint32_t lobes;
     // One of AREALIGHT_FOOTPRINT_*.
@@ -685,11 +685,12 @@ enum ArealightResult arealight_table_upload(struct Arealight *arealight,
                                             const struct ArealightUpload *upload);
 
 // Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
-// `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+// `specular_lobes`: what the passes are made with, one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many bytes.
 enum ArealightResult arealight_lobe_horizons(const struct Arealight *arealight,
+                                             uint32_t specular_lobes,
                                              void *data,
                                              uint64_t *size);
 
@@ -998,7 +999,7 @@ AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 60);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightPassOptions, fresnel) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, specular_lobes) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, lobes) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, footprint) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, position) == 24);

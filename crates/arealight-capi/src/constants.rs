@@ -50,10 +50,10 @@ pub const AREALIGHT_HORIZON_COSINE: u32 = 0;
 /// And at the surface's horizon: nothing leaks from behind the surface.
 pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
 
-/// One integral a glossy lobe.
-pub const AREALIGHT_FRESNEL_BY_F0: u32 = 0;
-/// Two: exact in the reflectance and its colour.
-pub const AREALIGHT_FRESNEL_SPLIT: u32 = 1;
+/// One integral a light and specular lobe.
+pub const AREALIGHT_SPECULAR_LOBES_ONE: u32 = 0;
+/// Two, at .6 to .8 times the error, exact in the reflectance and its colour.
+pub const AREALIGHT_SPECULAR_LOBES_TWO: u32 = 1;
 
 /// The glossy lobe is the table's.
 pub const AREALIGHT_LOBES_TABLE: u32 = 0;

@@ -4,8 +4,8 @@ use crate::constants::{AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F};
 use crate::failure::{ArealightResult, Failure, call};
 use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
-use arealight::LightTable;
 use arealight::table::LobeHorizon;
+use arealight::{LightTable, SpecularLobes};
 use arealight_table::TableFile;
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Context, TableFormat, TableImage};
@@ -206,13 +206,14 @@ pub unsafe extern "C" fn arealight_table_upload(
 }
 
 /// Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
-/// `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+/// `specular_lobes`: what the passes are made with, one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_lobe_horizons(
     arealight: *const Arealight,
+    specular_lobes: u32,
     data: *mut c_void,
     size: *mut u64,
 ) -> ArealightResult {
@@ -221,6 +222,8 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
         let (arealight, given) = unsafe {
             (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?)
         };
+        let specular_lobes =
+            crate::pass::level(specular_lobes, &[SpecularLobes::One, SpecularLobes::Two], "specular_lobes")?;
         let cells = u64::from(arealight.table.size() - 1).pow(2);
         let needed = cells * size_of::<LobeHorizon>() as u64;
         // SAFETY: as above.
@@ -232,7 +235,7 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
             let message = format!("size: {given}, but {needed} are needed");
             return Err(Failure::new(ArealightResult::ErrorTooSmall, message));
         }
-        let horizons = arealight.table.lobe_horizons();
+        let horizons = arealight.table.lobe_horizons(specular_lobes);
         let bytes: &[u8] = bytemuck::cast_slice(&horizons);
         // SAFETY: as above, and there are as many bytes.
         unsafe { std::ptr::copy_nonoverlapping(bytes.as_ptr(), data.cast(), bytes.len()) };

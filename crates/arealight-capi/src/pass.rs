@@ -9,7 +9,7 @@ use crate::types::{
 };
 use crate::{arguments, handles};
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use arealight_vk::ash::vk::{self, Handle as _};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
 use glam::{Mat4, Vec3};
@@ -118,20 +118,28 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
         }
     };
     let quality = Quality {
-        form_factor: level(options.form_factor, &[FormFactor::Exact, FormFactor::Difference], "form_factor")?,
-        horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "horizon")?,
-        fresnel: level(options.fresnel, &[Fresnel::ByF0, Fresnel::Split], "fresnel")?,
-        lobes: level(options.lobes, &[Lobes::Table, Lobes::Formula], "lobes")?,
+        form_factor: level(
+            options.form_factor,
+            &[FormFactor::Exact, FormFactor::Difference],
+            "options.form_factor",
+        )?,
+        horizon: level(options.horizon, &[Horizon::Cosine, Horizon::Both], "options.horizon")?,
+        specular_lobes: level(
+            options.specular_lobes,
+            &[SpecularLobes::One, SpecularLobes::Two],
+            "options.specular_lobes",
+        )?,
+        lobes: level(options.lobes, &[Lobes::Table, Lobes::Formula], "options.lobes")?,
         footprint: level(
             options.footprint,
             &[Footprint::Round, Footprint::Ellipse, Footprint::Split],
-            "footprint",
+            "options.footprint",
         )?,
     };
     Ok(ShadeOptions {
         surfaces,
         quality,
-        from_depth: level(options.position, &[false, true], "position")?,
+        from_depth: level(options.position, &[false, true], "options.position")?,
         g_buffer: level(
             options.g_buffer,
             &[
@@ -140,16 +148,16 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
                 GBufferLayout::Unity,
                 GBufferLayout::Octahedral,
             ],
-            "g_buffer",
+            "options.g_buffer",
         )?,
-        output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
-        separate_lobes: level(options.radiance_images, &[false, true], "radiance_images")?,
+        output: level(options.output, &[Output::Overwrite, Output::Add], "options.output")?,
+        separate_lobes: level(options.radiance_images, &[false, true], "options.radiance_images")?,
         format: level(
             options.radiance_format,
             &[RadianceFormat::Rgba32Float, RadianceFormat::Rgba16Float],
-            "radiance_format",
+            "options.radiance_format",
         )?,
-        shadow_rays: level(options.shadow_rays, &RAYS, "shadow_rays")?,
+        shadow_rays: level(options.shadow_rays, &RAYS, "options.shadow_rays")?,
     })
 }
 
@@ -158,9 +166,10 @@ const RAYS: [u32; ShadeOptions::MOST_SHADOW_RAYS as usize + 1] = [0, 1, 2, 3, 4]
 
 /// The level that a number stands for: its place among them.
 pub(crate) fn level<T: Copy>(number: u32, levels: &[T], field: &str) -> Result<T, Failure> {
-    levels.get(number as usize).copied().ok_or_else(|| {
-        Failure::argument(format!("options.{field}: {number} must be from 0 to {}", levels.len() - 1))
-    })
+    levels
+        .get(number as usize)
+        .copied()
+        .ok_or_else(|| Failure::argument(format!("{field}: {number} must be from 0 to {}", levels.len() - 1)))
 }
 
 /// What descriptor sets of the pass are made with.
@@ -432,7 +441,7 @@ mod tests {
             (ArealightPassOptions { surfaces: 16, ..zero }, "options.surfaces: polygon are what lights need"),
             (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
-            (ArealightPassOptions { fresnel: 2, ..zero }, "options.fresnel"),
+            (ArealightPassOptions { specular_lobes: 2, ..zero }, "options.specular_lobes"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
             (ArealightPassOptions { footprint: 3, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),

@@ -96,8 +96,8 @@ pub struct ArealightPassOptions {
     pub form_factor: u32,
     /// One of AREALIGHT_HORIZON_*.
     pub horizon: u32,
-    /// One of AREALIGHT_FRESNEL_*.
-    pub fresnel: u32,
+    /// One of AREALIGHT_SPECULAR_LOBES_*.
+    pub specular_lobes: u32,
     /// One of AREALIGHT_LOBES_*.
     pub lobes: u32,
     /// One of AREALIGHT_FOOTPRINT_*.

@@ -2,7 +2,7 @@
 
 use crate::brdf::Magnitude;
 
-/// The reflectance for which the second matrix of [`Aim::Split`] is fitted instead of 0.
+/// The reflectance for which the second matrix of [`Aim::ByF0`] is fitted instead of 0.
 ///
 /// Seen from near the normal the lobe of Schlick's weight alone is a faint, hollow ring that no transformed
 /// cosine follows: its entries run to 1e4 and jump from node to node. With this much of the other lobe in it they
@@ -12,9 +12,9 @@ const SCHLICK_F0: f64 = 5e-4;
 /// The lobes that are fitted, each scaled to integrate to 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Aim {
-    /// Two matrices: the lobe without Fresnel term, and that of Schlick's weight. See [`arealight::Fresnel`].
+    /// Two matrices: the lobe without Fresnel term, and that of Schlick's weight. A material has one between them.
     #[default]
-    Split,
+    ByF0,
     /// One matrix for every reflectance: a blend of the lobes at some, pairs of a reflectance at normal incidence,
     /// in [0, 1], and its weight, above 0.
     ///
@@ -36,7 +36,7 @@ impl Aim {
     /// How many matrices it takes.
     pub fn matrices(&self) -> usize {
         match self {
-            Self::Split => 2,
+            Self::ByF0 => 2,
             Self::Blend(_) => 1,
         }
     }
@@ -46,7 +46,7 @@ impl Aim {
     pub fn shares(&self, magnitude: Magnitude) -> Vec<[f64; 2]> {
         let of_reflectance = |f0: f64| [f0, 1.0 - f0].map(|part| part / magnitude.at(f0));
         match self {
-            Self::Split => vec![of_reflectance(1.0), of_reflectance(SCHLICK_F0)],
+            Self::ByF0 => vec![of_reflectance(1.0), of_reflectance(SCHLICK_F0)],
             Self::Blend(reflectances) => {
                 let weights = reflectances.iter().map(|&(f0, weight)| weight * magnitude.at(f0).powf(0.65));
                 let total: f64 = weights.clone().sum();

@@ -1,6 +1,6 @@
 //! The fit of a whole table.
 
-use arealight::table::mirror_frame;
+use arealight::table::{LobePairs, mirror_frame};
 use arealight::{LightTable, MIN_ALPHA, TableDescription};
 use arealight_oracle::formula::MIN_COS_VIEW;
 use glam::DMat3;
@@ -12,6 +12,7 @@ use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::lobe::Lobe;
 use crate::nodes::Texel;
+use crate::pairs::{fit_pair_at, fit_pairs};
 use crate::solve::Problem;
 
 /// How a table is fitted.
@@ -21,11 +22,13 @@ pub struct Settings {
     pub size: u32,
     /// The lobes that are fitted at each node.
     pub aim: Aim,
+    /// Whether pairs of lobes are fitted beside them ([`arealight::table::LobePairs`]), which takes twice as long as the rest.
+    pub pairs: bool,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { size: 64, aim: Aim::default() }
+        Self { size: 64, aim: Aim::default(), pairs: true }
     }
 }
 
@@ -48,7 +51,8 @@ pub fn fit(
     let size = settings.size as usize;
     let done = AtomicU64::new(0);
     let total = settings.steps();
-    let report = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    let add = |steps| progress(done.fetch_add(steps, Ordering::Relaxed) + steps, total);
+    let report = || add(1);
 
     // Integrate the albedos of the lobes that are fitted
     let mut magnitude: Vec<Magnitude> = (0..size * size)
@@ -89,12 +93,25 @@ pub fn fit(
         (0..size * size).map(|i| columns[i % size][i / size].texel.map(|q| q as f32)).collect()
     });
 
+    let pairs = if settings.pairs {
+        Some(fit_pairs(brdf, settings.size, &magnitude, &|| add(STEPS_A_PAIR))?)
+    } else {
+        None
+    };
+
     // Integrate those of the last row anew, at the horizon itself, where they differ from its lobes' own
     for (i, magnitude) in magnitude.iter_mut().enumerate().skip(size * (size - 1)) {
         *magnitude = magnitude_of_lobe(brdf, node_of(settings.size, i).0, 0.0)?;
     }
-    into_table(brdf, settings, layers.collect(), &magnitude)
+    let table = into_table(brdf, settings, layers.collect(), &magnitude)?;
+    Ok(match pairs {
+        Some(pairs) => table.with_pairs(pairs)?,
+        None => table,
+    })
 }
+
+/// What the pair of a texel counts as steps of [`Settings::steps`]: it takes about as long.
+const STEPS_A_PAIR: u64 = 4;
 
 /// Fits the lobes of one roughness, from 0 to 1, and one view, starting from what `table` interpolates there: a table that
 /// gives this fit, to be looked up at that place alone. So what the nodes of `table` between them lose is known.
@@ -128,12 +145,19 @@ pub fn fit_at(
     // The same at every node
     let mut layers = layers.into_iter().map(Vec::from);
     let description = TableDescription { brdf: brdf.name().to_owned(), ..TableDescription::default() };
+    let magnitude_here = magnitude;
     let magnitude = vec![[magnitude.albedo as f32, magnitude.schlick as f32]; 4];
     let table = LightTable::new(description, 2, layers.next().unwrap_or_default(), magnitude)?;
-    Ok(match layers.next() {
+    let table = match layers.next() {
         Some(schlick) => table.with_schlick_matrix(schlick)?,
         None => table,
-    })
+    };
+    let Some((inverses, shares)) = sample.pairs else { return Ok(table) };
+    let (lobes, shares) = fit_pair_at(&texel, magnitude_here, inverses.map(lobe_of), shares)?;
+    Ok(table.with_pairs(LobePairs {
+        matrices: lobes.map(|lobe| vec![lobe.texel.map(|q| q as f32); 4]),
+        second_shares: vec![shares.map(|share| share as f32); 4],
+    })?)
 }
 
 /// The albedos of a BRDF that has a lobe at an alpha and a view.
@@ -179,7 +203,7 @@ fn into_table(
     magnitude: &[Magnitude],
 ) -> Result<LightTable, FitError> {
     let aim = match &settings.aim {
-        Aim::Split => "split".to_owned(),
+        Aim::ByF0 => "by F0".to_owned(),
         Aim::Blend(reflectances) => {
             let part = |(f0, weight): &(f64, f64)| format!("f0 {f0} by {weight}");
             format!("aimed at {}", reflectances.iter().map(part).collect::<Vec<_>>().join(", "))
@@ -207,9 +231,10 @@ fn into_table(
 }
 
 impl Settings {
-    /// How many steps a fit takes: the magnitude and each matrix of every texel.
+    /// How many steps a fit takes: the magnitude, each matrix, and some for the pair of every texel.
     pub fn steps(&self) -> u64 {
-        (1 + self.aim.matrices() as u64) * u64::from(self.size).pow(2)
+        let of_pairs = if self.pairs { STEPS_A_PAIR } else { 0 };
+        (1 + self.aim.matrices() as u64 + of_pairs) * u64::from(self.size).pow(2)
     }
 
     fn check(&self) -> Result<(), FitError> {

@@ -10,7 +10,7 @@
 //! # Ok::<(), arealight_fit::FitError>(())
 //! ```
 //!
-//! Seven seconds of two cores for 64 x 64 nodes. `arealight-table` writes it for engines; [`report`] says how good it is.
+//! Twenty seconds of two cores for 64 x 64 nodes; seven without pairs of lobes ([`Settings::pairs`]). `arealight-table` writes it for engines; [`report`] says how good it is.
 //!
 //! # How a texel is fitted
 //! A lobe has four degrees of freedom, the entries of a matrix texel (see [`arealight::table`]); its magnitude
@@ -27,7 +27,8 @@
 //! the table is smooth and may be interpolated.
 //!
 //! # What is fitted
-//! Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`]. [`report`] measures a
+//! Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`]. Beside them pairs of lobes that a
+//! surface has at once, for [`arealight::SpecularLobes::Two`]: their ten numbers are fitted together. [`report`] measures a
 //! table at reflectances from 0.02 to 1, beside the table published with Heitz et al. 2016.
 //!
 //! # Without a table
@@ -47,6 +48,7 @@ pub mod formula;
 mod linear;
 pub mod lobe;
 mod nodes;
+mod pairs;
 mod probes;
 mod quadrature;
 mod random;

@@ -1,9 +1,9 @@
 //! Linear algebra of small systems.
 
 /// The lower triangle `L` of a symmetric matrix `L Lᵀ`; `None` if a pivot is not above `smallest_pivot`.
-pub fn cholesky(matrix: &[[f64; 4]; 4], smallest_pivot: f64) -> Option<[[f64; 4]; 4]> {
-    let mut lower = [[0.0; 4]; 4];
-    for i in 0..4 {
+pub fn cholesky<const N: usize>(matrix: &[[f64; N]; N], smallest_pivot: f64) -> Option<[[f64; N]; N]> {
+    let mut lower = [[0.0; N]; N];
+    for i in 0..N {
         for j in 0..=i {
             let known: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
             let value = matrix[i][j] - known;

@@ -1,7 +1,7 @@
 //! How well a table does: its polygon integrals against the true BRDF's on random quads.
 
 use arealight::table::share_above_surface;
-use arealight::{Fresnel, Horizon, LightTable, TableSample};
+use arealight::{Horizon, LightTable, SpecularLobes, TableSample};
 use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::polygon::{above_horizon, transformed_form_factor};
@@ -19,7 +19,7 @@ pub use quads::{Family, Quad, near_mirror_quads, random_quads};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Level {
     /// One integral or two.
-    pub fresnel: Fresnel,
+    pub specular_lobes: SpecularLobes,
     /// Where quads are clipped. With [`Horizon::Both`] what is left of the lobe is scaled to keep its energy
     /// ([`share_above_surface`]).
     pub horizon: Horizon,
@@ -149,16 +149,9 @@ fn measure_f0(
 /// What a table makes of a quad of unit radiance, with F90 = 1.
 fn radiance(sample: &TableSample, level: Level, f0: DVec3, quad: &[DVec3; 4]) -> DVec3 {
     let integral = |inverse: &DMat3| integral(inverse, level.horizon, quad);
-    match level.fresnel {
-        Fresnel::ByF0 => {
-            let inverse = sample.inverse_by_f0(f0.element_sum() / 3.0, 1.0);
-            (f0 * sample.albedo + (1.0 - f0) * sample.schlick) * integral(&inverse)
-        }
-        Fresnel::Split => {
-            f0 * sample.albedo * integral(&sample.inverse)
-                + (1.0 - f0) * sample.schlick * integral(&sample.schlick_inverse)
-        }
-    }
+    let lobes = sample.lobes(level.specular_lobes, f0, 1.0);
+    let parts = lobes.iter().filter(|(_, albedo)| *albedo != DVec3::ZERO);
+    parts.map(|(inverse, albedo)| albedo * integral(inverse)).sum()
 }
 
 /// The integral of a lobe over a quad, seen from its front.

@@ -24,10 +24,10 @@ const ANCHOR: f64 = 1e-3;
 /// ways are used for shading, and a table that is fitted for one of them alone does badly in the other.
 pub struct Problem {
     /// Those above the surface come first.
-    nodes: Vec<Node>,
+    pub nodes: Vec<Node>,
     above: usize,
     /// The surface's normal, in the mirror frame.
-    normal: DVec3,
+    pub normal: DVec3,
     /// Probes by nodes: the solid angle of each node that lies in each probe.
     rows: Vec<f32>,
     /// The integrals aimed at, a probe: of the lobe, and of its part above the surface scaled to the same energy.
@@ -99,32 +99,13 @@ impl Problem {
     }
 
     /// Minimises the loss from a starting lobe over the entries of the texel that are `free`.
-    ///
-    /// Gauss-Newton steps, damped as Levenberg and Marquardt do; one is taken only if the loss falls.
     pub fn minimise(&self, start: Lobe, free: [bool; 4]) -> Lobe {
-        let mut best = start;
-        let mut best_loss = self.loss(&start);
-        let mut damping = 1e-3;
-        for _ in 0..MAX_STEPS {
-            let (normal, slope) = self.normal_equations(&best, free);
-            // Raise the damping until a step improves
-            let mut improved = None;
-            while improved.is_none() && damping < 1e9 {
-                improved = damped_step(&normal, &slope, damping)
-                    .map(|step| Lobe { texel: std::array::from_fn(|i| best.texel[i] - step[i]), ..best })
-                    .map(|candidate| (candidate, self.loss(&candidate)))
-                    .filter(|(_, loss)| *loss < best_loss);
-                damping *= if improved.is_some() { 0.2 } else { 4.0 };
-            }
-            let Some((candidate, loss)) = improved else { break };
-            let gain = best_loss - loss;
-            (best, best_loss) = (candidate, loss);
-            damping = damping.max(1e-9);
-            if gain < SMALLEST_GAIN * best_loss {
-                break;
-            }
-        }
-        best
+        minimise(
+            start,
+            |lobe| self.loss(lobe),
+            |lobe| self.normal_equations(lobe, free),
+            |lobe, step: &[f64; 4]| Lobe { texel: std::array::from_fn(|i| lobe.texel[i] - step[i]), ..*lobe },
+        )
     }
 
     /// `JᵀJ` and `Jᵀr` of the residuals; entries that are not free get a unit diagonal and no slope.
@@ -172,34 +153,68 @@ impl Problem {
         (normal, slope)
     }
 
-    fn probes(&self) -> impl Iterator<Item = (&[f32], [f64; 2])> {
+    /// Of each probe the solid angle of each node within it, and the integrals aimed at.
+    pub fn probes(&self) -> impl Iterator<Item = (&[f32], [f64; 2])> {
         self.rows.chunks_exact(self.nodes.len()).zip(self.targets.iter().copied())
     }
 
     /// The integral over a probe of what has `values` at the nodes: its parts above and below the surface.
-    fn sums(&self, row: &[f32], values: &[f32]) -> [f64; 2] {
+    pub fn sums(&self, row: &[f32], values: &[f32]) -> [f64; 2] {
         let (row_above, row_below) = row.split_at(self.above);
         let (above, below) = values.split_at(self.above);
         [dot(row_above, above), dot(row_below, below)]
     }
 }
 
+/// Minimises a loss of N parameters by Gauss-Newton steps, damped as Levenberg and Marquardt do; one is taken only if the loss falls.
+/// `equations` gives `JᵀJ` and `Jᵀr`, `moved` what a step, which is to be taken away, leads to.
+pub fn minimise<T: Copy, const N: usize>(
+    start: T,
+    loss: impl Fn(&T) -> f64,
+    equations: impl Fn(&T) -> ([[f64; N]; N], [f64; N]),
+    moved: impl Fn(&T, &[f64; N]) -> T,
+) -> T {
+    let mut best = start;
+    let mut best_loss = loss(&start);
+    let mut damping = 1e-3;
+    for _ in 0..MAX_STEPS {
+        let (normal, slope) = equations(&best);
+        // Raise the damping until a step improves
+        let mut improved = None;
+        while improved.is_none() && damping < 1e9 {
+            improved = damped_step(&normal, &slope, damping)
+                .map(|step| moved(&best, &step))
+                .map(|candidate| (candidate, loss(&candidate)))
+                .filter(|(_, loss)| *loss < best_loss);
+            damping *= if improved.is_some() { 0.2 } else { 4.0 };
+        }
+        let Some((candidate, loss)) = improved else { break };
+        let gain = best_loss - loss;
+        (best, best_loss) = (candidate, loss);
+        damping = damping.max(1e-9);
+        if gain < SMALLEST_GAIN * best_loss {
+            break;
+        }
+    }
+    best
+}
+
 /// Solves `(N + damping diag N) step = slope` by Cholesky's decomposition of the system scaled to a unit
 /// diagonal; `None` if it is not positive definite.
-fn damped_step(normal: &[[f64; 4]; 4], slope: &[f64; 4], damping: f64) -> Option<[f64; 4]> {
-    let scale: [f64; 4] = std::array::from_fn(|i| 1.0 / normal[i][i].max(f64::MIN_POSITIVE).sqrt());
-    let damped = std::array::from_fn(|i| {
+fn damped_step<const N: usize>(normal: &[[f64; N]; N], slope: &[f64; N], damping: f64) -> Option<[f64; N]> {
+    let scale: [f64; N] = std::array::from_fn(|i| 1.0 / normal[i][i].max(f64::MIN_POSITIVE).sqrt());
+    let damped: [[f64; N]; N] = std::array::from_fn(|i| {
         std::array::from_fn(|j| normal[i][j] * scale[i] * scale[j] + if i == j { damping } else { 0.0 })
     });
     let lower = cholesky(&damped, 1e-14)?;
     // Substitute forwards, then backwards
-    let mut step = [0.0; 4];
-    for i in 0..4 {
+    let mut step = [0.0; N];
+    for i in 0..N {
         let sum: f64 = (0..i).map(|k| lower[i][k] * step[k]).sum();
         step[i] = (slope[i] * scale[i] - sum) / lower[i][i];
     }
-    for i in (0..4).rev() {
-        let sum: f64 = (i + 1..4).map(|k| lower[k][i] * step[k]).sum();
+    for i in (0..N).rev() {
+        let sum: f64 = (i + 1..N).map(|k| lower[k][i] * step[k]).sum();
         step[i] = (step[i] - sum) / lower[i][i];
     }
     Some(std::array::from_fn(|i| step[i] * scale[i]))

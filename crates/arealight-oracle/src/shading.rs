@@ -24,7 +24,7 @@ use crate::material::Surface;
 use crate::polygon::{above_horizon, emitted, form_factor, transformed_form_factor};
 use crate::texture::Texture;
 use arealight::table::share_above_surface;
-use arealight::{Fresnel, Horizon, Light, LightFault, LightTable, Lobes, Quality, TableSample};
+use arealight::{Horizon, Light, LightFault, LightTable, Lobes, Quality, SpecularLobes, TableSample};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
 use rescattered::Rescattered;
@@ -397,22 +397,16 @@ fn glossy_part(
     frame: &SurfaceFrame,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
+    if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
+        return DVec3::ZERO;
+    }
     let sample = surface_sample(quality, table, surface, frame);
-    let lobe = |inverse: &DMat3| lobe(inverse, share_above_surface(inverse));
     let scale = Rescattered::new(surface, &sample).scale;
-    let f0_part = scale * surface.f0 * sample.albedo;
-    let schlick_part = scale * (DVec3::splat(surface.f90) - surface.f0) * sample.schlick;
     // Below two layers there is one lobe, as in options.glsl
     let two_layers = surface.coat.is_some() && surface.sheen.is_some();
-    match quality.fresnel {
-        _ if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 => DVec3::ZERO,
-        Fresnel::Split if !two_layers => {
-            let parts = f0_part * lobe(&sample.inverse) + schlick_part * lobe(&sample.schlick_inverse);
-            parts.max(DVec3::ZERO)
-        }
-        _ => {
-            let mean = surface.f0.element_sum() / 3.0;
-            (f0_part + schlick_part) * lobe(&sample.inverse_by_f0(mean, surface.f90))
-        }
-    }
+    let lobes = if two_layers { SpecularLobes::One } else { quality.specular_lobes };
+    let lobes = sample.lobes(lobes, surface.f0, surface.f90).into_iter();
+    let parts = lobes.filter(|(_, albedo)| *albedo != DVec3::ZERO);
+    let shown = parts.map(|(inverse, albedo)| albedo * lobe(&inverse, share_above_surface(&inverse)));
+    scale * shown.sum::<DVec3>()
 }

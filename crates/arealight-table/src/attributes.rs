@@ -1,5 +1,6 @@
 //! What a file says of its texels: the same names and values in every format.
 
+use arealight::table::LobePairs;
 use arealight::{LightTable, TableDescription};
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
@@ -9,7 +10,7 @@ use crate::{ReadError, TableFile};
 /// The attribute `arealight.format`.
 pub const FORMAT: &str = "arealight-table";
 /// The attribute `arealight.version`: the version of the format that is written; all from 1 on are read.
-pub const VERSION: i32 = 3;
+pub const VERSION: i32 = 4;
 /// The attribute `arealight.axes`.
 pub const AXES: &str =
     "x: roughness = x / (size - 1), alpha = roughness^2; y: sqrt(1 - cos theta_view) = y / (size - 1)";
@@ -35,7 +36,7 @@ pub mod name {
     pub const FIT_ERROR: &str = "arealight.fit_error";
     pub const HASH: &str = "arealight.hash";
     pub const GRAZING_DIP: &str = "arealight.grazing_dip";
-    /// Of formats whose layers are always three.
+    /// Of formats whose layers are always the same.
     pub const MATRICES: &str = "arealight.matrices";
 }
 
@@ -87,6 +88,7 @@ impl Attributes {
         expect(name::FORMAT, FORMAT)?;
         let version = match find(name::VERSION)? {
             Value::Number(version) if (oldest..=VERSION).contains(&version) => version,
+            other if oldest == VERSION => return Err(other.unexpected(name::VERSION, &VERSION.to_string())),
             other => return Err(other.unexpected(name::VERSION, &format!("{oldest} to {VERSION}"))),
         };
         expect(name::AXES, AXES)?;
@@ -108,20 +110,28 @@ impl Attributes {
 
     /// How many layers a file of this version may have.
     pub fn layer_counts(&self) -> &'static [usize] {
-        if self.version == 1 { &[2] } else { &[2, 3] }
+        match self.version {
+            1 => &[2],
+            2 | 3 => &[2, 3],
+            _ => &[2, 3, 5, 6],
+        }
     }
 
-    /// Makes the table of layers 0 to 2, and checks its hash.
+    /// Makes the table, and checks its hash.
     pub fn table(
         self,
         size: u32,
         matrix: Vec<[f32; 4]>,
         magnitude: Vec<[f32; 2]>,
         schlick_matrix: Option<Vec<[f32; 4]>>,
+        pairs: Option<LobePairs>,
     ) -> Result<TableFile, ReadError> {
         let mut table = LightTable::new(self.description, size, matrix, magnitude)?;
         if let Some(schlick_matrix) = schlick_matrix {
             table = table.with_schlick_matrix(schlick_matrix)?;
+        }
+        if let Some(pairs) = pairs {
+            table = table.with_pairs(pairs)?;
         }
         let hash = hash(&table);
         match self.hash {
@@ -153,16 +163,21 @@ pub fn texts(file: &TableFile) -> Vec<(&'static str, String)> {
     texts
 }
 
+/// How many matrices a table has for each node: one or two, and two more of pairs.
+pub fn matrix_count(table: &LightTable) -> u32 {
+    1 + u32::from(table.schlick_matrix().is_some()) + if table.pairs().is_some() { 2 } else { 0 }
+}
+
 /// The hash of a table's texels, `sha256:` and 64 hexadecimal digits: two tables shade alike if it is the same.
 ///
 /// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if there
-/// is one, texel by texel as `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the
+/// is one, then the matrices of pairs and the second lobe's shares if there are any, texel by texel as `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the
 /// table says of itself beside that does not count.
 pub fn hash(table: &LightTable) -> String {
     let schlick_matrix = table.schlick_matrix();
     let mut hasher = Sha256::new();
     hasher.update(table.size().to_le_bytes());
-    hasher.update((1 + u32::from(schlick_matrix.is_some())).to_le_bytes());
+    hasher.update(matrix_count(table).to_le_bytes());
     let mut update = |numbers: &[f32]| {
         // Few calls: a texel at a time is slow
         for chunk in numbers.chunks(4096) {
@@ -173,6 +188,12 @@ pub fn hash(table: &LightTable) -> String {
     update(table.matrix().as_flattened());
     update(table.magnitude().as_flattened());
     update(schlick_matrix.unwrap_or_default().as_flattened());
+    if let Some(pairs) = table.pairs() {
+        for matrix in &pairs.matrices {
+            update(matrix.as_flattened());
+        }
+        update(pairs.second_shares.as_flattened());
+    }
     if table.description().ggx_dip {
         hasher.update(dip_name(table));
     }

@@ -1,5 +1,6 @@
 //! Tables from tables: of another size, of another precision.
 
+use arealight::table::LobePairs;
 use arealight::{LightTable, TableDescription, TableError};
 use half::f16;
 
@@ -25,13 +26,35 @@ pub fn resampled(table: &LightTable, size: u32) -> Result<LightTable, TableError
         made_by: format!("{}, resampled from {} nodes", table.description().made_by, table.size()),
         ggx_dip: table.description().ggx_dip,
     };
-    let matrix = resampled_layer(table.matrix(), table.size(), size);
-    let magnitude = resampled_layer(table.magnitude(), table.size(), size);
-    let resampled = LightTable::new(description, size, matrix, magnitude)?;
-    match table.schlick_matrix() {
-        Some(texels) => resampled.with_schlick_matrix(resampled_layer(texels, table.size(), size)),
-        None => Ok(resampled),
+    let old = table.size();
+    mapped(
+        table,
+        description,
+        size,
+        |texels| resampled_layer(texels, old, size),
+        |texels| resampled_layer(texels, old, size),
+    )
+}
+
+/// A table whose layers are made of another's: of four numbers a texel, and of two.
+fn mapped(
+    table: &LightTable,
+    description: TableDescription,
+    size: u32,
+    matrix: impl Fn(&[[f32; 4]]) -> Vec<[f32; 4]>,
+    magnitude: impl Fn(&[[f32; 2]]) -> Vec<[f32; 2]>,
+) -> Result<LightTable, TableError> {
+    let mut made = LightTable::new(description, size, matrix(table.matrix()), magnitude(table.magnitude()))?;
+    if let Some(texels) = table.schlick_matrix() {
+        made = made.with_schlick_matrix(matrix(texels))?;
     }
+    if let Some(pairs) = table.pairs() {
+        made = made.with_pairs(LobePairs {
+            matrices: [matrix(&pairs.matrices[0]), matrix(&pairs.matrices[1])],
+            second_shares: magnitude(&pairs.second_shares),
+        })?;
+    }
+    Ok(made)
 }
 
 fn resampled_layer<const N: usize>(texels: &[[f32; N]], old: u32, new: u32) -> Vec<[f32; N]> {
@@ -61,13 +84,14 @@ pub fn rounded(table: &LightTable, precision: Precision) -> Result<LightTable, T
     if precision == Precision::Single {
         return Ok(table.clone());
     }
-    let matrix = table.matrix().iter().copied().map(to_half).collect();
-    let magnitude = table.magnitude().iter().copied().map(to_half).collect();
-    let rounded = LightTable::new(table.description().clone(), table.size(), matrix, magnitude)?;
-    match table.schlick_matrix() {
-        Some(texels) => rounded.with_schlick_matrix(texels.iter().copied().map(to_half).collect()),
-        None => Ok(rounded),
-    }
+    let description = table.description().clone();
+    mapped(
+        table,
+        description,
+        table.size(),
+        |texels| texels.iter().copied().map(to_half).collect(),
+        |texels| texels.iter().copied().map(to_half).collect(),
+    )
 }
 
 fn to_half<const N: usize>(texel: [f32; N]) -> [f32; N] {

@@ -4,10 +4,10 @@
 //! the form that KTX2 has, and two of the header's reserved words hold a mark and their length.
 
 use crate::texture::{
-    LAYERS, MAX_KEY_VALUE_BYTES, Texture, byte_length, check_size, encode_key_values, encode_texels, field,
-    length,
+    MAX_KEY_VALUE_BYTES, Texture, byte_length, check_size, encode_key_values, encode_texels, field, length,
 };
 use crate::{Format, Precision, ReadError, TableFile};
+use arealight::table::LAYERS;
 
 const FORMAT: Format = Format::Dds;
 
@@ -108,7 +108,7 @@ fn read_header_10(file: &[u8]) -> Result<(usize, u32, Precision), ReadError> {
     }
     let layers = header[word::ARRAY_SIZE];
     if !(1..=LAYERS).contains(&layers) {
-        return Err(field(FORMAT, "arraySize", layers, "1 to 3"));
+        return Err(field(FORMAT, "arraySize", layers, "1 to 6"));
     }
     Ok(((HEADER + HEADER_10) * 4, layers, precision))
 }

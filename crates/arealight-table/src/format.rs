@@ -60,11 +60,11 @@ impl Precision {
 pub enum Target {
     /// OpenEXR, 32-bit floats: our own format.
     Exr,
-    /// A 2D array of three layers.
+    /// A 2D array of [`arealight::table::LAYERS`] layers.
     Ktx2(Precision),
-    /// A 2D array of three layers, with the header of Direct3D 10.
+    /// A 2D array of [`arealight::table::LAYERS`] layers, with the header of Direct3D 10.
     Dds(Precision),
-    /// A C array of three layers.
+    /// A C array of as many layers.
     CHeader(Precision),
     /// A GLSL array of 16-bit floats, and the functions of the bridge that read it.
     Glsl,

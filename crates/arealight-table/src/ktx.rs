@@ -3,12 +3,12 @@
 //! The `ktx2` crate's own reader of whole files is passed by: its version 0.5.0 panics on some data format descriptors (a
 //! block dimension of 256, a block of 12 bytes). The format of the texels is in the header as well.
 
+use arealight::table::LAYERS;
 use ktx2::dfd::{Basic, Block};
 use ktx2::{Header, Index, LevelIndex};
 
 use crate::texture::{
-    LAYERS, MAX_KEY_VALUE_BYTES, Texture, byte_length, check_size, encode_key_values, encode_texels, field,
-    length,
+    MAX_KEY_VALUE_BYTES, Texture, byte_length, check_size, encode_key_values, encode_texels, field, length,
 };
 use crate::{Format, Precision, ReadError, TableFile};
 
@@ -31,7 +31,7 @@ pub fn read(file: &[u8]) -> Result<Texture<'_>, ReadError> {
     let size = check_size(header.pixel_width, header.pixel_height)?;
     for (name, found, is_expected, expected) in [
         ("pixelDepth", header.pixel_depth, header.pixel_depth == 0, "0"),
-        ("layerCount", header.layer_count, header.layer_count <= LAYERS, "at most 3"),
+        ("layerCount", header.layer_count, header.layer_count <= LAYERS, "at most 6"),
         ("faceCount", header.face_count, header.face_count == 1, "1"),
         ("levelCount", header.level_count, header.level_count <= 1, "at most 1"),
         ("supercompressionScheme", raw_scheme, raw_scheme == 0, "0 (none)"),

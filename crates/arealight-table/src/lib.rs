@@ -17,20 +17,22 @@
 //! ```
 //!
 //! # Files
-//! A table file is an OpenEXR image of two or three layers that any EXR viewer opens:
+//! A table file is an OpenEXR image of two to six layers that any EXR viewer opens:
 //!
 //! | layer | channels, 32-bit float | holds |
 //! |---|---|---|
 //! | `matrix` | `R G B A` | `q00 q02 q20 q22` of [`arealight::table`] |
 //! | `magnitude` | `R G` | `albedo schlick`, with the grazing dip added |
 //! | `schlick_matrix` | `R G B A` | the matrix of Schlick's weight, in a table of two matrices |
+//! | `first_matrix`, `second_matrix` | `R G B A` | those of two lobes for one ([`arealight::table::LobePairs`]) |
+//! | `second_shares` | `R G` | the second lobe's share of the energy at a reflectance of 1 and of [`arealight::table::DIELECTRIC_F0`] |
 //!
 //! and these attributes, shared by all layers:
 //!
 //! | attribute | type | content |
 //! |---|---|---|
 //! | `arealight.format` | string | `arealight-table` |
-//! | `arealight.version` | int | 3; files of version 2 have no grazing dip, those of version 1 neither third layer nor hash |
+//! | `arealight.version` | int | 4; files of version 3 have no pairs, those of version 2 no grazing dip, those of version 1 neither third layer nor hash |
 //! | `arealight.axes` | string | what a texel's column and row mean |
 //! | `arealight.frame` | string | the frame of the matrix |
 //! | `arealight.normalisation` | string | how the matrix's entries are scaled |
@@ -40,10 +42,10 @@
 //! | `arealight.hash` | string | the texels' [`hash`] |
 //! | `arealight.fit_error` | string | how far the table is from its BRDF, in words; may be missing |
 //!
-//! Engines take the same table as KTX2 or DDS, a 2D array of three layers in 16 or 32-bit floats (in a table of one matrix
-//! the third repeats the first) with these attributes as key/value data and `arealight.matrices`, 1 or 2; in DDS they
+//! Engines take the same table as KTX2 or DDS, a 2D array of six layers in 16 or 32-bit floats
+//! ([`arealight::LightTable::texels`]) with these attributes as key/value data and `arealight.matrices`, 1 or 2, and 2 more with pairs; in DDS they
 //! follow the texels. C and GLSL take it as source text. In all of these, the magnitudes' third channel says how much of
-//! GGX's grazing dip was added, 1 or 0, so that the shader needs no attribute: files of version 2 have 0 there. [`read_published`] reads tables in the convention of Heitz
+//! GGX's grazing dip was added, 1 or 0, so that the shader needs no attribute. [`read_published`] reads tables in the convention of Heitz
 //! et al. 2016. A file's format is told by its content.
 //!
 //! A file whose axes, frame or normalisation differ would be read without complaint and shade wrongly, so
@@ -76,7 +78,7 @@ pub use published::{Adjusted, Published, PublishedError, load_published, read_pu
 pub use source::MAX_GLSL_SIZE;
 
 /// The largest file that is read: the largest table, uncompressed, and a header.
-pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 48 + (1 << 20);
+pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 96 + (1 << 20);
 
 static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::texture::LAYERS;
 use crate::{Precision, TableFile, hash};
+use arealight::table::LAYERS;
 use half::f16;
 
 /// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts; drivers
@@ -54,8 +54,16 @@ pub fn glsl(file: &TableFile) -> String {
     push_matrix(table.matrix());
     // In a table of one matrix, that one again
     let schlick = table.schlick_matrix().map_or(0, &mut push_matrix);
+    // A table without pairs has its two matrices for them
+    let pairs = match table.pairs() {
+        Some(pairs) => pairs.matrices.each_ref().map(|matrix| push_matrix(matrix)),
+        None => [0, schlick],
+    };
     let magnitude = words.len();
     words.extend(table.magnitude().iter().map(|texel| pair(texel[0], texel[1])));
+    let second_shares = words.len();
+    let nodes = size as usize * size as usize;
+    words.extend(table.texels()[5 * nodes..].iter().map(|texel| pair(texel[0], texel[1])));
 
     let count = words.len();
     let dip = if table.description().ggx_dip { "1.0" } else { "0.0" };
@@ -73,15 +81,21 @@ pub fn glsl(file: &TableFile) -> String {
         let end = if (row + 1) * 8 < count { ",\n" } else { ");\n" };
         let _ = write!(text, "    {}{end}", numbers.join(", "));
     }
+    let starts = [0, magnitude, schlick, pairs[0], pairs[1], second_shares];
+    let starts: Vec<String> = starts.iter().map(usize::to_string).collect();
     let _ = write!(
         text,
-        "\nint arealight_bridge_table_size() {{\n    return {size};\n}}\n\n\
+        "\nconst int AREALIGHT_TABLE_LAYERS[{LAYERS}] = int[{LAYERS}]({});\n\n\
+         int arealight_bridge_table_size() {{\n    return {size};\n}}\n\n\
          vec4 arealight_bridge_table(int layer, ivec2 texel) {{\n    \
          int node = texel.y * {size} + texel.x;\n    \
-         if (layer == 1) return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[{magnitude} + node]), {dip}, 0.0);\n    \
-         int word = (layer == 2 ? {schlick} : 0) + 2 * node;\n    \
+         int start = AREALIGHT_TABLE_LAYERS[layer];\n    \
+         if (layer == 1 || layer == 5) {{\n        \
+         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[start + node]), {dip}, 0.0);\n    }}\n    \
+         int word = start + 2 * node;\n    \
          return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[word]), unpackHalf2x16(AREALIGHT_TABLE_WORDS[word + 1]));\n}}\n\n\
-         #endif\n"
+         #endif\n",
+        starts.join(", ")
     );
     text
 }
@@ -105,7 +119,8 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         "    |       q00  0        q02 |   | cos t  0  sin t |".to_owned(),
         "    |         0  1          0 | * |     0  1      0 |      for a view (sin t, 0, cos t)".to_owned(),
         "    | alpha q20  0  alpha q22 |   | -sin t 0  cos t |      in the surface frame".to_owned(),
-        "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, dip, 0).".to_owned(),
+        "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, dip, 0)."
+            .to_owned(),
         if table.description().ggx_dip {
             "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what was \
              interpolated."
@@ -118,6 +133,7 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         } else {
             "Layer 2: layer 0 again; this table has one matrix for all reflectances.".to_owned()
         },
+        "Layers 3 and 4: the matrices of two lobes for one; layer 5: the second one's share at reflectances of 1 and 0.02.".to_owned(),
     ];
     if let Some(error) = &file.fit_error {
         lines.insert(4, format!("Error: {}", safe(error)));

@@ -1,13 +1,10 @@
 //! Images of four channels as texture formats hold them, and tables in them.
 
-use crate::attributes::{Attributes, Value, name, texts};
+use crate::attributes::{Attributes, Value, matrix_count, name, texts};
 use crate::{Format, Precision, ReadError, TableFile, VERSION};
-use arealight::table::MAX_SIZE;
+use arealight::table::{LAYERS, LobePairs, MAX_SIZE};
 use half::f16;
 use ktx2::KeyValueDataIterator;
-
-/// The layers of a table: matrix, magnitude, Schlick's matrix; in a table of one matrix that one again.
-pub const LAYERS: u32 = 3;
 
 /// The most bytes of attributes that are searched: ours take about one thousand.
 pub const MAX_KEY_VALUE_BYTES: usize = 1 << 16;
@@ -42,19 +39,23 @@ pub fn byte_length(size: u32, layers: u32, precision: Precision) -> u64 {
 impl Texture<'_> {
     /// The table in an image.
     pub fn table(&self) -> Result<TableFile, ReadError> {
-        let attributes = Attributes::read(2, |name| self.attribute(name))?;
-        let two_matrices = match self.attribute(name::MATRICES) {
-            Some(Value::Text(text)) if text == "1" => false,
-            Some(Value::Text(text)) if text == "2" => true,
-            Some(other) => return Err(other.unexpected(name::MATRICES, "1 or 2")),
+        let attributes = Attributes::read(VERSION, |name| self.attribute(name))?;
+        let matrices = match self.attribute(name::MATRICES) {
+            Some(Value::Text(text)) if ["1", "2", "3", "4"].contains(&text.as_str()) => text,
+            Some(other) => return Err(other.unexpected(name::MATRICES, "1 to 4")),
             None => return Err(ReadError::MissingAttribute { attribute: name::MATRICES }),
         };
         if self.layers != LAYERS {
             return Err(ReadError::LayerCount { count: self.layers as usize, expected: &[LAYERS as usize] });
         }
+        let has_pairs = ["3", "4"].contains(&matrices.as_str());
+        let schlick_matrix = ["2", "4"].contains(&matrices.as_str()).then(|| self.layer(2));
+        let pairs = has_pairs.then(|| LobePairs {
+            matrices: [self.layer(3), self.layer(4)],
+            second_shares: self.layer(5).into_iter().map(|texel| [texel[0], texel[1]]).collect(),
+        });
         let magnitude = self.layer(1).into_iter().map(|texel| [texel[0], texel[1]]).collect();
-        let schlick_matrix = two_matrices.then(|| self.layer(2));
-        attributes.table(self.size, self.layer(0), magnitude, schlick_matrix)
+        attributes.table(self.size, self.layer(0), magnitude, schlick_matrix, pairs)
     }
 
     /// The texels of a layer that is there.
@@ -90,7 +91,7 @@ impl Texture<'_> {
     }
 }
 
-/// The three layers of a table.
+/// The layers of a table.
 pub fn encode_texels(file: &TableFile, precision: Precision) -> Vec<u8> {
     let texels = file.table.texels();
     let numbers = texels.as_flattened().iter();
@@ -102,10 +103,9 @@ pub fn encode_texels(file: &TableFile, precision: Precision) -> Vec<u8> {
 
 /// A table's attributes and `others` as key/value data of KTX2: sorted by key, each of them padded to four bytes.
 pub fn encode_key_values(file: &TableFile, others: &[(&'static str, &str)]) -> Vec<u8> {
-    let matrices = 1 + u32::from(file.table.schlick_matrix().is_some());
     let mut entries = texts(file);
     entries.push((name::VERSION, VERSION.to_string()));
-    entries.push((name::MATRICES, matrices.to_string()));
+    entries.push((name::MATRICES, matrix_count(&file.table).to_string()));
     entries.extend(others.iter().map(|&(key, value)| (key, value.to_owned())));
     entries.sort_unstable_by_key(|(key, _)| *key);
     let mut bytes = Vec::new();

@@ -1,9 +1,10 @@
-//! The light table on the GPU: an array image of three layers.
+//! The light table on the GPU: an array image of [`arealight::table::LAYERS`] layers.
 
 use crate::context::Context;
 use crate::error::{Error, VulkanCall};
 use crate::pass::Resource;
 use arealight::LightTable;
+use arealight::table::LAYERS;
 use ash::vk;
 
 /// The texel format of the table on the GPU.
@@ -213,7 +214,7 @@ impl TableImage {
         }
     }
 
-    /// A view of all three layers, for shaders of the host's own. Null before [`TableImage::bind_memory`].
+    /// A view of all layers, for shaders of the host's own. Null before [`TableImage::bind_memory`].
     pub fn view(&self) -> vk::ImageView {
         self.view
     }
@@ -236,9 +237,6 @@ impl Drop for TableImage {
         }
     }
 }
-
-/// Those of [`LightTable::texels`].
-const LAYERS: u32 = 3;
 
 fn all_layers() -> vk::ImageSubresourceRange {
     vk::ImageSubresourceRange {

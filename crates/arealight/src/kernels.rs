@@ -70,7 +70,7 @@ const fn write(name: &'static str, kind: BindingKind, access: Access, content: &
 pub const TABLE: Binding = read(
     "table_image",
     BindingKind::SampledImage,
-    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix; rgba16f or \
+    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 to 5 pairs; rgba16f or \
      rgba32f",
 );
 /// Polygon lights.
@@ -211,7 +211,7 @@ pub static SHADE: Kernel = Kernel {
         constant::POSITION_SOURCE,
         constant::OUTPUT,
         constant::HORIZON,
-        constant::FRESNEL,
+        constant::SPECULAR_LOBES,
         constant::LOBES,
         constant::FOOTPRINT,
         constant::HAS_QUADS,
@@ -254,7 +254,7 @@ pub static CLASSIFY: Kernel = Kernel {
         constant::EFFECTS,
         constant::POSITION_SOURCE,
         constant::HORIZON,
-        constant::FRESNEL,
+        constant::SPECULAR_LOBES,
         constant::LOBES,
         constant::LAYOUT,
         constant::CULL,
@@ -328,7 +328,7 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         constant::EFFECTS,
         constant::POSITION_SOURCE,
         constant::HORIZON,
-        constant::FRESNEL,
+        constant::SPECULAR_LOBES,
         constant::LOBES,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
@@ -366,7 +366,7 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
         constant::EFFECTS,
         constant::POSITION_SOURCE,
         constant::HORIZON,
-        constant::FRESNEL,
+        constant::SPECULAR_LOBES,
         constant::LOBES,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
@@ -407,7 +407,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         constant::POSITION_SOURCE,
         constant::OUTPUT,
         constant::HORIZON,
-        constant::FRESNEL,
+        constant::SPECULAR_LOBES,
         constant::LOBES,
         constant::LAYOUT,
         constant::SHADOW_RAYS,

@@ -98,7 +98,7 @@ pub use packed_lights::{LightSummary, PackedLights};
 #[doc(inline)]
 pub use pyramid::PyramidSize;
 #[doc(inline)]
-pub use quality::{Footprint, FormFactor, Fresnel, Horizon, Lobes, Quality};
+pub use quality::{Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 #[doc(inline)]
 pub use table::{LightTable, TableDescription, TableError, TableSample};
 #[doc(inline)]

@@ -234,7 +234,7 @@ fn shadow_specialization(options: ShadeOptions, effects: Effects) -> Vec<(u32, u
         (kernels::constant::EFFECTS, effects.bits()),
         (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
-        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
+        (kernels::constant::SPECULAR_LOBES, options.quality.specular_lobes as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::SHADOW_RAYS, options.shadow_rays),
@@ -267,7 +267,7 @@ pub fn classify_specialization(
         (kernels::constant::EFFECTS, options.effects(lights).bits()),
         (kernels::constant::POSITION_SOURCE, u32::from(options.from_depth)),
         (kernels::constant::HORIZON, options.quality.horizon as u32),
-        (kernels::constant::FRESNEL, options.quality.fresnel as u32),
+        (kernels::constant::SPECULAR_LOBES, options.quality.specular_lobes as u32),
         (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::CULL, u32::from(tiles.cull_threshold > 0.0)),
@@ -280,7 +280,7 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
         (kernels::constant::EFFECTS, effects.bits()),
         (kernels::constant::FORM_FACTOR, quality.form_factor as u32),
         (kernels::constant::HORIZON, quality.horizon as u32),
-        (kernels::constant::FRESNEL, quality.fresnel as u32),
+        (kernels::constant::SPECULAR_LOBES, quality.specular_lobes as u32),
         (kernels::constant::LOBES, quality.lobes as u32),
     ]
 }

@@ -30,16 +30,17 @@ pub enum Horizon {
     Both = 1,
 }
 
-/// How Schlick's Fresnel term enters the integral of a lobe.
+/// How many transformed cosines stand for the specular lobe. Errors: docs/fit.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
-pub enum Fresnel {
-    /// One integral, of the lobe between the table's two that the reflectance asks for. A colour counts by the
-    /// mean of its channels; the specular albedo stays exact in each.
+pub enum SpecularLobes {
+    /// One integral a light, of the lobe that the reflectance asks for. A colour counts by the mean of its channels; the specular albedo
+    /// stays exact in each.
     #[default]
-    ByF0 = 0,
-    /// Two integrals, one of each lobe: exact in the reflectance and its colour.
-    Split = 1,
+    One = 0,
+    /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. One all the same where a surface may have sheen and a coat
+    /// ([`crate::Effects`]), where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
+    Two = 1,
 }
 
 /// Where the glossy lobe comes from.
@@ -77,8 +78,8 @@ pub struct Quality {
     pub form_factor: FormFactor,
     /// Where polygons are clipped.
     pub horizon: Horizon,
-    /// How the Fresnel term enters the glossy lobe.
-    pub fresnel: Fresnel,
+    /// How many lobes the specular one is made of.
+    pub specular_lobes: SpecularLobes,
     /// Where the glossy lobe comes from.
     pub lobes: Lobes,
     /// How light textures are looked up.

@@ -28,17 +28,24 @@
 //! # Two matrices
 //! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves what
 //! is grazing. A second matrix layer holds the lobe of `f cos (1 - cos theta_vh)^5`, and a material of any
-//! reflectance is a sum of the two, or one lobe between them: see [`crate::Fresnel`]. A table without it uses the one
+//! reflectance has one lobe between the two, by their shares of its specular albedo. A table without it uses the one
 //! matrix for both.
+//!
+//! # Pairs
+//! Two transformed cosines follow a BRDF much better than one ([`crate::SpecularLobes::Two`]). [`LobePairs`] holds two matrices for
+//! every reflectance, and what share of the energy the second one has at a reflectance of 1 and at [`DIELECTRIC_F0`]: what a
+//! reflectance has of either lobe is linear in it, and so exact in each channel of a colour.
 
 use glam::{DMat3, DVec3};
 
 mod grazing;
 mod horizons;
+mod sample;
 
 pub use horizons::LobeHorizon;
 
 pub use grazing::ggx_grazing_dip;
+pub use sample::TableSample;
 
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;
@@ -81,7 +88,23 @@ pub struct LightTable {
     matrix: Vec<[f32; 4]>,
     magnitude: Vec<[f32; 2]>,
     schlick_matrix: Option<Vec<[f32; 4]>>,
+    pairs: Option<LobePairs>,
 }
+
+/// The reflectance at normal incidence, with F90 = 1, of the second of [`LobePairs::second_shares`].
+pub const DIELECTRIC_F0: f64 = 0.02;
+
+/// Two lobes a texel, in the place of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LobePairs {
+    /// The matrices of the first lobe and of the second.
+    pub matrices: [Vec<[f32; 4]>; 2],
+    /// The second lobe's share of the energy, in [0, 1]: at a reflectance of 1, and of [`DIELECTRIC_F0`].
+    pub second_shares: Vec<[f32; 2]>,
+}
+
+/// The layers of [`LightTable::texels`].
+pub const LAYERS: u32 = 6;
 
 /// Why texels do not make a table.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -129,6 +152,16 @@ pub enum TableError {
         /// The determinant of its two by two block.
         determinant: f32,
     },
+    /// The share of a second lobe is outside [0, 1].
+    #[error("second shares: texel ({x}, {y}) is {share}; must be in [0, 1]")]
+    SecondShare {
+        /// The texel's column (roughness).
+        x: u32,
+        /// The texel's row (view angle).
+        y: u32,
+        /// The share found.
+        share: f32,
+    },
     /// A magnitude, without the dip that was added to it, is outside [0, 1], where every albedo lies, or its Schlick part
     /// is above the whole.
     #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); must be 0 <= Schlick part <= albedo <= 1")]
@@ -142,40 +175,6 @@ pub enum TableError {
         /// The Schlick part found.
         schlick: f32,
     },
-}
-
-/// One lookup: the lobes of a roughness and a view angle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TableSample {
-    /// M⁻¹ of the lobe without Fresnel term: directions of the surface frame (view in the xz plane, x not
-    /// negative) into cosine space.
-    pub inverse: DMat3,
-    /// M⁻¹ of the lobe of Schlick's weight; the same as `inverse` in a table of one matrix.
-    pub schlick_inverse: DMat3,
-    /// Integral of `f cos` over the hemisphere, in [0, 1].
-    pub albedo: f64,
-    /// Integral of `f cos (1 - cos theta_vh)^5` over the hemisphere, in [0, 1].
-    pub schlick: f64,
-}
-
-impl TableSample {
-    /// The specular albedo at a reflectance of `f0` at normal and `f90` at grazing incidence.
-    pub fn specular_albedo(&self, f0: f64, f90: f64) -> f64 {
-        f0 * self.albedo + (f90 - f0) * self.schlick
-    }
-
-    /// M⁻¹ of one lobe for a reflectance, [`crate::Fresnel::ByF0`]: between the two by their shares of the specular
-    /// albedo. Since M⁻¹ is linear in the texel, texels may be interpolated instead.
-    pub fn inverse_by_f0(&self, f0: f64, f90: f64) -> DMat3 {
-        self.inverse + (self.schlick_inverse - self.inverse) * self.schlick_share(f0, f90)
-    }
-
-    /// The part of the specular albedo that is due to Schlick's weight, in [0, 1]; 0 where nothing is reflected
-    /// or `f90` is below `f0`.
-    pub fn schlick_share(&self, f0: f64, f90: f64) -> f64 {
-        let (lobe, schlick) = (f0 * self.albedo, (f90 - f0) * self.schlick);
-        if schlick > 0.0 && lobe >= 0.0 { schlick / (lobe + schlick) } else { 0.0 }
-    }
 }
 
 impl LightTable {
@@ -211,7 +210,7 @@ impl LightTable {
                 return Err(TableError::Magnitude { x, y, albedo, schlick });
             }
         }
-        Ok(Self { description, size, matrix, magnitude, schlick_matrix: None })
+        Ok(Self { description, size, matrix, magnitude, schlick_matrix: None, pairs: None })
     }
 
     /// This table with a second matrix: the lobe of Schlick's weight.
@@ -229,6 +228,34 @@ impl LightTable {
             invertible(LAYER, x, y, texel)?;
         }
         Ok(Self { schlick_matrix: Some(matrix), ..self })
+    }
+
+    /// This table with two lobes for one, for [`SpecularLobes::Two`].
+    ///
+    /// # Errors
+    /// [`TableError`] says which layer, texel and channel is wrong.
+    pub fn with_pairs(self, pairs: LobePairs) -> Result<Self, TableError> {
+        let count_of = |layer: &'static str, count: usize| {
+            let is_right = count == self.matrix.len();
+            is_right.then_some(()).ok_or(TableError::TexelCount { layer, count, size: self.size })
+        };
+        for (layer, matrix) in ["first matrix", "second matrix"].into_iter().zip(&pairs.matrices) {
+            count_of(layer, matrix.len())?;
+            for (index, texel) in matrix.iter().enumerate() {
+                let (x, y) = (index as u32 % self.size, index as u32 / self.size);
+                finite(layer, x, y, texel)?;
+                invertible(layer, x, y, texel)?;
+            }
+        }
+        count_of("second shares", pairs.second_shares.len())?;
+        for (index, shares) in pairs.second_shares.iter().enumerate() {
+            let (x, y) = (index as u32 % self.size, index as u32 / self.size);
+            finite("second shares", x, y, shares)?;
+            if let Some(&share) = shares.iter().find(|share| !(0.0..=1.0).contains(*share)) {
+                return Err(TableError::SecondShare { x, y, share });
+            }
+        }
+        Ok(Self { pairs: Some(pairs), ..self })
     }
 
     /// What the table says of itself.
@@ -249,6 +276,11 @@ impl LightTable {
     /// The matrix layer of Schlick's weight, if there is one.
     pub fn schlick_matrix(&self) -> Option<&[[f32; 4]]> {
         self.schlick_matrix.as_deref()
+    }
+
+    /// Two lobes for one, if it has them.
+    pub fn pairs(&self) -> Option<&LobePairs> {
+        self.pairs.as_ref()
     }
 
     /// The magnitude layer as it is stored: `(albedo, schlick)` a texel, with the description's dip added.
@@ -275,14 +307,33 @@ impl LightTable {
         (f64::from(x) / step, 1.0 - v * v)
     }
 
-    /// The layers as the GPU image has them: layer 0 the matrix, layer 1 the magnitude in its first two
-    /// channels and in the third how much of GGX's dip was added to it, 1 or 0, layer 2 the matrix of Schlick's weight,
-    /// in a table of one matrix that again; four `f32` a texel.
+    /// The [`LAYERS`] layers as the GPU image has them, four `f32` a texel: layer 0 the matrix; layer 1 the magnitude in its first two
+    /// channels, and in the third how much of GGX's dip was added to it, 1 or 0; layer 2 the matrix of Schlick's weight; layers 3 and 4 those of
+    /// [`LobePairs`]; layer 5 its shares in the first two channels. A table of one matrix has that again in layer 2; one without pairs
+    /// has its matrices in layers 3 and 4, of which the second has no share at a reflectance of 1.
     pub fn texels(&self) -> Vec<[f32; 4]> {
         let dip = f32::from(u8::from(self.description.ggx_dip));
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], dip, 0.0]);
         let schlick = self.schlick_matrix.as_ref().unwrap_or(&self.matrix);
-        self.matrix.iter().copied().chain(magnitude).chain(schlick.iter().copied()).collect()
+        let mut texels: Vec<[f32; 4]> =
+            self.matrix.iter().copied().chain(magnitude).chain(schlick.iter().copied()).collect();
+        if let Some(pairs) = &self.pairs {
+            texels.extend(pairs.matrices.iter().flatten());
+            texels.extend(pairs.second_shares.iter().map(|shares| [shares[0], shares[1], 0.0, 0.0]));
+        } else {
+            texels.extend(self.matrix.iter().chain(schlick));
+            texels.extend(self.schlick_shares().map(|share| [0.0, share, 0.0, 0.0]));
+        }
+        texels
+    }
+
+    /// At each node what share of the energy Schlick's lobe has at a reflectance of [`DIELECTRIC_F0`].
+    fn schlick_shares(&self) -> impl Iterator<Item = f32> {
+        let share = |index: u32| {
+            let (roughness, cos_view) = Self::node(self.size, index % self.size, index / self.size);
+            self.lookup(roughness, cos_view).schlick_share(DIELECTRIC_F0, 1.0) as f32
+        };
+        (0..self.size * self.size).map(share)
     }
 
     /// Looks up the lobes, in float64: the twin of `arealight_table_lookup`.
@@ -313,7 +364,13 @@ impl LightTable {
         let schlick = (schlick - dip[1]).clamp(0.0, albedo);
         let lobe = inverse(&self.matrix);
         let schlick_inverse = self.schlick_matrix.as_deref().map_or(lobe, inverse);
-        TableSample { inverse: lobe, schlick_inverse, albedo, schlick }
+        let pairs = self.pairs.as_ref().map(|pairs| {
+            (
+                pairs.matrices.each_ref().map(|texels| inverse(texels)),
+                interpolated(&pairs.second_shares, &weights),
+            )
+        });
+        TableSample { inverse: lobe, schlick_inverse, albedo, schlick, pairs }
     }
 }
 

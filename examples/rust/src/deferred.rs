@@ -5,8 +5,8 @@ use crate::g_buffer::GBuffer;
 use crate::gpu::{Buffer, DescriptorPool, FRAMES_IN_FLIGHT, Frames, Gpu, Memory, Semaphores};
 use crate::picture::{Picture, Readback};
 use crate::{Result, scene};
-use arealight::PackedLights;
 use arealight::plan::{Output, ShadeOptions, TileOptions};
+use arealight::{PackedLights, SpecularLobes};
 use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources, TableFormat, TableImage};
 use ash::vk;
 
@@ -73,7 +73,8 @@ impl<'a> Deferred<'a> {
         // doc: tiles
         // With tiles: upload where the horizons of the table's lobes are
         let storage = vk::BufferUsageFlags::STORAGE_BUFFER;
-        let lobe_horizons = gpu.filled_buffer(storage, bytemuck::cast_slice(&table.lobe_horizons()))?;
+        let lobe_horizons =
+            gpu.filled_buffer(storage, bytemuck::cast_slice(&table.lobe_horizons(SpecularLobes::One)))?;
         // doc end
 
         // doc: sets

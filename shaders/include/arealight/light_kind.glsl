@@ -55,7 +55,6 @@ float arealight_form_factor(vec3 vector) {
         Local local;                                                                                \
         if (arealight_to_local(point, light, local)) {                                              \
             EACH_LOBE(sum, point, local)                                                            \
-            sum.specular = AREALIGHT_SPLITS_FRESNEL ? max(sum.specular, vec3(0.0)) : sum.specular;  \
         }                                                                                           \
         return sum;                                                                                 \
     }                                                                                               \

@@ -12,12 +12,12 @@
 
 const int AREALIGHT_LOBE_DIFFUSE = 0;
 const int AREALIGHT_LOBE_SPECULAR = 1;
-const int AREALIGHT_LOBE_SCHLICK = 2; // with AREALIGHT_FRESNEL_SPLIT alone
+const int AREALIGHT_LOBE_SECOND = 2; // of two specular lobes
 const int AREALIGHT_LOBE_COAT = 3;
 const int AREALIGHT_LOBES = 4;
-// Sheen has the coat's place, below a coat Schlick's (AREALIGHT_SPLITS_FRESNEL is false then): with five lobes ArealightPoint is larger than
+// Sheen has the coat's place, below a coat the second specular lobe's (there is one then): with five lobes ArealightPoint is larger than
 // what drivers keep in registers where a loop indexes it (RADV: 256 bytes), whether a surface has them or not.
-const int AREALIGHT_LOBE_SHEEN = AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SCHLICK : AREALIGHT_LOBE_COAT;
+const int AREALIGHT_LOBE_SHEEN = AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SECOND : AREALIGHT_LOBE_COAT;
 
 // Whether there is something at the last place.
 const bool AREALIGHT_HAS_LAYER = AREALIGHT_HAS_COAT ? true : AREALIGHT_HAS_SHEEN;
@@ -37,25 +37,29 @@ bool arealight_has_lobe(int lobe) {
     return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
          : AREALIGHT_HAS_LAYER && lobe == AREALIGHT_LOBE_COAT ? true
          : AREALIGHT_HAS_SHEEN && lobe == AREALIGHT_LOBE_SHEEN ? true
-         : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_SPLITS_FRESNEL);
+         : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 }
 
 // Puts the specular lobes of a surface into `point`. Their albedos, without Fresnel term and of Schlick's weight.
 ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
-        if (AREALIGHT_SPLITS_FRESNEL) {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_f0_lobe(stretched, surface.f0);
-            point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_anisotropic_schlick_lobe(stretched, surface.f0, surface.f90);
+        if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+            vec3 albedo = arealight_specular_albedo(stretched.table, surface.f0, surface.f90);
+            vec3 second = arealight_second_albedo(stretched.table, surface.f0, surface.f90, albedo);
+            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_lobe(stretched.space, albedo - second);
+            point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(stretched.schlick_space, second);
         } else {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
         }
         return stretched.table;
     }
-    ArealightTableSample table = arealight_specular_sample(frame, surface.roughness);
-    if (AREALIGHT_SPLITS_FRESNEL) {
-        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_f0_lobe(frame, table, surface.f0);
-        point.lobes[AREALIGHT_LOBE_SCHLICK] = arealight_specular_schlick_lobe(frame, table, surface.f0, surface.f90);
+    ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, AREALIGHT_HAS_TWO_SPECULAR_LOBES);
+    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+        vec3 albedo = arealight_specular_albedo(table, surface.f0, surface.f90);
+        vec3 second = arealight_second_albedo(table, surface.f0, surface.f90, albedo);
+        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_table_lobe(frame, table.matrix, table.alpha, albedo - second);
+        point.lobes[AREALIGHT_LOBE_SECOND] = arealight_table_lobe(frame, table.schlick_matrix, table.alpha, second);
     } else {
         point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
     }
@@ -66,7 +70,7 @@ ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, Ar
 void arealight_dim_base(inout ArealightPoint point, float base) {
     point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= base;
     point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= base;
-    point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= base;
+    point.lobes[AREALIGHT_LOBE_SECOND].albedo *= base;
 }
 
 // Prepares a surface: its frame, and one lookup in the table (or the formula) where it has a specular lobe.
@@ -85,7 +89,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         if (AREALIGHT_RESCATTERS) {
             ArealightRescattered more = arealight_rescattered(table, surface.f0, surface.f90);
             point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= more.scale;
-            point.lobes[AREALIGHT_LOBE_SCHLICK].albedo *= more.scale;
+            point.lobes[AREALIGHT_LOBE_SECOND].albedo *= more.scale;
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo += more.diffuse;
         }
     }
@@ -106,7 +110,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
 #define AREALIGHT_UNROLLED_LOBES(sum, point, local)                                  \
     vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
-    vec3 schlick = arealight_lobe_weight(point, AREALIGHT_LOBE_SCHLICK, local);       \
+    vec3 second = arealight_lobe_weight(point, AREALIGHT_LOBE_SECOND, local);        \
     vec3 layer = vec3(0.0);                                                           \
     if (AREALIGHT_HAS_LAYER) {                                                        \
         layer = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
@@ -115,8 +119,8 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
         sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo;        \
     }                                                                                 \
-    if (arealight_has_lobe(AREALIGHT_LOBE_SCHLICK)) {                                 \
-        sum.specular += schlick * point.lobes[AREALIGHT_LOBE_SCHLICK].albedo;         \
+    if (arealight_has_lobe(AREALIGHT_LOBE_SECOND)) {                                 \
+        sum.specular += second * point.lobes[AREALIGHT_LOBE_SECOND].albedo;          \
     }                                                                                 \
     if (AREALIGHT_HAS_LAYER) {                                                        \
         sum.specular += layer * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \

@@ -59,10 +59,9 @@
 #define AREALIGHT_SURFACE_HORIZON 0
 #endif
 
-// Integrate the two parts of Schlick's Fresnel term each with its own lobe (arealight::Fresnel::Split); else one lobe
-// between the two, as the reflectance asks for.
-#ifndef AREALIGHT_FRESNEL_SPLIT
-#define AREALIGHT_FRESNEL_SPLIT 0
+// Two transformed cosines for the specular lobe (arealight::SpecularLobes::Two), at about half the error of one.
+#ifndef AREALIGHT_TWO_SPECULAR_LOBES
+#define AREALIGHT_TWO_SPECULAR_LOBES 0
 #endif
 
 // The specular lobe by formulas (arealight::Lobes::Formula): the table's bridges are not called.
@@ -130,11 +129,12 @@ const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
-// Not where there may be a coat and sheen: both lobes of the Fresnel term and both layers are one lobe too many (material.glsl).
+const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
+// Not where there may be a coat and sheen: two specular lobes and both layers are one lobe too many (material.glsl). Nor by formulas.
 // A choice, no logical operators: compilers would make branches of those.
 const bool AREALIGHT_HAS_TWO_LAYERS = AREALIGHT_HAS_COAT ? AREALIGHT_HAS_SHEEN : false;
-const bool AREALIGHT_SPLITS_FRESNEL = AREALIGHT_HAS_TWO_LAYERS ? false : bool(AREALIGHT_FRESNEL_SPLIT);
-const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
+const bool AREALIGHT_HAS_ONE_SPECULAR_LOBE = AREALIGHT_HAS_TWO_LAYERS ? true : AREALIGHT_USES_FORMULA;
+const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_HAS_ONE_SPECULAR_LOBE ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
 const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch

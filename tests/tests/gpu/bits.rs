@@ -2,7 +2,7 @@
 //! the checks of the CPU side in between.
 
 use arealight::gpu::GpuLight;
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, PyramidSize, Quality};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, PyramidSize, Quality, SpecularLobes};
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::{Random, TestEngine};
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
@@ -229,7 +229,7 @@ fn every_bit_pattern_gives_a_form_factor() {
             }
         }
         let quality = Quality {
-            fresnel: Fresnel::Split,
+            specular_lobes: SpecularLobes::Two,
             horizon: Horizon::Both,
             lobes: Lobes::Formula,
             ..Quality::default()

@@ -288,7 +288,7 @@ fn calls_out_of_order_are_refused() {
 
     // An upload that lacks something
     let memory = library.table_memory();
-    assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 3 * 16);
+    assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 6 * 16);
     let whole = ArealightUpload {
         memory: 8,
         memory_offset: 0,
@@ -375,7 +375,8 @@ fn passes_with_tiles_ask_for_their_buffers() {
 
         // The horizons of the table's lobes
         let mut size = 0;
-        let horizons = |data: *mut u32, size| arealight_lobe_horizons(library.arealight, data.cast(), size);
+        let horizons =
+            |data: *mut u32, size| arealight_lobe_horizons(library.arealight, 0, data.cast(), size);
         good(horizons(null_mut(), &raw mut size));
         let mut bytes = vec![0_u32; size as usize / 4];
         size -= 1;

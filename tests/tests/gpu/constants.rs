@@ -3,7 +3,7 @@
 use arealight::gpu;
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions};
 use arealight::pyramid::MOST_TAPS;
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, Lobes, TileClass, TubeEnds, tiles};
+use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, SpecularLobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
 /// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
@@ -133,7 +133,7 @@ fn choices_have_the_same_numbers_in_glsl() {
     for (prefix, name, value) in [
         ("FORM_FACTOR_", "DIFFERENCE", FormFactor::Difference as u32),
         ("HORIZON_", "BOTH", Horizon::Both as u32),
-        ("FRESNEL_", "SPLIT", Fresnel::Split as u32),
+        ("SPECULAR_LOBES_", "TWO", SpecularLobes::Two as u32),
         ("LOBES_", "FORMULA", Lobes::Formula as u32),
     ] {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);

@@ -3,7 +3,7 @@
 
 use arealight::kernels::SHADE;
 use arealight::plan::{Output, ShadeOptions, shade_specialization};
-use arealight::{Effects, Footprint, FormFactor, Fresnel, Horizon, LightSummary, Quality};
+use arealight::{Effects, Footprint, FormFactor, Horizon, LightSummary, Quality, SpecularLobes};
 use arealight_engine::SceneRenderer;
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::TestEngine;
@@ -90,7 +90,7 @@ fn code_that_no_light_needs_changes_no_bit() {
     let dear = Quality {
         form_factor: FormFactor::Difference,
         horizon: Horizon::Both,
-        fresnel: Fresnel::Split,
+        specular_lobes: SpecularLobes::Two,
         footprint: Footprint::Ellipse,
         ..Quality::default()
     };

@@ -2,7 +2,7 @@
 //! and is still there when the optimiser is done. Outputs are judged by their bits, before any clamp that hides a NaN.
 
 use arealight::kernels::{Kernel, SHADE, constant};
-use arealight::{Effects, FormFactor, Fresnel, Horizon};
+use arealight::{Effects, FormFactor, Horizon, SpecularLobes};
 use arealight_tests::kernel::UNGUARDED;
 use arealight_tests::spirv::{tool, words};
 use arealight_tests::{Cases, Level, Path, TestEngine, glossy_surface, point};
@@ -193,7 +193,7 @@ fn what_is_not_finite_gives_zero_to_the_bit() {
     let mut given = Cases::new(&vec![point(surface, DVec3::Z, square.into(), true); lights.len()]);
     given.vertices = lights.iter().flatten().map(|v| [v[0], v[1], v[2] - 2.0, 0.0]).collect();
     for mut level in Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]) {
-        level.quality.fresnel = Fresnel::Split;
+        level.quality.specular_lobes = SpecularLobes::Two;
         let answers = engine.run(&given, level.effects(Effects::DIFFUSE | Effects::GLOSSY), level.quality);
         assert!(f32::from_bits(answers[0][0]) > 0.1, "{level}: the whole light shines");
         for (light, answer) in lights.iter().zip(&answers).skip(1) {

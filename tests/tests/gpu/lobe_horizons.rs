@@ -1,6 +1,7 @@
 //! The cells of a table's horizons, which tiles are classified with, hold every lookup.
 
 use arealight::LightTable;
+use arealight::SpecularLobes;
 use arealight::table::{LobeHorizon, mirror_frame};
 use glam::{DMat3, DVec3};
 
@@ -33,61 +34,81 @@ fn cell(horizons: &[LobeHorizon], table: &LightTable, roughness: f64, cos_view: 
 #[test]
 fn every_lookup_lies_within_the_horizons_of_its_cell() {
     let table = arealight_table::ggx();
-    let horizons = table.lobe_horizons();
-    let (mut inside, mut near_an_end) = (0, 0);
-    for (roughness, cos_view) in views() {
-        let sample = table.lookup(roughness, cos_view);
-        let horizon = cell(&horizons, &table, roughness, cos_view);
-        for reflectance in [0.0, 0.04, 0.5, 1.0] {
-            let weight = horizon.weight.map(|weight| f64::from(weight) * (1.0 - reflectance));
-            let part = weight.map(|weight| weight / (reflectance + weight + 1e-30));
-            let mixed = |end: usize, part: f64| {
-                f64::from(horizon.lobe[end]) * (1.0 - part) + f64::from(horizon.schlick[end]) * part
-            };
-            let low = mixed(0, part[0]).min(mixed(0, part[1]));
-            let high = mixed(1, part[0]).max(mixed(1, part[1]));
-            let found = ratio(sample.inverse_by_f0(reflectance, 1.0), cos_view);
-            // A cell without a horizon is never above or below anything
-            assert!(!(found < low || found > high), "{roughness}, {cos_view}: {found} in {low}..{high}");
-            inside += 1;
-            // The twin: half the width would not do
-            let quarter = (high - low) * 0.25;
-            near_an_end += usize::from(found < low + quarter || found > high - quarter);
+    for lobes in [SpecularLobes::One, SpecularLobes::Two] {
+        let horizons = table.lobe_horizons(lobes);
+        let (mut inside, mut near_an_end) = (0, 0);
+        for (roughness, cos_view) in views() {
+            let sample = table.lookup(roughness, cos_view);
+            let horizon = cell(&horizons, &table, roughness, cos_view);
+            for reflectance in [0.0, 0.04, 0.5, 1.0] {
+                let weight = horizon.weight.map(|weight| f64::from(weight) * (1.0 - reflectance));
+                // Of two lobes any part, as the kernel has it
+                let part = match lobes {
+                    SpecularLobes::One => weight.map(|weight| weight / (reflectance + weight + 1e-30)),
+                    SpecularLobes::Two => [0.0, 1.0],
+                };
+                let mixed = |end: usize, part: f64| {
+                    f64::from(horizon.lobe[end]) * (1.0 - part) + f64::from(horizon.schlick[end]) * part
+                };
+                let low = mixed(0, part[0]).min(mixed(0, part[1]));
+                let high = mixed(1, part[0]).max(mixed(1, part[1]));
+                for (inverse, _) in used(sample.lobes(lobes, DVec3::splat(reflectance), 1.0)) {
+                    let found = ratio(inverse, cos_view);
+                    // A cell without a horizon is never above or below anything
+                    assert!(
+                        !(found < low || found > high),
+                        "{roughness}, {cos_view}: {found} in {low}..{high}"
+                    );
+                    inside += 1;
+                    // The twin: half the width would not do
+                    let quarter = (high - low) * 0.25;
+                    near_an_end += usize::from(found < low + quarter || found > high - quarter);
+                }
+            }
         }
+        assert!(near_an_end > inside / 20, "{lobes:?}: {near_an_end} of {inside}");
     }
-    assert!(near_an_end > inside / 20, "{near_an_end} of {inside}");
+}
+
+/// The lobes that reflect something.
+fn used(lobes: [(DMat3, DVec3); 2]) -> impl Iterator<Item = (DMat3, DVec3)> {
+    lobes.into_iter().filter(|(_, albedo)| albedo.x > 0.0)
 }
 
 #[test]
 fn no_lobe_is_denser_than_the_envelope_of_its_cell() {
     let table = arealight_table::ggx();
-    let horizons = table.lobe_horizons();
-    let (mut all, mut near) = (0, 0);
-    for (roughness, cos_view) in views() {
-        let sample = table.lookup(roughness, cos_view);
-        let horizon = cell(&horizons, &table, roughness, cos_view);
-        assert!(sample.schlick <= f64::from(horizon.schlick_albedo));
-        let [a, b] = horizon.envelope.map(f64::from);
-        for reflectance in [0.0, 0.04, 1.0] {
-            let inverse = sample.inverse_by_f0(reflectance, 1.0);
-            let mut closest = 0.0_f64;
-            for step in 0..500 {
-                let (fall, turn) = (2.0 * (f64::from(step) / 499.0).powi(5), 2.39996 * f64::from(step));
-                let sine = (fall * (2.0 - fall)).max(0.0).sqrt();
-                let direction =
-                    mirror_frame(cos_view) * DVec3::new(sine * turn.cos(), sine * turn.sin(), 1.0 - fall);
-                let transformed = inverse * direction;
-                let density = inverse.determinant() * transformed.z.max(0.0)
-                    / (std::f64::consts::PI * transformed.length_squared().powi(2));
-                // The sine of the elevation above the lobe's horizon
-                let sine = transformed.z.max(1e-9) / lobe_height(inverse).length();
-                closest = closest.max(density * (b + fall).powi(2) / (a * sine));
+    for lobes in [SpecularLobes::One, SpecularLobes::Two] {
+        let horizons = table.lobe_horizons(lobes);
+        let (mut all, mut near) = (0, 0);
+        for (roughness, cos_view) in views() {
+            let sample = table.lookup(roughness, cos_view);
+            let horizon = cell(&horizons, &table, roughness, cos_view);
+            assert!(sample.schlick <= f64::from(horizon.schlick_albedo));
+            let [a, b] = horizon.envelope.map(f64::from);
+            for reflectance in [0.0, 0.04, 1.0] {
+                for (inverse, _) in used(sample.lobes(lobes, DVec3::splat(reflectance), 1.0)) {
+                    let mut closest = 0.0_f64;
+                    for step in 0..500 {
+                        let (fall, turn) =
+                            (2.0 * (f64::from(step) / 499.0).powi(5), 2.39996 * f64::from(step));
+                        let sine = (fall * (2.0 - fall)).max(0.0).sqrt();
+                        let direction = mirror_frame(cos_view)
+                            * DVec3::new(sine * turn.cos(), sine * turn.sin(), 1.0 - fall);
+                        let transformed = inverse * direction;
+                        let density = inverse.determinant() * transformed.z.max(0.0)
+                            / (std::f64::consts::PI * transformed.length_squared().powi(2));
+                        // The sine of the elevation above the lobe's horizon
+                        let sine = transformed.z.max(1e-9) / lobe_height(inverse).length();
+                        closest = closest.max(density * (b + fall).powi(2) / (a * sine));
+                    }
+                    assert!(closest <= 1.0, "{roughness}, {cos_view}, {reflectance}: {closest}");
+                    all += usize::from(roughness >= 0.1);
+                    near += usize::from(closest > 0.5);
+                }
             }
-            assert!(closest <= 1.0, "{roughness}, {cos_view}, {reflectance}: {closest}");
-            all += usize::from(roughness >= 0.1);
-            near += usize::from(closest > 0.5);
         }
+        // The twin: half of the envelope would not do
+        assert!(near > 20, "{near} of {all}");
     }
-    // The twin: half of the envelope would not do
-    assert!(near > 20, "{near} of {all}");
 }

@@ -2,7 +2,7 @@
 
 use arealight::kernels::{self, Kernel, constant};
 use arealight::plan::{ShadeOptions, shade_specialization};
-use arealight::{Effects, Footprint, Fresnel, Horizon, LightSummary, Lobes, Quality, TileClass};
+use arealight::{Effects, Footprint, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass};
 use arealight_tests::TestEngine;
 use arealight_tests::frame::{bits, scene, with_renderer};
 use arealight_tests::kernel::BRANCHES;
@@ -101,7 +101,7 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     all.extend(Effects::all().iter().map(|effect| shade(lobes | effect, plain)));
     for quality in [
         Quality { horizon: Horizon::Both, ..plain },
-        Quality { fresnel: Fresnel::Split, ..plain },
+        Quality { specular_lobes: SpecularLobes::Two, ..plain },
         Quality { footprint: Footprint::Split, ..plain },
     ] {
         all.push(shade(Effects::all(), quality));
@@ -239,7 +239,7 @@ fn picture(engine: &TestEngine, name: &str, quality: Quality) -> Vec<[u32; 4]> {
 #[test]
 fn pictures_are_the_same_to_the_bit() {
     let (Some(pruning), Some(whole)) = (TestEngine::new(), TestEngine::with_whole_modules()) else { return };
-    let split = Quality { horizon: Horizon::Both, fresnel: Fresnel::Split, ..Quality::default() };
+    let split = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..Quality::default() };
     for (scene, quality) in [("demo.glb", Quality::default()), ("shapes.glb", split)] {
         let pictures = [&pruning, &whole].map(|engine| picture(engine, scene, quality));
         assert!(pictures[0] == pictures[1], "{scene}");

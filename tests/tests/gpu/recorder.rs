@@ -2,6 +2,7 @@
 
 use arealight::kernels::{self, FRAME_BINDINGS, constant};
 use arealight::plan::ShadeOptions;
+use arealight::table::LAYERS;
 use arealight::{Effects, LightSummary};
 use arealight_tests::TestEngine;
 use arealight_tool_kernels::kernels::EVAL;
@@ -141,8 +142,8 @@ fn a_table_image_without_memory_is_refused() {
     // SAFETY: No submission uses it.
     let image = unsafe { TableImage::new(engine.context(), &table, TableFormat::Rgba16Float) }.unwrap();
     let size = u64::from(table.size());
-    assert_eq!(TableFormat::Rgba16Float.bytes(&table).len() as u64, size * size * 3 * 8);
-    assert!(image.memory_requirements().size >= size * size * 3 * 8);
+    assert_eq!(TableFormat::Rgba16Float.bytes(&table).len() as u64, size * size * u64::from(LAYERS) * 8);
+    assert!(image.memory_requirements().size >= size * size * u64::from(LAYERS) * 8);
     let buffer = engine.host().storage_buffer("numbers", &[0.0_f32; 64]).unwrap();
     let whole = Resource::buffer(buffer.handle());
     // SAFETY: No submission uses the pass; the set is new.

@@ -1,6 +1,7 @@
 //! The GPU against the float64 oracle: the same table, the same integral, in another precision.
 
-use arealight::{FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
+use arealight::table::{LAYERS, LobePairs};
+use arealight::{FormFactor, Horizon, LightTable, Lobes, Quality, SpecularLobes};
 use arealight_engine::EvalPoint;
 use arealight_oracle::shading::{RelativeLight, ltc, ltc_on};
 use arealight_tests::{Comparison, Random, TestEngine, glossy_surface, lambert_surface, point, rounding};
@@ -141,13 +142,18 @@ fn every_way_to_the_glossy_lobe_follows_its_twin() {
     });
     let Some(engine) = TestEngine::new() else { return };
     let mut answers: Vec<Vec<glam::Vec3>> = Vec::new();
-    for fresnel in [Fresnel::ByF0, Fresnel::Split] {
-        for lobes in [Lobes::Table, Lobes::Formula] {
+    for specular_lobes in [SpecularLobes::One, SpecularLobes::Two] {
+        // Formulas make one lobe
+        let sources = [Lobes::Table, Lobes::Formula];
+        for lobes in sources
+            .into_iter()
+            .filter(|lobes| (specular_lobes, *lobes) != (SpecularLobes::Two, Lobes::Formula))
+        {
             for horizon in [Horizon::Cosine, Horizon::Both] {
-                let quality = Quality { fresnel, lobes, horizon, ..Quality::default() };
+                let quality = Quality { specular_lobes, lobes, horizon, ..Quality::default() };
                 // Two lobes; the part above the surface is at least .6 of each
                 let bound = |point: &EvalPoint| 2.0 / 0.6 * rounding(point.surface.alpha);
-                let what = format!("{fresnel:?}, {lobes:?}, {horizon:?}");
+                let what = format!("{specular_lobes:?}, {lobes:?}, {horizon:?}");
                 let Some(comparison) = compare(&what, &points, quality, bound) else { return };
                 comparison.assert_all();
                 answers.push(engine.eval(&points, quality).unwrap());
@@ -220,13 +226,16 @@ fn table_in_float16() -> LightTable {
     let values: Vec<f32> =
         bytes.chunks_exact(2).map(|b| half::f16::from_le_bytes([b[0], b[1]]).to_f32()).collect();
     let texels: Vec<[f32; 4]> = values.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
-    let [matrix, magnitude, schlick] = [0, 1, 2].map(|layer| {
-        let length = texels.len() / 3;
-        texels[layer * length..][..length].to_vec()
-    });
-    let magnitude = magnitude.iter().map(|t| [t[0], t[1]]).collect();
-    LightTable::new(TABLE.description().clone(), TABLE.size(), matrix, magnitude)
-        .and_then(|table| table.with_schlick_matrix(schlick))
+    let length = texels.len() / LAYERS as usize;
+    let layer = |layer: usize| texels[layer * length..][..length].to_vec();
+    let magnitude = layer(1).iter().map(|t| [t[0], t[1]]).collect();
+    let pairs = LobePairs {
+        matrices: [layer(3), layer(4)],
+        second_shares: layer(5).iter().map(|t| [t[0], t[1]]).collect(),
+    };
+    LightTable::new(TABLE.description().clone(), TABLE.size(), layer(0), magnitude)
+        .and_then(|table| table.with_schlick_matrix(layer(2)))
+        .and_then(|table| table.with_pairs(pairs))
         .expect("still a table")
 }
 

@@ -1,7 +1,7 @@
 //! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces of every kind.
 
 use arealight::plan::{ShadeOptions, ShadowFilter};
-use arealight::{Effects, Fresnel, Horizon, Light, LightShape, Quality, TubeEnds};
+use arealight::{Effects, Horizon, Light, LightShape, Quality, SpecularLobes, TubeEnds};
 use arealight_oracle::material::Material;
 use arealight_oracle::shading::{RelativeLight, ltc_on};
 use arealight_oracle::visibility::visible_parts;
@@ -268,7 +268,10 @@ fn coats_and_both_horizons_draw_from_their_own_lobes() {
     for options in [
         ShadeOptions { surfaces, ..options() },
         ShadeOptions { quality, ..options() },
-        ShadeOptions { quality: Quality { fresnel: Fresnel::Split, ..Quality::default() }, ..options() },
+        ShadeOptions {
+            quality: Quality { specular_lobes: SpecularLobes::Two, ..Quality::default() },
+            ..options()
+        },
     ] {
         let view = Vec3::new(-1.0, 0.0, 0.8);
         let patch =

@@ -2,7 +2,7 @@
 //! against the oracle's fitted lobes.
 
 use arealight::gpu::GpuShape;
-use arealight::{Effects, FormFactor, Fresnel, Horizon, LightShape, Quality};
+use arealight::{Effects, FormFactor, Horizon, LightShape, Quality, SpecularLobes};
 use arealight_cases::answers::read_answers;
 use arealight_cases::cases::{CaseMaterial, ShapeCase, read_cases};
 use arealight_cases::measure::relative_error;
@@ -70,7 +70,7 @@ fn moved(shape: &LightShape, offset: DVec3) -> LightShape {
 }
 
 fn precise() -> Quality {
-    Quality { form_factor: FormFactor::Difference, fresnel: Fresnel::Split, ..Quality::default() }
+    Quality { form_factor: FormFactor::Difference, specular_lobes: SpecularLobes::Two, ..Quality::default() }
 }
 
 fn widened(radiance: Vec3) -> [f64; 3] {

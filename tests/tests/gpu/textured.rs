@@ -1,6 +1,6 @@
 //! Textured lights: energy, orientation, and the cases that have no easy answer.
 
-use arealight::{Footprint, FormFactor, Fresnel, Horizon, Light, LightTexture, PyramidSize, Quality};
+use arealight::{Footprint, FormFactor, Horizon, Light, LightTexture, PyramidSize, Quality, SpecularLobes};
 use arealight_engine::{EvalPoint, SourceImage, SourceTexels};
 use arealight_oracle::material::Surface;
 use arealight_oracle::shading::footprint::{Filter, LobeSpaceLight, filtered};
@@ -111,7 +111,7 @@ fn qualities() -> [Quality; 4] {
     let [round, ellipse, split] = FOOTPRINTS.map(level);
     let dear = Quality {
         form_factor: FormFactor::Difference,
-        fresnel: Fresnel::Split,
+        specular_lobes: SpecularLobes::Two,
         horizon: Horizon::Both,
         ..split
     };

@@ -20,10 +20,10 @@ pub fn read_profile(path: &Path) -> Result<Ladder, Failure> {
 #[derive(clap::Args, Clone, Debug, Default)]
 pub struct BudgetArguments {
     /// Shade on the most accurate level that takes no longer
-    #[arg(long, value_name = "MS", requires = "profile", conflicts_with_all = ["max_error", "reference", "form_factor", "horizon", "fresnel", "lobes", "footprint"])]
+    #[arg(long, value_name = "MS", requires = "profile", conflicts_with_all = ["max_error", "reference", "form_factor", "horizon", "specular_lobes", "lobes", "footprint"])]
     budget_ms: Option<f64>,
     /// Shade on the fastest level that errs no more, as root of the mean square over the mean
-    #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "fresnel", "lobes", "footprint"])]
+    #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "specular_lobes", "lobes", "footprint"])]
     max_error: Option<f64>,
     /// What `arealight bench --json FILE` measured on this device
     #[arg(long, value_name = "FILE")]

@@ -1,7 +1,7 @@
 //! Quality levels, as options of a command.
 
 use crate::failure::Failure;
-use arealight::{Footprint, FormFactor, Fresnel, Horizon, LightTable, Lobes, Quality};
+use arealight::{Footprint, FormFactor, Horizon, LightTable, Lobes, Quality, SpecularLobes};
 use std::path::PathBuf;
 
 /// How lights are integrated.
@@ -13,9 +13,9 @@ pub struct QualityArguments {
     /// Where lights are clipped
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
     horizon: Clip,
-    /// How Schlick's Fresnel term enters the glossy lobe [default: by-f0 for render, split for eval]
-    #[arg(long, value_enum, value_name = "HOW")]
-    fresnel: Option<Parts>,
+    /// How many lobes the specular one is made of [default: one for render, two for eval]
+    #[arg(long, value_enum, value_name = "COUNT")]
+    specular_lobes: Option<Parts>,
     /// Where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
     lobes: Source,
@@ -57,10 +57,10 @@ pub enum Source {
 /// How many lobes are integrated.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 pub enum Parts {
-    /// One, chosen by the reflectance
-    ByF0,
-    /// Two, one for F0 and one for what grows at grazing angles: exact in the reflectance and its colour
-    Split,
+    /// One integral a light
+    One,
+    /// Two integrals a light, at about half the error
+    Two,
 }
 
 /// How the part of a texture that a lobe sees is looked up.
@@ -79,7 +79,7 @@ impl Default for QualityArguments {
         Self {
             form_factor: None,
             horizon: Clip::Cosine,
-            fresnel: None,
+            specular_lobes: None,
             lobes: Source::Table,
             footprint: None,
             table: None,
@@ -99,10 +99,10 @@ impl QualityArguments {
             Clip::Cosine => Horizon::Cosine,
             Clip::Both => Horizon::Both,
         };
-        let fresnel = match self.fresnel {
-            None => default.fresnel,
-            Some(Parts::ByF0) => Fresnel::ByF0,
-            Some(Parts::Split) => Fresnel::Split,
+        let specular_lobes = match self.specular_lobes {
+            None => default.specular_lobes,
+            Some(Parts::One) => SpecularLobes::One,
+            Some(Parts::Two) => SpecularLobes::Two,
         };
         let lobes = match self.lobes {
             Source::Table => Lobes::Table,
@@ -114,7 +114,7 @@ impl QualityArguments {
             Some(Lookup::Ellipse) => Footprint::Ellipse,
             Some(Lookup::Split) => Footprint::Split,
         };
-        Quality { form_factor, horizon, fresnel, lobes, footprint }
+        Quality { form_factor, horizon, specular_lobes, lobes, footprint }
     }
 
     /// The table chosen.

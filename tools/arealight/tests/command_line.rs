@@ -73,7 +73,7 @@ fn wrong_arguments_are_exit_code_2() {
     refuse(folder.path(), &["render", &room, "--camera", "nobody"], 2, &["--camera", "nobody"]);
     refuse(folder.path(), &["paint"], 2, &["paint"]);
     refuse(folder.path(), &["inspect", "--f0", "2"], 2, &["--f0", "0 to 1"]);
-    refuse(folder.path(), &["inspect", "--fresnel", "none"], 2, &["--fresnel", "by-f0", "split"]);
+    refuse(folder.path(), &["inspect", "--specular-lobes", "none"], 2, &["--specular-lobes", "one", "two"]);
     refuse(folder.path(), &["inspect", "--entries"], 2, &["--output"]);
     refuse(
         folder.path(),
@@ -205,7 +205,7 @@ fn inspect_draws_lobes_entries_and_errors() {
     assert_eq!(summary["channels"].as_array().unwrap().len(), 10, "two matrices and the albedos");
     assert_eq!(summary["errors"], serde_json::Value::Null);
     inspect(&["-o", "one.png", "--f0", "0.04"]);
-    inspect(&["-o", "two.png", "--f0", "0.04", "--fresnel", "split"]);
+    inspect(&["-o", "two.png", "--f0", "0.04", "--specular-lobes", "two"]);
     let [metal, one, two] = ["metal.png", "one.png", "two.png"].map(picture);
     assert_eq!(metal.dimensions(), one.dimensions());
     assert!(metal != one && one != two);
@@ -224,9 +224,9 @@ fn inspect_draws_lobes_entries_and_errors() {
         errors.iter().find(is_it).and_then(|e| e["mean"].as_f64()).unwrap()
     };
     for f0 in [0.04, 1.0] {
-        assert!(mean("table", "split", f0) <= mean("table", "by F0", f0));
-        assert!(mean("table", "by F0", f0) < mean("formula", "by F0", f0));
-        assert!(2.0 * mean("formula", "by F0", f0) < mean("small", "by F0", f0));
+        assert!(mean("table", "two lobes", f0) < 0.7 * mean("table", "one lobe", f0));
+        assert!(mean("table", "one lobe", f0) < mean("formula", "one lobe", f0));
+        assert!(2.0 * mean("formula", "one lobe", f0) < mean("small", "one lobe", f0));
     }
     assert_eq!(errors.len(), 8);
     inspect(&["--errors", "--quads", "3", "-o", "ours.png"]);

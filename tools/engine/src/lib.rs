@@ -30,10 +30,10 @@ pub use texture_array::{TextureArray, TextureSource};
 pub use textures::{SourceImage, SourceTexels};
 
 use crate::host::Buffer;
-use arealight::LightTable;
 use arealight::kernels::Kernel;
 use arealight::plan::ShadeOptions;
 use arealight::table::LobeHorizon;
+use arealight::{LightTable, SpecularLobes};
 use arealight_vk::{Context, Resource, ShadePass, TableFormat};
 use ash::vk;
 use bytemuck::Pod;
@@ -105,7 +105,7 @@ pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
     light_table: LightTable,
-    lobe_horizons: OnceCell<Vec<LobeHorizon>>,
+    lobe_horizons: [OnceCell<Vec<LobeHorizon>>; 2],
     textures: Option<TextureArray>,
     shade_passes: RefCell<HashMap<ShadeOptions, Rc<Kept<ShadePass>>>>,
     passes: Passes,
@@ -120,7 +120,7 @@ impl Engine {
         let passes = Passes::new(host)?;
         let light_table = table.clone();
         let table = UploadedTable::new(passes.host(), passes.context(), table, format)?;
-        let (lobe_horizons, shade_passes) = (OnceCell::new(), RefCell::default());
+        let (lobe_horizons, shade_passes) = (Default::default(), RefCell::default());
         Ok(Self { table, light_table, lobe_horizons, textures: None, shade_passes, passes })
     }
 
@@ -163,8 +163,8 @@ impl Engine {
     }
 
     /// The table's [`LightTable::lobe_horizons`].
-    pub fn lobe_horizons(&self) -> &[LobeHorizon] {
-        self.lobe_horizons.get_or_init(|| self.light_table.lobe_horizons())
+    pub fn lobe_horizons(&self, lobes: SpecularLobes) -> &[LobeHorizon] {
+        self.lobe_horizons[lobes as usize].get_or_init(|| self.light_table.lobe_horizons(lobes))
     }
 
     /// Nodes a side of the table.

@@ -12,7 +12,7 @@ layout(constant_id = 0) const bool DIFFUSE = true;
 layout(constant_id = 1) const bool SPECULAR = true;
 layout(constant_id = 2) const bool TWO_SIDED = false;
 layout(constant_id = 3) const bool SURFACE_HORIZON = false;
-layout(constant_id = 4) const bool FRESNEL_SPLIT = false;
+layout(constant_id = 4) const bool TWO_SPECULAR_LOBES = false;
 layout(constant_id = 5) const bool FORMULA = false;
 layout(constant_id = 6) const bool DIFFERENCE = false;
 layout(constant_id = 7) const int FOOTPRINT = 0;
@@ -24,7 +24,7 @@ layout(constant_id = 11) const bool SHEEN = false;
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
 #define AREALIGHT_SURFACE_HORIZON SURFACE_HORIZON
-#define AREALIGHT_FRESNEL_SPLIT FRESNEL_SPLIT
+#define AREALIGHT_TWO_SPECULAR_LOBES TWO_SPECULAR_LOBES
 #define AREALIGHT_FORMULA FORMULA
 #define AREALIGHT_DIFFERENCE DIFFERENCE
 #define AREALIGHT_FOOTPRINT FOOTPRINT

@@ -124,7 +124,13 @@ fn its_lobes_integrate_to_one() {
 fn it_is_what_the_fitter_makes() {
     let (checked_in, fitted) = (ggx(), fit(&GgxBrdf, &FitSettings::default(), &|_, _| {}).unwrap());
     assert_eq!(checked_in.description(), fitted.description());
-    let matrices = |table: &LightTable| [table.matrix(), table.schlick_matrix().unwrap()].concat();
+    let matrices = |table: &LightTable| {
+        let pairs = table.pairs().unwrap();
+        let of_pairs = pairs.matrices.iter().flatten().copied();
+        let shares = pairs.second_shares.iter().map(|shares| [shares[0], shares[1], 0.0, 0.0]);
+        let one = [table.matrix(), table.schlick_matrix().unwrap()].concat();
+        one.into_iter().chain(of_pairs).chain(shares).collect::<Vec<_>>()
+    };
     let (ours, theirs) = (matrices(&checked_in).into_flattened(), matrices(&fitted).into_flattened());
     let difference = ours.iter().zip(&theirs).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
     // Bit for bit on the machine that made it; another one's sines and powers may differ in their last bits,

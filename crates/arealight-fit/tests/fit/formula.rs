@@ -1,6 +1,6 @@
 //! GGX without a table: the formula that is built in, against the fitter, the truth and the table.
 
-use arealight::{Fresnel, Horizon, LightTable};
+use arealight::{Horizon, LightTable, SpecularLobes};
 use arealight_fit::report::{
     Case, Level, PUBLISHED, SEED, cases, integrate, measure, measure_lookup, near_mirror_quads,
 };
@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 /// Other quads than those of the report.
 static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(1500, SEED + 2, &|| {}));
 
-const BY_F0: Level = Level { fresnel: Fresnel::ByF0, horizon: Horizon::Cosine };
+const BY_F0: Level = Level { specular_lobes: SpecularLobes::One, horizon: Horizon::Cosine };
 
 /// Every coefficient.
 fn coefficients(formula: &Formula) -> Vec<f64> {

@@ -37,13 +37,18 @@ pub(super) fn sample(
     let seen = View { azimuth: DVec2::new(lobe.axis.x, -lobe.axis.y), sin: view.x, cos: view.z };
     // Matrices, from isotropic lobes between the two alphas
     let mean = most * ratio.sqrt();
-    let inverse = |reference: f64, pick: fn(TableSample) -> DMat3| {
+    let mapped = |reference: f64| {
         let own = seen.stretched(alpha / reference);
-        let isotropic = pick(lookup(reference, own.cos)) * mirror_frame(own.cos);
         let scale = DMat3::from_diagonal(DVec3::new(mean, mean, 1.0));
         let map = scale * reflected_map(&seen, &own, alpha, reference, mean) * scale.inverse();
-        isotropic * map * mirror_frame(seen.cos).transpose() * (mean / reference)
+        let back = map * mirror_frame(seen.cos).transpose() * (mean / reference);
+        let inverse = move |inverse: DMat3| inverse * mirror_frame(own.cos) * back;
+        (lookup(reference, own.cos), inverse)
     };
+    let (lobe, from_lobe) = mapped(most * ratio.sqrt().sqrt());
+    let (schlick_lobe, from_schlick_lobe) = mapped(mean);
+    // Two lobes come over by the same map
+    let pairs = lobe.pairs.map(|(inverses, shares)| (inverses.map(from_lobe), shares));
     // Albedos, from the lobe of the mean square at the view that it sees, and from that of the view's azimuth
     let square = |weights: DVec2| ((weights * alpha * alpha).element_sum() / weights.element_sum()).sqrt();
     let root = square(DVec2::ONE);
@@ -51,10 +56,11 @@ pub(super) fn sample(
     let spread = seen.azimuth * seen.azimuth * (seen.sin * seen.sin) + DVec2::splat(0.5 * AZIMUTH_START);
     let schlick = lookup(square(spread), seen.cos).schlick.min(albedo);
     TableSample {
-        inverse: inverse(most * ratio.sqrt().sqrt(), |sample| sample.inverse),
-        schlick_inverse: inverse(mean, |sample| sample.schlick_inverse),
+        inverse: from_lobe(lobe.inverse),
+        schlick_inverse: from_schlick_lobe(schlick_lobe.schlick_inverse),
         albedo,
         schlick,
+        pairs,
     }
 }
 

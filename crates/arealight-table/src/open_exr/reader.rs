@@ -1,6 +1,6 @@
 //! Reads a table, trusting nothing.
 
-use arealight::table::MAX_SIZE;
+use arealight::table::{LobePairs, MAX_SIZE};
 use exr::block::UncompressedBlock;
 use exr::block::reader::ChunksReader;
 use exr::meta::BlockDescription;
@@ -10,7 +10,7 @@ use exr::prelude::{Compression, Vec2};
 use half::f16;
 use std::io::Cursor;
 
-use super::{IMAGE, Layer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
+use super::{IMAGE, Layer, MAGNITUDE, MATRIX, PAIR_MATRICES, SCHLICK_MATRIX, SECOND_SHARES};
 use crate::attributes::{Attributes, Value};
 use crate::{Format, ReadError, TableFile};
 
@@ -25,28 +25,39 @@ pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
     if !attributes.layer_counts().contains(&headers.len()) {
         return Err(ReadError::LayerCount { count: headers.len(), expected: attributes.layer_counts() });
     }
-    let schlick = if headers.len() == 3 { Some(find_layer(headers, &SCHLICK_MATRIX)?) } else { None };
     let size = check_layer(matrix_header, &MATRIX, None, &[SampleType::F32])?;
+    let mut matrix = Texels::<4>::new(&MATRIX, matrix_index, matrix_header, size);
     check_layer(magnitude_header, &MAGNITUDE, Some(size), &[SampleType::F32])?;
-    if let Some((_, header)) = schlick {
-        check_layer(header, &SCHLICK_MATRIX, Some(size), &[SampleType::F32])?;
+    let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_index, magnitude_header, size);
+    // The matrices that a table may have beside its first, and the shares of pairs
+    let has_pairs = headers.len() >= LAYERS_WITH_PAIRS;
+    let has_schlick = has_schlick(headers.len());
+    let names = [&SCHLICK_MATRIX].into_iter().filter(|_| has_schlick);
+    let mut matrices = Vec::new();
+    for names in names.chain(PAIR_MATRICES.iter().filter(|_| has_pairs)) {
+        let (index, header) = find_layer(headers, names)?;
+        check_layer(header, names, Some(size), &[SampleType::F32])?;
+        matrices.push(Texels::<4>::new(names, index, header, size));
     }
+    let mut second_shares = if has_pairs {
+        let (index, header) = find_layer(headers, &SECOND_SHARES)?;
+        check_layer(header, &SECOND_SHARES, Some(size), &[SampleType::F32])?;
+        Some(Texels::<2>::new(&SECOND_SHARES, index, header, size))
+    } else {
+        None
+    };
 
     // Read the texels into what the headers announce
-    let mut matrix = Texels::<4>::new(&MATRIX, matrix_header, size);
-    let mut magnitude = Texels::<2>::new(&MAGNITUDE, magnitude_header, size);
-    let mut schlick = schlick.map(|(index, header)| (index, Texels::<4>::new(&SCHLICK_MATRIX, header, size)));
     let mut unknown_layer = false;
     reader
         .all_chunks(true)
         .and_then(|chunks| {
             chunks.decompress_sequential(true, |_, block| {
-                match (block.index.layer, &mut schlick) {
-                    (layer, _) if layer == matrix_index => matrix.insert(&block),
-                    (layer, _) if layer == magnitude_index => magnitude.insert(&block),
-                    (layer, Some((index, schlick))) if layer == *index => schlick.insert(&block),
-                    _ => unknown_layer = true,
-                }
+                let taken = matrix.insert(&block)
+                    || magnitude.insert(&block)
+                    || matrices.iter_mut().any(|texels| texels.insert(&block))
+                    || second_shares.as_mut().is_some_and(|texels| texels.insert(&block));
+                unknown_layer |= !taken;
                 Ok(())
             })
         })
@@ -55,8 +66,25 @@ pub fn read(file: &[u8]) -> Result<TableFile, ReadError> {
         let reason = "a block of a layer that is not there".into();
         return Err(ReadError::Damaged { format: Format::Exr, part: "texels", reason });
     }
-    let schlick = schlick.map(|(_, texels)| texels.finish()).transpose()?;
-    attributes.table(size as u32, matrix.finish()?, magnitude.finish()?, schlick)
+    let (matrix, magnitude) = (matrix.finish()?, magnitude.finish()?);
+    let mut matrices = matrices.into_iter().map(Texels::finish);
+    let mut next = || matrices.next().transpose();
+    let schlick_matrix = if has_schlick { next()? } else { None };
+    let pairs = match (next()?, next()?, second_shares) {
+        (Some(first), Some(second), Some(shares)) => {
+            Some(LobePairs { matrices: [first, second], second_shares: shares.finish()? })
+        }
+        _ => None,
+    };
+    attributes.table(size as u32, matrix, magnitude, schlick_matrix, pairs)
+}
+
+/// How many layers a table of one matrix and of pairs has; one more with Schlick's.
+const LAYERS_WITH_PAIRS: usize = 5;
+
+/// Whether Schlick's matrix is among so many layers.
+fn has_schlick(layers: usize) -> bool {
+    [3, LAYERS_WITH_PAIRS + 1].contains(&layers)
 }
 
 /// The texels a side and the texels of an image of one layer, of whatever name, with channels R, G, B and A.
@@ -66,7 +94,7 @@ pub fn read_image(file: &[u8]) -> Result<(u32, Vec<[f32; 4]>), ReadError> {
         return Err(ReadError::LayerCount { count: reader.headers().len(), expected: &[1] });
     };
     let size = check_layer(header, &IMAGE, None, &[SampleType::F16, SampleType::F32])?;
-    let mut texels = Texels::<4>::new(&IMAGE, header, size);
+    let mut texels = Texels::<4>::new(&IMAGE, 0, header, size);
     reader
         .all_chunks(true)
         .and_then(|chunks| {
@@ -152,6 +180,8 @@ fn check_layer(
 /// The texels of a layer, filled block by block.
 struct Texels<const N: usize> {
     layer: &'static str,
+    /// The layer's place in the file.
+    index: usize,
     size: usize,
     /// For each channel in the file's order, its place in a texel.
     places: Vec<usize>,
@@ -163,12 +193,13 @@ struct Texels<const N: usize> {
 }
 
 impl<const N: usize> Texels<N> {
-    fn new(layer: &Layer, header: &Header, size: usize) -> Self {
+    fn new(layer: &Layer, index: usize, header: &Header, size: usize) -> Self {
         let place =
             |name: &Text| layer.channels.iter().position(|&c| name.as_slice() == c.as_bytes()).unwrap_or(0);
         let places = header.channels.list.iter().map(|channel| place(&channel.name)).collect();
         Self {
             layer: layer.name,
+            index,
             size,
             places,
             sample_type: header.channels.list[0].sample_type,
@@ -177,15 +208,18 @@ impl<const N: usize> Texels<N> {
         }
     }
 
-    /// Copies a block's scan lines; a block that does not fit the layer is passed over, and its lines are
-    /// found missing in the end.
-    fn insert(&mut self, block: &UncompressedBlock) {
+    /// Copies a block's scan lines, if it is one of this layer's, and says whether it is. One that does not fit the layer is passed over,
+    /// and its lines are found missing in the end.
+    fn insert(&mut self, block: &UncompressedBlock) -> bool {
+        if block.index.layer != self.index {
+            return false;
+        }
         let Vec2(left, top) = block.index.pixel_position;
         let Vec2(width, height) = block.index.pixel_size;
         let sample_bytes = self.sample_type.bytes_per_sample();
         let line_bytes = self.size * N * sample_bytes;
         if left != 0 || width != self.size || block.data.len() != height * line_bytes {
-            return;
+            return true;
         }
         for (y, line) in (top..self.size).zip(block.data.chunks_exact(line_bytes)) {
             for (&place, samples) in self.places.iter().zip(line.chunks_exact(self.size * sample_bytes)) {
@@ -200,6 +234,7 @@ impl<const N: usize> Texels<N> {
             }
             self.lines[y] = true;
         }
+        true
     }
 
     fn finish(self) -> Result<Vec<[f32; N]>, ReadError> {

@@ -4,7 +4,7 @@ use exr::prelude::*;
 use std::io::Cursor;
 
 use super::canonical::sort_attributes;
-use super::{Layer as TableLayer, MAGNITUDE, MATRIX, SCHLICK_MATRIX};
+use super::{Layer as TableLayer, MAGNITUDE, MATRIX, PAIR_MATRICES, SCHLICK_MATRIX, SECOND_SHARES};
 use crate::TableFile;
 use crate::attributes::{VERSION, name, texts};
 
@@ -20,6 +20,11 @@ pub fn write(file: &TableFile) -> Vec<u8> {
 
     let mut layers = vec![layer(&MATRIX, size, table.matrix()), layer(&MAGNITUDE, size, table.magnitude())];
     layers.extend(table.schlick_matrix().map(|texels| layer(&SCHLICK_MATRIX, size, texels)));
+    if let Some(pairs) = table.pairs() {
+        let matrices = PAIR_MATRICES.iter().zip(&pairs.matrices);
+        layers.extend(matrices.map(|(names, texels)| layer(names, size, texels)));
+        layers.push(layer(&SECOND_SHARES, size, &pairs.second_shares));
+    }
     let image = Image { attributes, layer_data: Layers::from(layers) };
     let mut bytes = Vec::new();
     image

@@ -8,13 +8,13 @@ fn it_reads() {
     let table = ggx();
     assert_eq!(table.size(), 64);
     assert_eq!(table.description().brdf, "ggx-correlated-smith");
-    assert!(ggx_file().fit_error.unwrap().contains("split: 3.19e-4 at F0 = 0.02"));
+    assert!(ggx_file().fit_error.unwrap().contains("two lobes: 3.39e-4 at F0 = 0.02"));
 }
 
 #[test]
 fn its_file_is_small_and_as_this_version_writes_it() {
     let bytes = include_bytes!("../../tables/ggx.exr");
-    assert!(bytes.len() < 200_000, "{} bytes", bytes.len());
+    assert!(bytes.len() < 350_000, "{} bytes", bytes.len());
     // Compression may differ in a newer library; what is compressed may not
     assert_eq!(arealight_table::read(&arealight_table::write(&ggx())).unwrap(), ggx());
 }
@@ -22,7 +22,8 @@ fn its_file_is_small_and_as_this_version_writes_it() {
 #[test]
 fn seen_from_the_normal_its_lobes_are_round() {
     let table = ggx();
-    for layer in [table.matrix(), table.schlick_matrix().unwrap()] {
+    let [first, second] = &table.pairs().unwrap().matrices;
+    for layer in [table.matrix(), table.schlick_matrix().unwrap(), first, second] {
         for texel in &layer[..table.size() as usize] {
             assert_eq!(texel[..3], [1.0, 0.0, 0.0]);
         }

@@ -3,7 +3,7 @@
 use arealight::TableError;
 use arealight_table::{ggx, resampled};
 
-use crate::draft::{table, table_of_two};
+use crate::draft::{table, table_of_pairs};
 
 #[test]
 fn nodes_that_coincide_keep_their_numbers() {
@@ -19,13 +19,17 @@ fn nodes_that_coincide_keep_their_numbers() {
 
 #[test]
 fn between_nodes_a_new_one_is_what_a_lookup_finds() {
-    let (old, new) = (table_of_two(7), resampled(&table_of_two(7), 12).unwrap());
+    let (old, new) = (table_of_pairs(7), resampled(&table_of_pairs(7), 12).unwrap());
     for (x, y) in (1..12).flat_map(|y| (1..12).map(move |x| (x, y))) {
         let (roughness, cos_view) = arealight::LightTable::node(12, x, y);
         let (a, b) = (old.lookup(roughness, cos_view), new.lookup(roughness, cos_view));
         // Rounding of texels to float32
         assert!(a.inverse.abs_diff_eq(b.inverse, 1e-6) && (a.albedo - b.albedo).abs() < 1e-6, "({x}, {y})");
         assert!(a.schlick_inverse.abs_diff_eq(b.schlick_inverse, 1e-6), "({x}, {y})");
+        let ((a, of_a), (b, of_b)) = (a.pairs.unwrap(), b.pairs.unwrap());
+        for k in 0..2 {
+            assert!(a[k].abs_diff_eq(b[k], 1e-5) && (of_a[k] - of_b[k]).abs() < 1e-6, "({x}, {y})");
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Files made by hand, so that they can be wrong.
 
+use arealight::table::LobePairs;
 use arealight::{LightTable, TableDescription};
 use exr::prelude::*;
 use std::io::Cursor;
@@ -39,6 +40,17 @@ impl Draft {
             DraftLayer { name: "magnitude", size, channels: vec![("R", magnitude(0)), ("G", magnitude(1))] },
         ];
         layers.extend(table.schlick_matrix().map(|texels| matrix("schlick_matrix", texels)));
+        if let Some(pairs) = table.pairs() {
+            let matrices = ["first_matrix", "second_matrix"].into_iter().zip(&pairs.matrices);
+            layers.extend(matrices.map(|(name, texels)| matrix(name, texels)));
+            let share =
+                |c: usize| FlatSamples::F32(pairs.second_shares.iter().map(|shares| shares[c]).collect());
+            layers.push(DraftLayer {
+                name: "second_shares",
+                size,
+                channels: vec![("R", share(0)), ("G", share(1))],
+            });
+        }
         Self {
             attributes: vec![
                 ("arealight.format", text(arealight_table::FORMAT)),
@@ -101,6 +113,18 @@ impl Draft {
         image.write().non_parallel().to_buffered(Cursor::new(&mut bytes)).expect("the draft can be written");
         bytes
     }
+}
+
+/// A table of two matrices and of pairs.
+pub fn table_of_pairs(size: u32) -> LightTable {
+    let table = table_of_two(size);
+    let scaled = |scale: f32| table.matrix().iter().map(|texel| texel.map(|q| scale * q)).collect();
+    let share = |i: u32| i as f32 / (size * size) as f32;
+    let pairs = LobePairs {
+        matrices: [scaled(3.0), scaled(4.0)],
+        second_shares: (0..size * size).map(|i| [share(i), 1.0 - share(i)]).collect(),
+    };
+    table.with_pairs(pairs).unwrap()
 }
 
 /// A table of two matrices.

@@ -4,15 +4,16 @@ use arealight::{LightTable, TableDescription};
 use arealight_table::{FileError, ReadError, TableFile, Target, ggx, hash, load, read, save, write};
 use exr::prelude::{AttributeValue, Compression};
 
-use crate::draft::{Draft, table, table_of_two};
+use crate::draft::{Draft, table, table_of_pairs, table_of_two};
 
 #[test]
 fn a_table_comes_back_bit_for_bit() {
     for size in [2, 3, 17, 64] {
         let table = table(size);
         assert_eq!(read(&write(&table)).unwrap(), table, "size {size}");
-        let table = table_of_two(size);
-        assert_eq!(read(&write(&table)).unwrap(), table, "size {size}, two matrices");
+        for table in [table_of_two(size), table_of_pairs(size)] {
+            assert_eq!(read(&write(&table)).unwrap(), table, "size {size}, more matrices");
+        }
     }
 }
 
@@ -126,7 +127,7 @@ fn an_uncompressed_file_reads_alike() {
 
 #[test]
 fn layers_may_come_in_any_order_and_with_attributes_of_their_own() {
-    for table in [table(5), table_of_two(5)] {
+    for table in [table(5), table_of_two(5), table_of_pairs(5)] {
         let mut draft = Draft::of(&table);
         draft.layers.reverse();
         assert_eq!(read(&draft.write()).unwrap(), table);

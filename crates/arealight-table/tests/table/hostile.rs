@@ -38,10 +38,10 @@ fn a_file_cut_short_anywhere_is_refused() {
 
 #[test]
 fn another_version_is_refused() {
-    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(4)));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `4`; this program reads `1 to 3`");
+    let error = spoil(|draft| draft.set("arealight.version", AttributeValue::I32(5)));
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `5`; this program reads `1 to 4`");
     let error = spoil(|draft| draft.set_text("arealight.version", "one"));
-    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1 to 3`");
+    assert_eq!(error.to_string(), "attribute `arealight.version` is `one`; this program reads `1 to 4`");
 }
 
 #[test]
@@ -87,7 +87,18 @@ fn missing_and_superfluous_layers_are_named() {
         })
     };
     assert_eq!(with(&["third"]), ReadError::MissingLayer { layer: "schlick_matrix" });
-    assert_eq!(with(&["schlick_matrix", "fourth"]), ReadError::LayerCount { count: 4, expected: &[2, 3] });
+    assert_eq!(
+        with(&["schlick_matrix", "fourth"]),
+        ReadError::LayerCount { count: 4, expected: &[2, 3, 5, 6] }
+    );
+    assert_eq!(
+        with(&["first_matrix", "fourth", "fifth"]),
+        ReadError::MissingLayer { layer: "second_matrix" }
+    );
+    assert_eq!(
+        with(&["first_matrix", "second_matrix", "fifth"]),
+        ReadError::MissingLayer { layer: "second_shares" }
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@ use arealight_table::{Precision, TableFile, Target, WriteError, ggx, resampled, 
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::draft::{table, table_of_two};
+use crate::draft::{table, table_of_pairs, table_of_two};
 
 fn text(table: &LightTable, target: Target) -> String {
     let fit_error = Some("small */ #error \"no\"\n#error".to_owned());
@@ -42,7 +42,7 @@ int main(void) {
         memcpy(&bits, &arealight_table[i], sizeof *arealight_table);
         printf("%u\n", bits);
     }
-    return AREALIGHT_TABLE_SIZE == 5 && AREALIGHT_TABLE_LAYERS == 3 ? 0 : 1;
+    return AREALIGHT_TABLE_SIZE == 5 && AREALIGHT_TABLE_LAYERS == 6 ? 0 : 1;
 }
 "#;
 
@@ -107,7 +107,7 @@ fn a_glsl_compiler_takes_the_bridge_with_the_library() {
 
 #[test]
 fn the_words_of_glsl_are_the_numbers_of_the_table() {
-    for table in [table(4), table_of_two(4)] {
+    for table in [table(4), table_of_two(4), table_of_pairs(4)] {
         let text = text(&table, Target::Glsl);
         let (_, array) = text.split_once("(\n").unwrap();
         let (array, _) = array.split_once(");").unwrap();
@@ -116,8 +116,9 @@ fn the_words_of_glsl_are_the_numbers_of_the_table() {
             .filter_map(|word| word.strip_prefix("0x"))
             .map(|word| u32::from_str_radix(word.trim_end_matches('u'), 16).unwrap())
             .collect();
-        let matrices = 1 + usize::from(table.schlick_matrix().is_some());
-        assert_eq!(words.len(), 16 * (2 * matrices + 1));
+        let matrices =
+            1 + usize::from(table.schlick_matrix().is_some()) + if table.pairs().is_some() { 2 } else { 0 };
+        assert_eq!(words.len(), 16 * (2 * matrices + 2));
         let unpack =
             |word: u32| [word as u16, (word >> 16) as u16].map(|bits| half::f16::from_bits(bits).to_f32());
         let half = rounded(&table, Precision::Half).unwrap();
@@ -129,9 +130,26 @@ fn the_words_of_glsl_are_the_numbers_of_the_table() {
                 assert_eq!([unpack(words[32 + 2 * i]), unpack(words[33 + 2 * i])].concat(), schlick[i]);
             }
         }
+        let shares = |i: usize| unpack(words[32 * matrices + 16 + i]);
+        match half.pairs() {
+            None => assert!((0..16).all(|i| shares(i)[0] == 0.0), "the second lobe is Schlick's"),
+            Some(pairs) => {
+                for i in 0..16 {
+                    for (k, matrix) in pairs.matrices.iter().enumerate() {
+                        let at = 32 * (2 + k) + 2 * i;
+                        assert_eq!([unpack(words[at]), unpack(words[at + 1])].concat(), matrix[i]);
+                    }
+                    assert_eq!(shares(i), pairs.second_shares[i]);
+                }
+            }
+        }
         // The function reads layers where they are
-        assert!(text.contains(&format!("WORDS[{} + node]", 32 * matrices)), "{text}");
-        assert!(text.contains(&format!("(layer == 2 ? {} : 0)", 32 * (matrices - 1))), "{text}");
+        let layers = match matrices {
+            1 => "0, 32, 0, 0, 0, 48",
+            2 => "0, 64, 32, 0, 32, 80",
+            _ => "0, 128, 32, 64, 96, 144",
+        };
+        assert!(text.contains(&format!("int[6]({layers})")), "{text}");
     }
 }
 

@@ -6,7 +6,7 @@ use arealight_table::{
 };
 use half::f16;
 
-use crate::draft::{table, table_of_two};
+use crate::draft::{table, table_of_pairs, table_of_two};
 
 const PRECISIONS: [Precision; 2] = [Precision::Half, Precision::Single];
 
@@ -32,7 +32,7 @@ fn refusal(file: &[u8]) -> String {
 #[test]
 fn a_table_comes_back_rounded_to_the_precision_and_no_further() {
     for target in targets() {
-        for table in [table(2), table(7), table_of_two(16), ggx()] {
+        for table in [table(2), table(7), table_of_two(16), table_of_pairs(5), ggx()] {
             let file = TableFile::read(&write(&table, target)).unwrap();
             assert_eq!(file.table, rounded(&table, target.precision()).unwrap(), "{target:?}");
             assert_eq!(file.fit_error.as_deref(), Some("none"));
@@ -54,9 +54,9 @@ fn half_floats_err_by_their_last_bit_at_most() {
 #[test]
 fn what_the_gpu_reads_says_if_a_dip_was_added() {
     for (table, dip) in [(table_of_two(4), 0.0), (resampled(&ggx(), 4).unwrap(), 1.0)] {
-        assert!(table.texels()[16..32].iter().all(|texel| texel[2..] == [dip, 0.0]), "{dip}");
+        assert!(table.texels()[16..32].iter().all(|texel| texel[2] == dip), "{dip}");
         let glsl = String::from_utf8(write(&table, Target::Glsl)).unwrap();
-        assert!(glsl.contains(&format!("+ node]), {dip:?}, 0.0)")), "{glsl}");
+        assert!(glsl.contains(&format!("+ node]), {dip:?}, ")), "{glsl}");
         let header = String::from_utf8(write(&table, Target::CHeader(Precision::Half))).unwrap();
         assert!(header.contains(&format!("The dip is {dip}")), "{header}");
     }
@@ -124,7 +124,7 @@ fn the_ktx2_crate_reads_what_is_written() {
         let bytes = write(&table, Target::Ktx2(precision));
         let reader = ktx2::Reader::new(&bytes).unwrap();
         let header = reader.header();
-        assert_eq!((header.pixel_width, header.pixel_height, header.layer_count), (8, 8, 3));
+        assert_eq!((header.pixel_width, header.pixel_height, header.layer_count), (8, 8, 6));
         let basic = reader.basic_dfd().expect("there is a basic descriptor");
         assert_eq!(basic.transfer_function, Some(ktx2::TransferFunction::Linear));
         assert_eq!(basic.sample_information.len(), 4);
@@ -133,7 +133,7 @@ fn the_ktx2_crate_reads_what_is_written() {
         let expected = format!("{}\0", hash(&rounded(&table, precision).unwrap()));
         assert!(values.contains(&("arealight.hash", expected.as_bytes())), "{values:?}");
         let level = reader.levels().next().unwrap();
-        assert_eq!(level.data.len(), 8 * 8 * 3 * precision.texel_bytes());
+        assert_eq!(level.data.len(), 8 * 8 * 6 * precision.texel_bytes());
         // Texels lie at a multiple of their size
         let start = level.data.as_ptr() as usize - bytes.as_ptr() as usize;
         assert_eq!(start % precision.texel_bytes(), 0);
@@ -149,7 +149,7 @@ fn the_ddsfile_crate_reads_what_is_written() {
         let table = table_of_two(8);
         let bytes = write(&table, Target::Dds(precision));
         let dds = ddsfile::Dds::read(&bytes[..]).unwrap();
-        assert_eq!((dds.get_width(), dds.get_height(), dds.get_num_array_layers()), (8, 8, 3));
+        assert_eq!((dds.get_width(), dds.get_height(), dds.get_num_array_layers()), (8, 8, 6));
         assert_eq!(dds.get_dxgi_format(), Some(format));
         // Its second layer is the magnitude
         let layer = dds.get_data(1).unwrap();
@@ -183,7 +183,7 @@ fn fields_of_ktx2_that_no_table_has_are_named() {
         (12, 37, "KTX2 header: `vkFormat` is 37; expected 97 (RGBA, half float) or 109 (RGBA, float)"),
         (20, 4, "layer `image`: 4 x 3 texels; tables are square, 2 to 1024 a side, all layers alike"),
         (28, 7, "KTX2 header: `pixelDepth` is 7; expected 0"),
-        (32, u32::MAX, "KTX2 header: `layerCount` is 4294967295; expected at most 3"),
+        (32, u32::MAX, "KTX2 header: `layerCount` is 4294967295; expected at most 6"),
         (36, 6, "KTX2 header: `faceCount` is 6; expected 1"),
         (40, 2, "KTX2 header: `levelCount` is 2; expected at most 1"),
         (44, 2, "KTX2 header: `supercompressionScheme` is 2; expected 0 (none)"),
@@ -193,7 +193,7 @@ fn fields_of_ktx2_that_no_table_has_are_named() {
     }
     assert!(
         refusal(&with_word(&file, 12, 109))
-            .starts_with("level 0: damaged or unsupported KTX2 data: 432 bytes")
+            .starts_with("level 0: damaged or unsupported KTX2 data: 864 bytes")
     );
     assert!(
         refusal(&with_word(&file, 80, u32::MAX)).starts_with("level 0: damaged or unsupported KTX2 data: ")
@@ -231,14 +231,14 @@ fn fields_of_dds_that_no_table_has_are_named() {
         (128, 28, "DDS header: `dxgiFormat` is 28; expected 10 (RGBA, half float) or 2 (RGBA, float)"),
         (132, 4, "DDS header: `resourceDimension` is 4; expected 3 (two dimensions)"),
         (136, 4, "DDS header: `miscFlag` is 4; expected 0 (no cube map)"),
-        (140, 0, "DDS header: `arraySize` is 0; expected 1 to 3"),
+        (140, 0, "DDS header: `arraySize` is 0; expected 1 to 6"),
     ] {
         assert_eq!(refusal(&with_word(&file, at, word)), expected);
     }
     assert!(refusal(&with_word(&file, 128, 2)).starts_with("texels: damaged or unsupported DDS data: "));
     // Without our mark, the attributes are surplus
     assert!(
-        refusal(&with_word(&file, 32, 0)).starts_with("texels: damaged or unsupported DDS data: 216 bytes")
+        refusal(&with_word(&file, 32, 0)).starts_with("texels: damaged or unsupported DDS data: 432 bytes")
     );
 }
 
@@ -268,12 +268,12 @@ fn attributes_are_checked_as_those_of_exr() {
         }
         let message = |from, to| spoil(from, to).to_string();
         assert_eq!(
-            message("arealight.version\x003", "arealight.version\x001"),
-            "attribute `arealight.version` is `1`; this program reads `2 to 3`"
+            message("arealight.version\x004", "arealight.version\x003"),
+            "attribute `arealight.version` is `3`; this program reads `4`"
         );
         assert_eq!(
-            message("arealight.matrices\x002", "arealight.matrices\x003"),
-            "attribute `arealight.matrices` is `3`; this program reads `1 or 2`"
+            message("arealight.matrices\x002", "arealight.matrices\x005"),
+            "attribute `arealight.matrices` is `5`; this program reads `1 to 4`"
         );
         assert_eq!(
             message("arealight.grazing_dip\0none", "arealight.grazing_dip\0nine"),
@@ -281,11 +281,6 @@ fn attributes_are_checked_as_those_of_exr() {
         );
         let not_text = "attribute `arealight.brdf` is `a\\0test`; this program reads `a string`";
         assert_eq!(message("arealight.brdf\0a ", "arealight.brdf\0a\0"), not_text);
-        // A file of version 2 has no dip
-        let mut file = write(&table_of_two(3), target);
-        let at = file.windows(19).position(|bytes| bytes == b"arealight.version\x003").unwrap();
-        file[at + 18] = b'2';
-        assert_eq!(read(&file).unwrap(), rounded(&table_of_two(3), target.precision()).unwrap());
         // One matrix is another table
         assert!(matches!(
             spoil("arealight.matrices\x002", "arealight.matrices\x001"),
@@ -297,13 +292,13 @@ fn attributes_are_checked_as_those_of_exr() {
 #[test]
 fn texels_that_were_changed_are_refused() {
     for target in targets() {
-        let file = write(&table_of_two(3), target);
+        let file = write(&table_of_pairs(3), target);
         let layer_bytes = 9 * target.precision().texel_bytes();
         let start = match target {
-            Target::Ktx2(_) => file.len() - 3 * layer_bytes,
+            Target::Ktx2(_) => file.len() - 6 * layer_bytes,
             _ => 148,
         };
-        for layer in 0..3 {
+        for layer in 0..6 {
             // The lowest bit of a number: the first of the middle texel
             let mut spoilt = file.clone();
             spoilt[start + layer * layer_bytes + layer_bytes / 9 * 4] ^= 1;
@@ -315,7 +310,7 @@ fn texels_that_were_changed_are_refused() {
 #[test]
 fn an_image_without_attributes_is_no_table() {
     let mut file = write(&table(3), Target::Dds(Precision::Single));
-    file.truncate(148 + 9 * 3 * 16);
+    file.truncate(148 + 9 * 6 * 16);
     let message = refusal(&with_word(&file, 32, 0));
     assert!(message.starts_with("attribute `arealight.format` is missing"), "{message}");
     assert!(message.contains("convert them by `arealight table convert`"), "{message}");

@@ -10,8 +10,8 @@ pub const POSITION_SOURCE: u32 = 2;
 pub const OUTPUT: u32 = 3;
 /// [`crate::Horizon`].
 pub const HORIZON: u32 = 4;
-/// [`crate::Fresnel`].
-pub const FRESNEL: u32 = 5;
+/// [`crate::SpecularLobes`].
+pub const SPECULAR_LOBES: u32 = 5;
 /// [`crate::Lobes`].
 pub const LOBES: u32 = 6;
 /// [`crate::Footprint`].

@@ -1,6 +1,7 @@
 //! Where the horizons of a table's lobes are and how dense lobes are, for the classification of tiles.
 
-use super::LightTable;
+use super::{LightTable, TableSample};
+use crate::SpecularLobes;
 
 /// Between which planes the horizons of the lobes of a cell of a table lie, and how dense they are: `ArealightGpuLobeHorizon` in
 /// `shaders/kernels/tiles.glsl`.
@@ -12,14 +13,14 @@ use super::LightTable;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LobeHorizon {
-    /// The least and the largest `q / sin` of the lobe without Fresnel term.
+    /// The least and the largest `q / sin` of the lobe without Fresnel term, or of that and of two lobes.
     pub lobe: [f32; 2],
-    /// Of the lobe of Schlick's weight.
+    /// Of the lobe of Schlick's weight; likewise.
     pub schlick: [f32; 2],
     /// The least and the largest of Schlick's albedo times `q22` of its lobe, over the same of the lobe without Fresnel term:
     /// what a mixture of the two is weighed by.
     pub weight: [f32; 2],
-    /// `a` and `b` such that neither lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a steradian, times the
+    /// `a` and `b` such that no lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a steradian, times the
     /// sine of the elevation above its horizon, at the angle `delta` from the mirror direction. An isotropic lobe is about as
     /// dense as that. Of smooth lobes, below a roughness of 0.1, nothing is said: `a` is the largest number there.
     pub envelope: [f32; 2],
@@ -88,12 +89,15 @@ impl LightTable {
     /// They are taken at 9 × 9 points of the cell, at which texels are interpolated as a lookup does, and are generous by a twentieth
     /// of what they differ there, and by what float16 rounds: along an edge of the cell the ratio of two interpolated numbers only
     /// grows or only falls, and its ends are among the points.
-    pub fn lobe_horizons(&self) -> Vec<LobeHorizon> {
+    ///
+    /// `lobes` is what passes are made with ([`crate::Quality::specular_lobes`]).
+    pub fn lobe_horizons(&self, lobes: SpecularLobes) -> Vec<LobeHorizon> {
         let cells = self.size as usize - 1;
         // Half-way between nodes of the roughness too: near a smooth lobe's edge a lobe between two is denser than both
         let columns = 2 * self.size - 1;
-        let peaks: Vec<Peak> =
-            (0..columns * self.size).map(|index| self.peak(index % columns, index / columns)).collect();
+        let peaks: Vec<Peak> = (0..columns * self.size)
+            .map(|index| self.peak(lobes, index % columns, index / columns))
+            .collect();
         let cell = |index: usize| {
             let (x, y) = (index % cells, index / cells);
             let rows = [y, y + 1].map(|row| row * columns as usize + 2 * x);
@@ -111,22 +115,23 @@ impl LightTable {
                     _ => [f32::MAX, 1.0],
                 },
                 schlick_albedo: (of(&|peak| peak.schlick) + ALBEDO_ERROR) as f32,
-                ..self.horizon(x, y)
+                ..self.horizon(lobes, x, y)
             }
         };
         (0..cells * cells).map(cell).collect()
     }
 
     /// What the envelope is made of at a node: `column` counts half-nodes.
-    fn peak(&self, column: u32, row: u32) -> Peak {
+    fn peak(&self, lobes: SpecularLobes, column: u32, row: u32) -> Peak {
         let last = f64::from(self.size - 1);
         let (u, v) = (0.5 * f64::from(column) / last, f64::from(row) / last);
         let cos_view = 1.0 - v * v;
         let found = self.lookup(u, cos_view);
         let frame = super::mirror_frame(cos_view);
         let mut scaled = [0.0_f64; WIDTHS];
-        for part in [0.0, 0.5, 1.0] {
-            let inverse = found.inverse * (1.0 - part) + found.schlick_inverse * part;
+        let between =
+            |[from, to]: [glam::DMat3; 2]| [0.0, 0.5, 1.0].map(|part| from * (1.0 - part) + to * part);
+        for inverse in lobe_ends(lobes, &found).flat_map(between) {
             // A density over the elevation's sine is this over the fourth power of the length in cosine space
             let height = glam::DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z).length();
             let scale = inverse.determinant() * height / std::f64::consts::PI;
@@ -154,18 +159,18 @@ impl LightTable {
         Peak { scaled, schlick: found.schlick }
     }
 
-    fn horizon(&self, x: usize, y: usize) -> LobeHorizon {
+    fn horizon(&self, lobes: SpecularLobes, x: usize, y: usize) -> LobeHorizon {
         let cells = f64::from(self.size - 1);
-        let samples: Vec<[f64; 3]> = (0..SAMPLES * SAMPLES)
+        let samples: Vec<Vec<[f64; 3]>> = (0..SAMPLES * SAMPLES)
             .map(|index| {
                 let along =
                     |node: usize, step: usize| (node as f64 + step as f64 / (SAMPLES - 1) as f64) / cells;
                 let (u, v) = (along(x, index % SAMPLES), along(y, index / SAMPLES).max(LEAST_SINE));
-                self.horizon_at(u, 1.0 - v * v)
+                self.horizon_at(lobes, u, 1.0 - v * v)
             })
             .collect();
         let generous = |place: usize, most: f64| {
-            let values = || samples.iter().map(|sample| sample[place]);
+            let values = || samples.iter().flatten().map(|sample| sample[place]);
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
             let by = 0.05 * (high - low) + most * high.abs().max(low.abs()) + 1e-6;
@@ -184,22 +189,33 @@ impl LightTable {
         }
     }
 
-    /// `q / sin` of both lobes, and the weight of Schlick's; not finite where a lobe has no horizon below its mirror direction.
-    fn horizon_at(&self, roughness: f64, cos_view: f64) -> [f64; 3] {
+    /// Of each lobe `q / sin` at either end of its reflectances, and the weight of Schlick's; not finite where a lobe has no horizon below
+    /// its mirror direction.
+    fn horizon_at(&self, lobes: SpecularLobes, roughness: f64, cos_view: f64) -> Vec<[f64; 3]> {
         let found = self.lookup(roughness, cos_view);
         let sine = (1.0 - cos_view * cos_view).sqrt();
         let frame = super::mirror_frame(cos_view);
-        // The last row, across the mirror direction and along it. Of both matrices the middle entry is 1
-        let ends = |inverse: glam::DMat3| {
+        // The last row, across the mirror direction and along it. Of all matrices the middle entry is 1
+        let row = |inverse: glam::DMat3| {
             let row = glam::DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z);
             (row.dot(frame.x_axis), row.dot(frame.z_axis))
         };
         let ratio =
             |(across, along): (f64, f64)| if along > 0.0 { across / along / sine } else { f64::INFINITY };
-        let (lobe, schlick) = (ends(found.inverse), ends(found.schlick_inverse));
-        let weight = found.schlick * schlick.1 / (found.albedo * lobe.1);
-        [ratio(lobe), ratio(schlick), if weight >= 0.0 { weight } else { f64::INFINITY }]
+        let of_lobe = |ends: [glam::DMat3; 2]| {
+            let [lobe, schlick] = ends.map(row);
+            let weight = found.schlick * schlick.1 / (found.albedo * lobe.1);
+            [ratio(lobe), ratio(schlick), if weight >= 0.0 { weight } else { f64::INFINITY }]
+        };
+        lobe_ends(lobes, &found).map(of_lobe).collect()
     }
+}
+
+/// The matrices of each lobe at either end of its reflectances. A coat has one lobe where the surface has two.
+fn lobe_ends(lobes: SpecularLobes, found: &TableSample) -> impl Iterator<Item = [glam::DMat3; 2]> + use<> {
+    let pairs = found.pairs.filter(|_| lobes == SpecularLobes::Two);
+    let of_pairs = pairs.into_iter().flat_map(|(inverses, _)| inverses.map(|inverse| [inverse; 2]));
+    std::iter::once([found.inverse, found.schlick_inverse]).chain(of_pairs)
 }
 
 /// The direction that a transform into cosine space stretches least, above the lobe's horizon. `None` if it has no inverse.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::SpecularLobes;
 
 fn table(edit: impl Fn(usize, &mut [f32; 4], &mut [f32; 2])) -> Result<LightTable, TableError> {
     let mut matrix = vec![[1.0, 0.0, 0.0, 1.0]; 9];
@@ -126,18 +127,81 @@ fn one_matrix_serves_both_lobes() {
     assert_eq!(sample.inverse, sample.schlick_inverse);
 }
 
+/// Two matrices that can be told apart, a tenth more from node to node, and shares.
+fn pairs() -> LobePairs {
+    let matrix = |first: f32| (0..9).map(|i| [first + 0.1 * i as f32, 0.0, 0.0, 1.0]).collect();
+    LobePairs {
+        matrices: [matrix(1.0), matrix(2.0)],
+        second_shares: (0..9).map(|i| [0.1 * i as f32, 0.05 * i as f32]).collect(),
+    }
+}
+
 #[test]
 fn layers_come_in_the_order_of_the_image() {
-    let texels = two_matrices().texels();
-    assert_eq!(texels.len(), 27);
+    let texels = two_matrices().with_pairs(pairs()).unwrap().texels();
+    assert_eq!(texels.len(), LAYERS as usize * 9);
     assert_eq!(
         [texels[0], texels[9], texels[18]],
         [[0.8, -0.1, 0.3, 1.5], [0.6, 0.2, 0.0, 0.0], [0.4, 0.1, -0.2, 0.7]]
     );
-    // A table of one matrix has it twice
+    assert_eq!([texels[27][0], texels[36][0]], [1.0, 2.0]);
+    assert_eq!(texels[45 + 6][..2], [0.6, 0.3], "the second lobe's shares");
+    // A table of one matrix has it everywhere, and no second lobe
     let texels = table(|_, _, _| {}).unwrap().texels();
-    assert_eq!(texels.len(), 27);
-    assert_eq!(texels[..9], texels[18..]);
+    assert!((2..5).all(|layer| texels[..9] == texels[9 * layer..9 * (layer + 1)]));
+    assert!(texels[45..].iter().all(|texel| texel[0] == 0.0));
+}
+
+#[test]
+fn what_each_of_two_lobes_reflects_is_linear_in_the_reflectance() {
+    let table = two_matrices().with_pairs(pairs()).unwrap();
+    let (roughness, cos_view) = LightTable::node(3, 1, 1);
+    let sample = table.lookup(roughness, cos_view);
+    let (inverses, shares) = sample.pairs.unwrap();
+    assert!((shares[0] - 0.4).abs() < 1e-6 && (shares[1] - 0.2).abs() < 1e-6);
+    let f0 = DVec3::new(1.0, DIELECTRIC_F0, 0.5 * (1.0 + DIELECTRIC_F0));
+    let lobes = sample.lobes(SpecularLobes::Two, f0, 1.0);
+    assert_eq!(lobes.map(|(inverse, _)| inverse), inverses);
+    let whole = lobes[0].1 + lobes[1].1;
+    for channel in 0..3 {
+        assert!((whole[channel] - sample.specular_albedo(f0[channel], 1.0)).abs() < 1e-12);
+    }
+    let second = lobes[1].1;
+    assert!((second.x - shares[0] * whole.x).abs() < 1e-12 && (second.y - shares[1] * whole.y).abs() < 1e-12);
+    assert!((second.z - 0.5 * (second.x + second.y)).abs() < 1e-12);
+    // Without a grazing part there is the metal's, scaled
+    let plain = sample.lobes(SpecularLobes::Two, DVec3::splat(0.3), 0.3)[1].1;
+    assert!((plain - DVec3::splat(0.3 * second.x)).abs().max_element() < 1e-12, "{plain}");
+    // One lobe
+    let [(inverse, albedo), (_, none)] = sample.lobes(SpecularLobes::One, f0, 1.0);
+    assert_eq!((albedo, none), (whole, DVec3::ZERO));
+    assert_eq!(inverse, sample.inverse_by_f0(f0.element_sum() / 3.0, 1.0));
+    // What a table without pairs uploads: a lobe for F0 and one for what Schlick's term adds
+    let (one, sample) = (two_matrices(), two_matrices().lookup(roughness, cos_view));
+    let shares = one.texels()[45 + 4].map(f64::from);
+    let sample = TableSample { pairs: Some((inverses, [shares[0], shares[1]])), ..sample };
+    for f0 in [0.02, 0.1, 0.6, 1.0] {
+        let second = sample.lobes(SpecularLobes::Two, DVec3::splat(f0), 1.0)[1].1;
+        assert!((second.x - (1.0 - f0) * sample.schlick).abs() < 1e-6, "{f0}");
+    }
+}
+
+#[test]
+fn bad_pairs_are_refused_with_their_place() {
+    let with = |edit: fn(&mut LobePairs)| {
+        let mut pairs = pairs();
+        edit(&mut pairs);
+        two_matrices().with_pairs(pairs).unwrap_err().to_string()
+    };
+    let message = with(|pairs| pairs.matrices[1][5][2] = f32::NAN);
+    assert_eq!(message, "second matrix: texel (2, 1) channel 2 is NaN, not a finite number");
+    assert!(
+        with(|pairs| pairs.matrices[0][0][3] = -1.0).starts_with("first matrix: texel (0, 0) is singular")
+    );
+    assert!(with(|pairs| pairs.matrices[1].truncate(1)).starts_with("second matrix: 1 texels"));
+    let message = with(|pairs| pairs.second_shares[4][1] = 1.5);
+    assert_eq!(message, "second shares: texel (1, 1) is 1.5; must be in [0, 1]");
+    assert!(with(|pairs| pairs.second_shares.truncate(2)).starts_with("second shares: 2 texels"));
 }
 
 #[test]

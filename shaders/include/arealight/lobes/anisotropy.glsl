@@ -113,16 +113,16 @@ vec2 arealight_surface_axis(ArealightFrame frame, vec3 tangent) {
 
 // The lobes of a distribution that is stretched along a tangent, as ArealightTableSample is of isotropic ones.
 struct ArealightStretchedSample {
-    mat3 space;                 // of f cos, from the shading frame
-    mat3 schlick_space;         // of f cos (1 - cos theta_vh)^5; may be mixed with the first
-    ArealightTableSample table; // its albedos
+    mat3 space;                 // of f cos, from the shading frame, or of the first of two lobes
+    mat3 schlick_space;         // of f cos (1 - cos theta_vh)^5, which may be mixed with the first, or of the second of two lobes
+    ArealightTableSample table; // its albedos and the second lobe's shares
 };
 
 // What the table or the formula holds for a roughness at a view.
-ArealightTableSample arealight_axis_sample(ArealightFrame frame, ArealightAxisView view, float roughness) {
+ArealightTableSample arealight_axis_sample(ArealightFrame frame, ArealightAxisView view, float roughness, bool has_two_lobes) {
     frame.sin_view = view.sin_view;
     frame.cos_view = view.cos_view;
-    return arealight_specular_sample(frame, roughness);
+    return arealight_specular_sample(frame, roughness, has_two_lobes);
 }
 
 // The space of a lobe, from the shading frame: `texel` and `alpha` are of the isotropic lobe (arealight_table_space), `map` is from the
@@ -150,11 +150,8 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     float lobe_roughness = most * sqrt(sqrt(ratio));
     float lobe_alpha = lobe_roughness * lobe_roughness;
     ArealightAxisView lobe_view = arealight_stretched_view(view, alpha / lobe_alpha);
-    ArealightAxisView schlick_view = arealight_stretched_view(view, alpha / mean);
     mat3 lobe_map = arealight_isotropic_map(view, lobe_view, alpha, lobe_alpha, mean);
-    mat3 schlick_map = arealight_isotropic_map(view, schlick_view, alpha, mean, mean);
-    ArealightTableSample lobe = arealight_axis_sample(frame, lobe_view, lobe_roughness);
-    ArealightTableSample schlick_lobe = arealight_axis_sample(frame, schlick_view, mean_roughness);
+    ArealightTableSample lobe = arealight_axis_sample(frame, lobe_view, lobe_roughness, AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 
     // Albedos, from the lobe of the mean square at the view that it sees, and from that of the view's azimuth
     vec2 weights = view.azimuth * view.azimuth * (view.sin_view * view.sin_view) + vec2(0.5 * AREALIGHT_AZIMUTH_START);
@@ -164,26 +161,27 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     ArealightAxisView root_view = arealight_stretched_view(view, alpha / (root_roughness * root_roughness));
 
     ArealightStretchedSample result;
-    result.table = arealight_axis_sample(frame, root_view, root_roughness);
-    result.table.schlick = min(arealight_axis_sample(frame, view, azimuth_roughness).schlick, result.table.albedo);
-    result.space = arealight_anisotropic_space(frame, lobe.matrix, lobe.alpha, lobe_map, mean / lobe_alpha);
-    result.schlick_space = arealight_anisotropic_space(frame, schlick_lobe.schlick_matrix, schlick_lobe.alpha, schlick_map, 1.0);
+    result.table = arealight_axis_sample(frame, root_view, root_roughness, false);
+    result.table.schlick = min(arealight_axis_sample(frame, view, azimuth_roughness, false).schlick, result.table.albedo);
+    float scale = mean / lobe_alpha;
+    result.space = arealight_anisotropic_space(frame, lobe.matrix, lobe.alpha, lobe_map, scale);
+    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+        result.schlick_space = arealight_anisotropic_space(frame, lobe.schlick_matrix, lobe.alpha, lobe_map, scale);
+        result.table.second_shares = lobe.second_shares;
+    } else {
+        ArealightAxisView schlick_view = arealight_stretched_view(view, alpha / mean);
+        mat3 schlick_map = arealight_isotropic_map(view, schlick_view, alpha, mean, mean);
+        ArealightTableSample schlick_lobe = arealight_axis_sample(frame, schlick_view, mean_roughness, false);
+        result.schlick_space = arealight_anisotropic_space(frame, schlick_lobe.schlick_matrix, schlick_lobe.alpha, schlick_map, 1.0);
+    }
     return result;
 }
 
-// As arealight_specular_lobe, arealight_specular_f0_lobe and arealight_specular_schlick_lobe.
+// As arealight_specular_lobe.
 ArealightLobe arealight_anisotropic_lobe(ArealightStretchedSample stretched, vec3 f0, float f90) {
     float share = arealight_schlick_share(stretched.table, f0, f90);
     mat3 space = stretched.space + share * (stretched.schlick_space - stretched.space);
     return arealight_lobe(space, arealight_specular_albedo(stretched.table, f0, f90));
-}
-
-ArealightLobe arealight_anisotropic_f0_lobe(ArealightStretchedSample stretched, vec3 f0) {
-    return arealight_lobe(stretched.space, f0 * stretched.table.albedo);
-}
-
-ArealightLobe arealight_anisotropic_schlick_lobe(ArealightStretchedSample stretched, vec3 f0, float f90) {
-    return arealight_lobe(stretched.schlick_space, (vec3(f90) - f0) * stretched.table.schlick);
 }
 
 #endif

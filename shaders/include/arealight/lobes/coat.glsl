@@ -23,7 +23,7 @@ ArealightFrame arealight_coat_frame(ArealightFrame frame, ArealightCoat coat, ve
 ArealightLayer arealight_coat_layer(ArealightFrame frame, ArealightCoat coat) {
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     ArealightFrame own = arealight_coat_frame(frame, coat, view);
-    ArealightTableSample table = arealight_specular_sample(own, coat.roughness);
+    ArealightTableSample table = arealight_specular_sample(own, coat.roughness, false);
     ArealightLobe lobe;
     float share;
     if (AREALIGHT_COATS_BY_ALBEDO) {

@@ -83,6 +83,7 @@ ArealightTableSample arealight_formula_sample(ArealightFrame frame, float roughn
     result.schlick_matrix = arealight_formula_cubic(AREALIGHT_FORMULA_SCHLICK_LOBE, alpha, cosine);
     result.matrix.y *= alpha;
     result.schlick_matrix.y *= alpha;
+    result.second_shares = vec2(0.0);
 
     // Albedo: smooth, less a dip where the cosine of the view is about alpha
     float x = cosine / alpha;

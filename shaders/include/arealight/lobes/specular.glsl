@@ -5,12 +5,12 @@
 #include "arealight/lobes/lobe.glsl"
 #include "arealight/lobes/table.glsl"
 
-// What the table holds for a view and a perceptual roughness, or what the formula gives in its place.
-ArealightTableSample arealight_specular_sample(ArealightFrame frame, float roughness) {
+// What the table holds for a view and a perceptual roughness, or what the formula gives in its place: one lobe, or two.
+ArealightTableSample arealight_specular_sample(ArealightFrame frame, float roughness, bool has_two_lobes) {
     if (AREALIGHT_USES_FORMULA) {
         return arealight_formula_sample(frame, roughness);
     }
-    return arealight_table_lookup(frame, roughness);
+    return arealight_table_lookup(frame, roughness, has_two_lobes);
 }
 
 ArealightLobe arealight_table_lobe(ArealightFrame frame, vec4 texel, float alpha, vec3 albedo) {
@@ -27,16 +27,6 @@ vec3 arealight_specular_albedo(ArealightTableSample table, vec3 f0, float f90) {
 ArealightLobe arealight_specular_lobe(ArealightFrame frame, ArealightTableSample table, vec3 f0, float f90) {
     vec4 texel = mix(table.matrix, table.schlick_matrix, arealight_schlick_share(table, f0, f90));
     return arealight_table_lobe(frame, texel, table.alpha, arealight_specular_albedo(table, f0, f90));
-}
-
-// The same in two lobes, each exact in the reflectance: of f0, and of what grows with (1 - cos)^5. Where f90 is less than f0
-// the second one's albedo is negative; the sum of what both reflect is not.
-ArealightLobe arealight_specular_f0_lobe(ArealightFrame frame, ArealightTableSample table, vec3 f0) {
-    return arealight_table_lobe(frame, table.matrix, table.alpha, f0 * table.albedo);
-}
-
-ArealightLobe arealight_specular_schlick_lobe(ArealightFrame frame, ArealightTableSample table, vec3 f0, float f90) {
-    return arealight_table_lobe(frame, table.schlick_matrix, table.alpha, (vec3(f90) - f0) * table.schlick);
 }
 
 #endif

@@ -4,8 +4,9 @@
 #include "arealight/surface.glsl"
 
 // The host's bridge to the fitted table: texel `texel` (x roughness, y view angle) of layer 0 (matrix of the lobe without
-// Fresnel term), layer 1 (magnitudes; their third channel says how much of arealight_ggx_grazing_dip is in the first two)
-// or layer 2 (matrix of the lobe of Schlick's weight; layer 0 again in a table of one matrix), all four channels,
+// Fresnel term), layer 1 (magnitudes; their third channel says how much of arealight_ggx_grazing_dip is in the first two),
+// layer 2 (matrix of the lobe of Schlick's weight; layer 0 again in a table of one matrix), or, with AREALIGHT_TWO_SPECULAR_LOBES alone,
+// layers 3 and 4 (matrices of the first and the second lobe) and 5 (the second one's shares); all four channels,
 // unfiltered, in float32 or float16. Texels outside are never asked for.
 vec4 arealight_bridge_table(int layer, ivec2 texel);
 // Nodes a side of the table, from 2 on.
@@ -13,12 +14,16 @@ int arealight_bridge_table_size();
 
 // What the table holds for a roughness and a view.
 struct ArealightTableSample {
-    vec4 matrix;         // of f cos; see arealight_table_space
-    vec4 schlick_matrix; // of f cos (1 - cos theta_vh)^5
+    vec4 matrix;         // of f cos, or of the first of two lobes; see arealight_table_space
+    vec4 schlick_matrix; // of f cos (1 - cos theta_vh)^5, or of the second of two lobes
+    vec2 second_shares;  // of two lobes the second one's share of the energy, at reflectances of 1 and AREALIGHT_DIELECTRIC_F0
     float albedo;        // integral of f cos over the hemisphere, without Fresnel term, in [0, 1]
     float schlick;       // integral of f cos (1 - cos theta_vh)^5, in [0, 1]
     float alpha;         // roughness^2, at least AREALIGHT_MIN_ALPHA
 };
+
+// The reflectance at normal incidence, with F90 = 1, of the second of the shares in layer 5.
+const float AREALIGHT_DIELECTRIC_F0 = 0.02;
 
 // The bilinear mean of four texels around `coordinate`, which is in nodes: 0 to size - 1.
 vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
@@ -50,13 +55,13 @@ vec2 arealight_ggx_grazing_dip(float roughness, float cos_view) {
                 ((dip + halted) * below - 0.7329) * schlick_weight);
 }
 
-// The table at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01). Source: Heitz et
+// The table at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01), of one lobe or of two. Source: Heitz et
 // al. 2016, section 4. Error against the float64 twin, LightTable::lookup: 4e-7 of the largest entry, and what
 // moving both axes by 3 x 2^-24 changes; together 1.3e-6 for the matrices. Albedos follow the view's cosine within alpha of
 // the horizon, where an error of it counts 0.3 / alpha times.
 // Against the truth, GGX's albedo is within 1.5e-3 and that of Schlick's weight within 2e-3, with 64 nodes a side, at every
 // roughness and view.
-ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness) {
+ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness, bool has_two_lobes) {
     roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
 
     // Axes: roughness and sqrt(1 - cos), the latter without cancellation near the normal
@@ -67,8 +72,9 @@ ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughnes
     magnitude.xy -= magnitude.z * arealight_ggx_grazing_dip(roughness, frame.cos_view);
 
     ArealightTableSample result;
-    result.matrix = arealight_table_bilinear(0, coordinate, size);
-    result.schlick_matrix = arealight_table_bilinear(2, coordinate, size);
+    result.matrix = arealight_table_bilinear(has_two_lobes ? 3 : 0, coordinate, size);
+    result.schlick_matrix = arealight_table_bilinear(has_two_lobes ? 4 : 2, coordinate, size);
+    result.second_shares = has_two_lobes ? arealight_table_bilinear(5, coordinate, size).xy : vec2(0.0);
     result.albedo = clamp(magnitude.x, 0.0, 1.0);
     result.schlick = clamp(magnitude.y, 0.0, result.albedo);
     result.alpha = roughness * roughness;
@@ -82,6 +88,16 @@ float arealight_schlick_share(ArealightTableSample table, vec3 f0, float f90) {
     float lobe = mean * table.albedo;
     float schlick = (f90 - mean) * table.schlick;
     return schlick > 0.0 && lobe >= 0.0 ? schlick / (lobe + schlick) : 0.0;
+}
+
+// What the second of two lobes reflects of light from everywhere, per channel, within [0, `albedo`], which is that of both: so much of a
+// reflectance of 1 and so much of AREALIGHT_DIELECTRIC_F0 as f0 and f90 are made of. TableSample::lobes.
+vec3 arealight_second_albedo(ArealightTableSample table, vec3 f0, float f90, vec3 albedo) {
+    vec3 dielectric = (vec3(f90) - f0) * (1.0 / (1.0 - AREALIGHT_DIELECTRIC_F0));
+    vec3 metal = f0 - AREALIGHT_DIELECTRIC_F0 * dielectric;
+    float dielectric_albedo = mix(table.schlick, table.albedo, AREALIGHT_DIELECTRIC_F0);
+    vec3 second = metal * (table.albedo * table.second_shares.x) + dielectric * (dielectric_albedo * table.second_shares.y);
+    return clamp(second, vec3(0.0), albedo);
 }
 
 // The space of a lobe of the table, from the shading frame.

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::output::{self, print};
 use crate::quality::QualityArguments;
 use crate::{gpu, progress, visible};
-use arealight::{Footprint, FormFactor, Fresnel, Quality};
+use arealight::{Footprint, FormFactor, Quality, SpecularLobes};
 use arealight_cases::answers::{Answer, read_answers, write_answers};
 use arealight_cases::cases::{Case, CaseError, CaseShape, ShapeCase, SupportedCase, read_cases};
 use arealight_cases::images::Images;
@@ -200,7 +200,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     // The most precise levels, unless others are to be seen
     let precise = Quality {
         form_factor: FormFactor::Difference,
-        fresnel: Fresnel::Split,
+        specular_lobes: SpecularLobes::Two,
         footprint: Footprint::Split,
         ..Quality::default()
     };

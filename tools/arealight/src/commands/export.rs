@@ -7,6 +7,7 @@ mod manifest;
 use crate::failure::Failure;
 use crate::output::print;
 use arealight::kernels;
+use arealight::table::LAYERS;
 use arealight_table::{Precision, Target, ggx_file};
 use folder::{Folder, Plan};
 use serde_json::json;
@@ -83,7 +84,8 @@ fn files(arguments: &Arguments) -> Result<Vec<File>, Failure> {
     ] {
         let bytes = table.write(target).map_err(|error| Failure::input(&arguments.folder, error))?;
         let size = table.table.size();
-        let content = format!("the built-in table of GGX: three layers of {size} x {size} texels, {floats}");
+        let content =
+            format!("the built-in table of GGX: {LAYERS} layers of {size} x {size} texels, {floats}");
         files.push(File { path: format!("tables/{name}"), bytes, content });
     }
     for kernel in kernels::ALL {

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, print};
 use crate::progress;
-use arealight::{Fresnel, Horizon, LightTable, TableSample};
+use arealight::{Horizon, LightTable, SpecularLobes, TableSample};
 use arealight_fit::report::{
     COUNT, Case, Errors, Level, METALS, PUBLISHED, SEED, cases, measure_lookup, measure_lookup_colour,
 };
@@ -18,6 +18,7 @@ use std::time::Instant;
 
 /// Fit a light table to GGX, and measure it.
 #[derive(clap::Args)]
+#[expect(clippy::struct_excessive_bools, reason = "they are flags of a command")]
 pub struct Arguments {
     /// Where the table goes; without it the table is only fitted, and measured with --report.
     #[arg(short, long, value_name = "FILE.exr")]
@@ -28,6 +29,9 @@ pub struct Arguments {
     /// Two matrices, one for the lobe of F0 and one for that of Schlick's weight; or one for all reflectances.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     matrices: u8,
+    /// Fit no pairs of lobes, which are for `--specular-lobes two` and take twice as long as the rest.
+    #[arg(long)]
+    no_pairs: bool,
     /// Fit a formula to the table as well, and print its coefficients as Rust and GLSL.
     #[arg(long)]
     formula: bool,
@@ -47,11 +51,11 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let output = arguments.output.as_deref().map(|path| Ok((path, format(path)?))).transpose()?;
     output.map_or(Ok(()), |(path, _)| output::check(path))?;
     // Fit
-    let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::Split };
-    let settings = Settings { size: arguments.size, aim };
+    let aim = if arguments.matrices == 1 { Aim::one_for_all() } else { Aim::ByF0 };
+    let settings = Settings { size: arguments.size, aim, pairs: !arguments.no_pairs };
     let bar = progress::bar(settings.steps(), "steps");
     let start = Instant::now();
-    let table = arealight_fit::fit(&GgxBrdf, &settings, &|_, _| bar.inc(1));
+    let table = arealight_fit::fit(&GgxBrdf, &settings, &|done, _| bar.set_position(done));
     let seconds = start.elapsed().as_secs_f64();
     bar.finish_and_clear();
     let refused = |error: FitError| Failure::Argument { argument: "--size", message: error.to_string() };
@@ -83,9 +87,9 @@ struct Horizons {
 
 /// The errors at one horizon level.
 struct Comparison {
-    by_f0: Vec<Errors>,
-    split: Vec<Errors>,
-    /// By F0 and split, a metal of [`METALS`] a line.
+    one: Vec<Errors>,
+    two: Vec<Errors>,
+    /// By one lobe and by two, a metal of [`METALS`] a line.
     metals: Vec<[Errors; 2]>,
 }
 
@@ -144,17 +148,18 @@ impl Horizons {
 
 impl Comparison {
     fn of(lookup: Lookup, horizon: Horizon, cases: &[Case]) -> Self {
-        let levels = [Fresnel::ByF0, Fresnel::Split].map(|fresnel| Level { fresnel, horizon });
-        let [by_f0, split] = levels.map(|level| measure_lookup(lookup, level, cases));
+        let levels =
+            [SpecularLobes::One, SpecularLobes::Two].map(|specular_lobes| Level { specular_lobes, horizon });
+        let [one, two] = levels.map(|level| measure_lookup(lookup, level, cases));
         let metal = |&(_, f0): &(_, _)| levels.map(|level| measure_lookup_colour(lookup, level, f0, cases));
-        Self { by_f0, split, metals: METALS.iter().map(metal).collect() }
+        Self { one, two, metals: METALS.iter().map(metal).collect() }
     }
 
     /// The errors beside those of the published table, a reflectance a line.
     fn to_text(&self) -> String {
         let mut text = format!(
             "{:>6}  {:^24}  {:^24}  {:^24}\n{:>6}",
-            "", "by F0, one integral", "split, two integrals", "published, 64 x 64", "F0"
+            "", "one lobe", "two lobes", "published, 64 x 64", "F0"
         );
         for _ in 0..3 {
             let _ = write!(text, "  {:>8} {:>7} {:>7}", "mean", "95 %", "max");
@@ -164,9 +169,9 @@ impl Comparison {
             let (mean, percentile_95, max) = (errors.mean, errors.percentile_95, errors.max);
             let _ = write!(text, "  {mean:>8.5} {percentile_95:>7.4} {max:>7.3}");
         };
-        for ((by_f0, split), published) in self.by_f0.iter().zip(&self.split).zip(&PUBLISHED) {
-            let _ = write!(text, "{:>6}", by_f0.f0);
-            for errors in [by_f0, split, published] {
+        for ((one, two), published) in self.one.iter().zip(&self.two).zip(&PUBLISHED) {
+            let _ = write!(text, "{:>6}", one.f0);
+            for errors in [one, two, published] {
                 columns(&mut text, errors);
             }
             text.push('\n');
@@ -183,16 +188,16 @@ impl Comparison {
 
     fn to_json(&self) -> Value {
         let errors = |e: &Errors| json!({ "mean": e.mean, "percentile_95": e.percentile_95, "max": e.max });
-        let grey = self.by_f0.iter().zip(&self.split).zip(&PUBLISHED).map(|((by_f0, split), published)| {
+        let grey = self.one.iter().zip(&self.two).zip(&PUBLISHED).map(|((one, two), published)| {
             json!({
-                "f0": by_f0.f0,
-                "by_f0": errors(by_f0),
-                "split": errors(split),
+                "f0": one.f0,
+                "one_lobe": errors(one),
+                "two_lobes": errors(two),
                 "published": errors(published),
             })
         });
-        let metals = METALS.iter().zip(&self.metals).map(|((name, f0), [by_f0, split])| {
-            json!({ "metal": name, "f0": f0.to_array(), "by_f0": errors(by_f0), "split": errors(split) })
+        let metals = METALS.iter().zip(&self.metals).map(|((name, f0), [one, two])| {
+            json!({ "metal": name, "f0": f0.to_array(), "one_lobe": errors(one), "two_lobes": errors(two) })
         });
         grey.chain(metals).collect()
     }
@@ -262,6 +267,7 @@ mod tests {
         Arguments {
             output: Some("a.exr".into()),
             size: 2,
+            no_pairs: false,
             matrices: 2,
             formula: true,
             report: true,
@@ -272,7 +278,7 @@ mod tests {
     fn comparison() -> Comparison {
         let published = PUBLISHED.to_vec();
         let metals = vec![[PUBLISHED[0], PUBLISHED[6]]; METALS.len()];
-        Comparison { by_f0: published.clone(), split: published, metals }
+        Comparison { one: published.clone(), two: published, metals }
     }
 
     #[test]

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::output::{self, print};
 use crate::progress;
 use crate::quality::Parts;
-use arealight::{Fresnel, LightTable};
+use arealight::LightTable;
+use arealight::SpecularLobes;
 use arealight_table::TableFile;
 use channels::Channel;
 use errors::{CELLS, ErrorMap, Source, Subject};
@@ -37,10 +38,10 @@ pub struct Arguments {
     /// The reflectance at normal incidence of the lobes in the picture, 0 to 1.
     #[arg(long, value_name = "F0", default_value_t = 1.0)]
     f0: f64,
-    /// How Schlick's Fresnel term enters the lobes in the picture.
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = Parts::ByF0)]
-    fresnel: Parts,
-    /// Measure the errors of the table, of the table-free formula and of other tables (by F0) over roughness and view
+    /// How many lobes stand for the specular one in the picture.
+    #[arg(long, value_enum, value_name = "COUNT", default_value_t = Parts::One)]
+    specular_lobes: Parts,
+    /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over roughness and view
     /// angle, and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
     errors: Option<Vec<PathBuf>>,
@@ -53,7 +54,7 @@ pub struct Arguments {
     entries: bool,
     /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more than the
     /// one before. Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
-    #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "fresnel"])]
+    #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "specular_lobes"])]
     pyramid: Option<PathBuf>,
     /// Which of the scene's light textures --pyramid draws, from 0.
     #[arg(long, value_name = "INDEX", default_value_t = 0, requires = "pyramid")]
@@ -121,11 +122,11 @@ impl Arguments {
     }
 
     fn material(&self) -> Material {
-        let fresnel = match self.fresnel {
-            Parts::ByF0 => Fresnel::ByF0,
-            Parts::Split => Fresnel::Split,
+        let specular_lobes = match self.specular_lobes {
+            Parts::One => SpecularLobes::One,
+            Parts::Two => SpecularLobes::Two,
         };
-        Material { f0: self.f0, fresnel }
+        Material { f0: self.f0, specular_lobes }
     }
 }
 
@@ -136,15 +137,16 @@ fn load(path: &Path) -> Result<TableFile, Failure> {
 /// Maps the errors of a table in both levels, of the formula and of other tables, with a progress bar.
 fn measure(table: &LightTable, others: &[PathBuf], quads: u16) -> Result<Vec<ErrorMap>, Failure> {
     let loaded = others.iter().map(|path| load(path)).collect::<Result<Vec<_>, _>>()?;
-    let subject = |name: &str, lobes, fresnel| Subject { name: name.to_owned(), lobes, fresnel };
+    let subject =
+        |name: &str, lobes, specular_lobes| Subject { name: name.to_owned(), lobes, specular_lobes };
     let mut subjects = vec![
-        subject("table", Source::Table(table), Fresnel::ByF0),
-        subject("table", Source::Table(table), Fresnel::Split),
-        subject("formula", Source::Formula, Fresnel::ByF0),
+        subject("table", Source::Table(table), SpecularLobes::One),
+        subject("table", Source::Table(table), SpecularLobes::Two),
+        subject("formula", Source::Formula, SpecularLobes::One),
     ];
     subjects.extend(others.iter().zip(&loaded).map(|(path, file)| {
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
-        subject(&name, Source::Table(&file.table), Fresnel::ByF0)
+        subject(&name, Source::Table(&file.table), SpecularLobes::One)
     }));
     let bar = progress::bar((CELLS * CELLS) as u64, "cells");
     let maps = errors::measure(&subjects, usize::from(quads), &|| bar.inc(1));
@@ -241,7 +243,7 @@ impl Summary<'_> {
             let (roughness, view) = errors::middle(cell);
             json!({
                 "of": map.name,
-                "fresnel": map.level(),
+                "specular_lobes": map.level(),
                 "f0": map.f0,
                 "mean": map.mean(),
                 "largest": { "mean": most, "roughness": roughness, "view_degrees": view },
@@ -298,7 +300,7 @@ mod tests {
         let table = table();
         let mut cells = vec![1e-3; CELLS * CELLS];
         cells[CELLS - 1] = 0.5;
-        let map = ErrorMap { name: "b\u{1b}".into(), fresnel: Fresnel::Split, f0: 0.04, cells };
+        let map = ErrorMap { name: "b\u{1b}".into(), specular_lobes: SpecularLobes::Two, f0: 0.04, cells };
         let channels = Channel::all(&table);
         let maps = [map];
         let errors = Some(maps.as_slice());

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::output::{self, print};
 use crate::progress;
-use arealight::{Fresnel, Horizon, LightTable};
+use arealight::{Horizon, LightTable, SpecularLobes};
 use arealight_fit::report::{COUNT, Errors, Level, SEED, cases, measure};
 use arealight_fit::{Brdf, GgxBrdf};
 use arealight_table::{
@@ -28,7 +28,7 @@ enum Command {
 }
 
 /// Read a table in any format, and write it in the one that OUT's extension stands for: .exr (our own), .ktx2 and .dds
-/// (2D arrays of three layers, for engines), .h (a C array), .glsl (constants and the bridge, no texture).
+/// (2D arrays of six layers, for engines), .h (a C array), .glsl (constants and the bridge, no texture).
 #[derive(clap::Args)]
 struct Convert {
     /// The table: OpenEXR, KTX2 or DDS, told by content; or `built-in`.
@@ -144,8 +144,8 @@ fn measured(table: &LightTable) -> Result<String, Failure> {
     bar.finish_and_clear();
     let mut text =
         format!("mean absolute error of the reflected radiance over {COUNT} quads of unit radiance");
-    for (name, fresnel) in [("by F0", Fresnel::ByF0), ("split", Fresnel::Split)] {
-        let errors = measure(table, Level { fresnel, horizon: Horizon::Cosine }, &cases);
+    for (name, specular_lobes) in [("one lobe", SpecularLobes::One), ("two lobes", SpecularLobes::Two)] {
+        let errors = measure(table, Level { specular_lobes, horizon: Horizon::Cosine }, &cases);
         let at = |e: &Errors| format!("{:.2e} at F0 = {}", e.mean, e.f0);
         let _ = write!(text, "; {name}: {}", errors.iter().map(at).collect::<Vec<_>>().join(", "));
     }
@@ -166,6 +166,10 @@ impl Summary<'_> {
         1 + u32::from(self.file.table.schlick_matrix().is_some())
     }
 
+    fn has_pairs(&self) -> bool {
+        self.file.table.pairs().is_some()
+    }
+
     fn bits(&self) -> u32 {
         match self.target.precision() {
             Precision::Half => 16,
@@ -179,7 +183,12 @@ impl Summary<'_> {
         let mut text = format!(
             "wrote {}: {size} x {size} nodes, {}, {}-bit floats, {} bytes\n",
             self.arguments.output.display(),
-            if self.matrices() == 1 { "one matrix" } else { "two matrices" },
+            match (self.matrices(), self.has_pairs()) {
+                (1, false) => "one matrix",
+                (_, false) => "two matrices",
+                (1, true) => "one matrix and pairs of lobes",
+                (_, true) => "two matrices and pairs of lobes",
+            },
             self.bits(),
             self.bytes
         );
@@ -212,6 +221,7 @@ impl Summary<'_> {
             "made_by": table.description().made_by,
             "size": table.size(),
             "matrices": self.matrices(),
+            "pairs": self.has_pairs(),
             "bits": self.bits(),
             "bytes": self.bytes,
             "hash": hash(table),

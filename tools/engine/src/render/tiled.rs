@@ -123,7 +123,8 @@ impl SceneRenderer<'_> {
         // SAFETY: As in Engine::pass.
         let pass = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) }?;
         let pass = Kept::new(host, pass);
-        let lobe_horizons = engine.storage("lobe horizons", engine.lobe_horizons())?;
+        let lobe_horizons =
+            engine.storage("lobe horizons", engine.lobe_horizons(options.quality.specular_lobes))?;
         let tile_lists = engine.tile_lists(pass.tile_memory(self.size).expect("the pass has tiles"))?;
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.

@@ -141,7 +141,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
         (constant::OUTPUT, "OUTPUT"),
         (constant::HORIZON, "HORIZON"),
-        (constant::FRESNEL, "FRESNEL"),
+        (constant::SPECULAR_LOBES, "SPECULAR_LOBES"),
         (constant::LOBES, "LOBES"),
         (constant::FOOTPRINT, "FOOTPRINT"),
         (constant::RADIUS, "RADIUS"),

@@ -86,7 +86,7 @@ fn draw_legend(canvas: &mut Canvas, top: i32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use arealight::Fresnel;
+    use arealight::SpecularLobes;
 
     #[test]
     fn colours_are_those_of_the_decades() {
@@ -97,8 +97,12 @@ mod tests {
 
     #[test]
     fn long_names_are_cut() {
-        let map =
-            |name: &str| ErrorMap { name: name.into(), fresnel: Fresnel::Split, f0: 1.0, cells: vec![] };
+        let map = |name: &str| ErrorMap {
+            name: name.into(),
+            specular_lobes: SpecularLobes::Two,
+            f0: 1.0,
+            cells: vec![],
+        };
         assert_eq!(short(&map("formula")), "formula, split");
         assert_eq!(short(&map("a-very-long-name.exr")), "a-very-long-…, split");
     }

@@ -1,7 +1,7 @@
 //! How far the integrals of tables are from the truth, over roughness and view angle.
 
 use arealight::table::mirror_frame;
-use arealight::{Fresnel, Horizon, LightTable, TableSample};
+use arealight::{Horizon, LightTable, SpecularLobes, TableSample};
 use arealight_fit::report::{Case, Family, Level, Quad, integrate, measure_lookup, random_quads};
 use arealight_oracle::formula::ggx_formula;
 use glam::{DQuat, DVec3};
@@ -32,13 +32,13 @@ pub enum Source<'a> {
 pub struct Subject<'a> {
     pub name: String,
     pub lobes: Source<'a>,
-    pub fresnel: Fresnel,
+    pub specular_lobes: SpecularLobes,
 }
 
 /// Mean absolute errors over [`CELLS`] × [`CELLS`] roughnesses and view angles.
 pub struct ErrorMap {
     pub name: String,
-    pub fresnel: Fresnel,
+    pub specular_lobes: SpecularLobes,
     pub f0: f64,
     /// Row after row from the normal, from the least roughness.
     pub cells: Vec<f64>,
@@ -56,9 +56,9 @@ impl Source<'_> {
 impl ErrorMap {
     /// How the lobes were used, for people.
     pub fn level(&self) -> &'static str {
-        match self.fresnel {
-            Fresnel::ByF0 => "by F0",
-            Fresnel::Split => "split",
+        match self.specular_lobes {
+            SpecularLobes::One => "one lobe",
+            SpecularLobes::Two => "two lobes",
         }
     }
 
@@ -93,9 +93,9 @@ pub fn measure(subjects: &[Subject], quads: usize, progress: &(dyn Fn() + Sync))
     let labels = subjects.iter().flat_map(|subject| REFLECTANCES.map(|f0| (subject, f0)));
     labels
         .enumerate()
-        .map(|(map, (Subject { name, fresnel, .. }, f0))| {
+        .map(|(map, (Subject { name, specular_lobes, .. }, f0))| {
             let cells = cells.iter().map(|errors| errors[map]).collect();
-            ErrorMap { name: name.clone(), fresnel: *fresnel, f0, cells }
+            ErrorMap { name: name.clone(), specular_lobes: *specular_lobes, f0, cells }
         })
         .collect()
 }
@@ -107,8 +107,8 @@ fn measure_cell(subjects: &[Subject], quads: &[Quad], cell: usize) -> Vec<f64> {
     let aimed = quads.iter().map(|quad| aimed(quad, roughness, cos_view)).collect();
     let cases: Vec<Case> = integrate(aimed, &|| ());
     let mut means = Vec::with_capacity(subjects.len() * REFLECTANCES.len());
-    for Subject { lobes, fresnel, .. } in subjects {
-        let level = Level { fresnel: *fresnel, horizon: Horizon::Cosine };
+    for Subject { lobes, specular_lobes, .. } in subjects {
+        let level = Level { specular_lobes: *specular_lobes, horizon: Horizon::Cosine };
         let sample = lobes.lookup(roughness, cos_view);
         let errors = measure_lookup(|_, _| sample, level, &cases);
         means.extend(
@@ -165,19 +165,25 @@ mod tests {
     #[test]
     fn maps_agree_with_the_report() {
         let table = arealight_table::ggx();
-        let levels = [Fresnel::ByF0, Fresnel::Split];
-        let subjects =
-            levels.map(|fresnel| Subject { name: String::new(), lobes: Source::Table(&table), fresnel });
+        let levels = [SpecularLobes::One, SpecularLobes::Two];
+        let subjects = levels.map(|specular_lobes| Subject {
+            name: String::new(),
+            lobes: Source::Table(&table),
+            specular_lobes,
+        });
         let maps = measure(&subjects, 6, &|| ());
         let cases = arealight_fit::report::cases(3000, 1, &|| ());
-        for (map, fresnel) in maps.iter().zip(levels.into_iter().flat_map(|level| [level; 2])) {
-            assert_eq!((map.fresnel, map.cells.len()), (fresnel, CELLS * CELLS));
-            let report =
-                arealight_fit::report::measure(&table, Level { fresnel, horizon: Horizon::Cosine }, &cases);
+        for (map, specular_lobes) in maps.iter().zip(levels.into_iter().flat_map(|level| [level; 2])) {
+            assert_eq!((map.specular_lobes, map.cells.len()), (specular_lobes, CELLS * CELLS));
+            let report = arealight_fit::report::measure(
+                &table,
+                Level { specular_lobes, horizon: Horizon::Cosine },
+                &cases,
+            );
             let expected = report.iter().find(|errors| errors.f0 == map.f0).unwrap().mean;
             // Six quads stand for all: within a factor of three. A wrong view or roughness errs a hundredfold
             let ratio = map.mean() / expected;
-            assert!((1.0 / 3.0..3.0).contains(&ratio), "{fresnel:?} {}: {ratio}", map.f0);
+            assert!((1.0 / 3.0..3.0).contains(&ratio), "{specular_lobes:?} {}: {ratio}", map.f0);
             assert!(map.worst().1 > map.mean() && map.cells[map.worst().0] == map.worst().1);
         }
         // Two lobes are better than one for a dielectric, and the same for a metal

@@ -4,7 +4,8 @@
 
 use super::canvas::{Align, Canvas, LINE};
 use super::colour::{FAINT, INK, PAPER, diverging, viridis};
-use arealight::{Fresnel, LightTable, TableSample};
+use arealight::SpecularLobes;
+use arealight::{LightTable, TableSample};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use glam::{DMat3, DVec3};
@@ -39,7 +40,7 @@ struct Cell {
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
     pub f0: f64,
-    pub fresnel: Fresnel,
+    pub specular_lobes: SpecularLobes,
 }
 
 /// Draws the lobes of a table.
@@ -86,31 +87,26 @@ impl Cell {
 }
 
 impl Material {
-    /// The lobe that a table's sample makes: one between its two, or both.
+    /// The lobe that a table's sample makes, of one transformed cosine or of two.
     fn fitted(self, sample: &TableSample) -> Lobe {
-        let Self { f0, fresnel } = self;
-        match fresnel {
-            Fresnel::ByF0 => {
-                Lobe::transformed(sample.inverse_by_f0(f0, 1.0)).scaled(sample.specular_albedo(f0, 1.0))
-            }
-            Fresnel::Split => {
-                let mut lobe = Lobe::transformed(sample.inverse).scaled(f0 * sample.albedo);
-                let schlick = Lobe::transformed(sample.schlick_inverse).scaled((1.0 - f0) * sample.schlick);
-                for (value, more) in lobe.values.iter_mut().zip(schlick.values) {
-                    *value += more;
-                }
-                lobe
+        let Self { f0, specular_lobes } = self;
+        let mut sum = Lobe::sample(|_| 0.0);
+        for (inverse, albedo) in sample.lobes(specular_lobes, DVec3::splat(f0), 1.0) {
+            let part = Lobe::transformed(inverse).scaled(albedo.x);
+            for (value, more) in sum.values.iter_mut().zip(part.values) {
+                *value += more;
             }
         }
+        sum
     }
 
     /// For people.
     fn name(self) -> String {
-        let fresnel = match self.fresnel {
-            Fresnel::ByF0 => "one lobe, by F0",
-            Fresnel::Split => "two lobes, split",
+        let specular_lobes = match self.specular_lobes {
+            SpecularLobes::One => "one lobe",
+            SpecularLobes::Two => "two lobes",
         };
-        format!("F0 = {}, {fresnel}", self.f0)
+        format!("F0 = {}, {specular_lobes}", self.f0)
     }
 }
 
@@ -228,7 +224,7 @@ mod tests {
     #[test]
     fn a_fit_looks_like_its_brdf() {
         let table = arealight_table::ggx();
-        let metal = Material { f0: 1.0, fresnel: Fresnel::ByF0 };
+        let metal = Material { f0: 1.0, specular_lobes: SpecularLobes::One };
         // The colours' whole range
         assert!(worst(&table, (0.75, 0.8), metal) < FULL_ERROR);
         // And a table that is wrong does not
@@ -247,16 +243,16 @@ mod tests {
         let (matrix, magnitude) = (table.matrix().to_vec(), table.magnitude().to_vec());
         let first_only =
             LightTable::new(table.description().clone(), table.size(), matrix, magnitude).unwrap();
-        let worst = |table, f0, fresnel| worst(table, (0.75, 0.5), Material { f0, fresnel });
-        let [by_f0, split] = [Fresnel::ByF0, Fresnel::Split];
+        let worst = |table, f0, specular_lobes| worst(table, (0.75, 0.5), Material { f0, specular_lobes });
+        let [by_f0, split] = [SpecularLobes::One, SpecularLobes::Two];
         // A metal is of the first matrix alone, whatever the level
         let metal = worst(&first_only, 1.0, by_f0);
         assert_eq!([worst(&table, 1.0, by_f0), worst(&table, 1.0, split)], [metal; 2]);
         // No reflectance at all is of the second alone, but for rounding; and that is the better one
-        let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.0, fresnel));
+        let [one, two] = [by_f0, split].map(|specular_lobes| worst(&table, 0.0, specular_lobes));
         assert!((one - two).abs() < 1e-12 && two < worst(&first_only, 0.0, split), "{one} {two}");
         // Between them the levels differ, and are better than the first matrix alone
-        let [one, two] = [by_f0, split].map(|fresnel| worst(&table, 0.02, fresnel));
+        let [one, two] = [by_f0, split].map(|specular_lobes| worst(&table, 0.02, specular_lobes));
         assert!(two < one && one < worst(&first_only, 0.02, by_f0), "{one} {two}");
     }
 }
