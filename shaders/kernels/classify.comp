@@ -16,6 +16,7 @@ layout(constant_id = 5) const int SPECULAR_LOBES = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 14) const uint CULL = 0u;
+layout(constant_id = 19) const uint VIEW = 0u;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
@@ -36,6 +37,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "light_records.glsl"
 #include "tiles.glsl"
 #include "position.glsl"
+#include "view.glsl"
 
 const bool HAS_DIFFUSE = AREALIGHT_HAS_DIFFUSE;
 const bool HAS_GLOSSY = (EFFECTS & EFFECT_GLOSSY) != 0u;

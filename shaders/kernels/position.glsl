@@ -14,15 +14,20 @@ vec3 position_at_depth(ivec2 pixel, ivec2 size, float depth) {
     return homogeneous.xyz / homogeneous.w;
 }
 
-// The pixel's position relative to the origin; false where there is no surface.
-bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
-    vec4 texel = texelFetch(g_position, pixel, 0);
+// The position relative to the origin that a texel of the G-buffer holds for a pixel; false where there is no surface.
+bool load_position_of(ivec2 texel, ivec2 pixel, ivec2 size, out vec3 position) {
+    vec4 found = texelFetch(g_position, texel, 0);
     if (POSITION_SOURCE != POSITION_FROM_DEPTH) {
-        position = texel.xyz;
-        return texel.w != 0.0;
+        position = found.xyz;
+        return found.w != 0.0;
     }
-    position = position_at_depth(pixel, size, texel.x);
-    return texel.x > 0.0 && texel.x < 1.0;
+    position = position_at_depth(pixel, size, found.x);
+    return found.x > 0.0 && found.x < 1.0;
+}
+
+// Likewise, of the texel at the pixel's own place.
+bool load_position(ivec2 pixel, ivec2 size, out vec3 position) {
+    return load_position_of(pixel, pixel, size, position);
 }
 
 #endif

@@ -22,6 +22,7 @@ layout(constant_id = 11) const bool HAS_QUADS = true;
 layout(constant_id = 12) const uint CLASS = 3u;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 15) const int SHADOW_RAYS = 0;
+layout(constant_id = 19) const uint VIEW = 0u;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3

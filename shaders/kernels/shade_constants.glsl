@@ -4,7 +4,7 @@
 // The push constants of a frame, of the kernels shade and classify: arealight::gpu::ShadeConstants in Rust (a test compares them).
 layout(push_constant, std430) uniform ShadeConstants {
     mat4 position_from_clip;
-    vec3 camera;
+    vec3 camera; // or the direction to it
     uint light_count;
     uint shape_count;
     uint quad_count; // of the first lights: convex quads without an image
@@ -13,6 +13,7 @@ layout(push_constant, std430) uniform ShadeConstants {
     uvec2 size;
     uint horizon_cells;   // of tiles alone, as the next
     float cull_threshold;
+    uvec2 offset; // of the frame's rectangle in the radiance image
 } constants;
 
 #endif

@@ -10,7 +10,7 @@
 
 #include "pick_lights.glsl"
 #include "position.glsl"
-
+#include "view.glsl"
 
 // 1: the host's own shader says what part of each light arrives: from shadow maps, or from anything that it knows.
 #ifndef AREALIGHT_HOST_VISIBILITY
@@ -62,10 +62,10 @@ void shade_shape(inout PixelRadiance sum, ArealightPoint point, uint index) {
 
 PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
 #if AREALIGHT_HOST_VISIBILITY
-    visibility_pixel = pixel;
+    visibility_pixel = radiance_texel(pixel);
     visibility_position = position;
 #endif
-    ArealightPoint point = arealight_point(load_surface(pixel, position, constants.camera));
+    ArealightPoint point = arealight_point(load_seen_surface(g_buffer_texel(pixel), position));
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_QUADS) {
         for (uint index = 0u; index < list.quad_count; index++) {
@@ -94,7 +94,7 @@ void shade_pixel(ivec2 pixel, LightList list) {
         return;
     }
     vec3 position;
-    bool hit = load_position(pixel, size, position);
+    bool hit = load_position_of(g_buffer_texel(pixel), pixel, size, position);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_SHADOWS) {
         begin_picks(pixel);
@@ -105,7 +105,7 @@ void shade_pixel(ivec2 pixel, LightList list) {
     if (HAS_SHADOWS) {
         store_picks(pixel, size);
     }
-    store_radiance(pixel, hit, sum);
+    store_radiance(radiance_texel(pixel), hit, sum);
 }
 
 #endif

@@ -8,9 +8,10 @@ use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_LIGHT_POLYGON, AREALIGHT_WHOLE_SIZE, Arealight, ArealightBuffer,
     ArealightFrame, ArealightFunction, ArealightHost, ArealightImage, ArealightLight, ArealightLightSummary,
     ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
-    ArealightResult, ArealightSetLayout, ArealightUpload, arealight_create, arealight_destroy,
-    arealight_last_error, arealight_pack_lights, arealight_pass_create, arealight_pass_record,
-    arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory, arealight_table_upload,
+    ArealightResult, ArealightSetLayout, ArealightUpload, ArealightViewport, arealight_create,
+    arealight_destroy, arealight_last_error, arealight_pack_lights, arealight_pass_create,
+    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory,
+    arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use ash::vk::{self, Handle as _};
@@ -304,6 +305,8 @@ impl<'a> CLibrary<'a> {
             seed: 0,
             position_from_clip: null(),
             tile_lists: ArealightBuffer::default(),
+            viewport: ArealightViewport::default(),
+            offset: [0; 2],
         };
         let (set, _pool) = self.set(&set_layout(pass));
         // SAFETY: the set is new, and what it points to lives until the submission was waited for.

@@ -98,7 +98,7 @@
 // One integral a light and specular lobe.
 #define AREALIGHT_SPECULAR_LOBES_ONE 0
 
-// Two, at .4 to .6 times the error.
+// Two, at .6 to .8 times the error, exact in the reflectance and its colour.
 #define AREALIGHT_SPECULAR_LOBES_TWO 1
 
 // The glossy lobe is the table's.
@@ -121,6 +121,12 @@
 
 // It holds depth as stored; exactly 0 or 1 where there is no surface.
 #define AREALIGHT_POSITION_DEPTH 1
+
+// ArealightFrame.camera is the camera's position.
+#define AREALIGHT_CAMERA_PERSPECTIVE 0
+
+// It is the direction to the camera, of any length but 0: an orthographic one.
+#define AREALIGHT_CAMERA_ORTHOGRAPHIC 1
 
 // What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
 // F0 and F90.
@@ -428,6 +434,13 @@ typedef struct ArealightPassOptions {
     uint32_t tile_least_quads;
     // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
     uint32_t shadow_rays;
+    // One of AREALIGHT_CAMERA_*. Shadow rays are of perspective cameras.
+    uint32_t camera;
+    // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
+    uint32_t rectangle;
+    // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
+    // rays. 0 is 1.
+    uint32_t texels_per_pixel;
 } ArealightPassOptions;
 
 // What a descriptor set is made with.
@@ -517,13 +530,29 @@ typedef struct ArealightTileMemory {
     uint32_t reserved;
 } ArealightTileMemory;
 
+// The rectangle of a G-buffer's texels that clip space was drawn to: VkViewport.
+typedef struct ArealightViewport {
+    // Where x = -1 in clip space is, in texels.
+    float x;
+    // Where y = -1 in clip space is, in texels: with a negative height the lower edge.
+    float y;
+    // Above 0.
+    float width;
+    // Negative where y is up in clip space.
+    float height;
+    // The depth that is stored of depth 0 in clip space.
+    float min_depth;
+    // Likewise, of depth 1.
+    float max_depth;
+} ArealightViewport;
+
 // What differs from frame to frame.
 typedef struct ArealightFrame {
-    // Of the radiance image, in pixels; those of the G-buffer are of the same size.
+    // How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may be larger.
     uint32_t width;
     // Likewise.
     uint32_t height;
-    // The camera's position relative to the origin of positions and lights.
+    // The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it.
     float camera[3];
     // ArealightPackedLights.summary of the lights in the set's buffers.
     struct ArealightLightSummary lights;
@@ -534,6 +563,11 @@ typedef struct ArealightFrame {
     const float *position_from_clip;
     // With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     struct ArealightBuffer tile_lists;
+    // The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of the frame's pixels, y down. Only
+    // positions from depth, and a shadow's history, depend on it.
+    struct ArealightViewport viewport;
+    // With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
+    uint32_t offset[2];
 } ArealightFrame;
 
 // Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
@@ -995,7 +1029,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 60);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
@@ -1011,6 +1045,9 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_capacity) == 44);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_cull_threshold) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, tile_least_quads) == 52);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, shadow_rays) == 56);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, camera) == 60);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, rectangle) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, texels_per_pixel) == 68);
 AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
@@ -1071,7 +1108,14 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 216);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 232);
 AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 256);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 280);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 72);
+AREALIGHT_ASSERT(sizeof(ArealightViewport) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, x) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, y) == 4);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, width) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, height) == 12);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, min_depth) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightViewport, max_depth) == 20);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
@@ -1079,6 +1123,8 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, lights) == 20);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, seed) == 36);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, viewport) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, offset) == 96);
 AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);

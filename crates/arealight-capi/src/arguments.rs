@@ -59,6 +59,17 @@ pub fn refuse_null<const COUNT: usize>(handles: [(bool, &str); COUNT]) -> Result
     }
 }
 
+/// Refuses a field that has no meaning yet, unless it is 0: so that it can get one.
+///
+/// # Errors
+/// [`Failure`] names it.
+pub fn refuse_reserved(reserved: u32, field: &str) -> Result<(), Failure> {
+    match reserved {
+        0 => Ok(()),
+        other => Err(Failure::argument(format!("{field}: {other} must be 0"))),
+    }
+}
+
 fn check<T>(pointer: *const T, argument: &str) -> Result<(), Failure> {
     refuse_null([(pointer.is_null(), argument)])?;
     if !pointer.is_aligned() {

@@ -72,6 +72,11 @@ pub const AREALIGHT_POSITION_IMAGE: u32 = 0;
 /// It holds depth as stored; exactly 0 or 1 where there is no surface.
 pub const AREALIGHT_POSITION_DEPTH: u32 = 1;
 
+/// ArealightFrame.camera is the camera's position.
+pub const AREALIGHT_CAMERA_PERSPECTIVE: u32 = 0;
+/// It is the direction to the camera, of any length but 0: an orthographic one.
+pub const AREALIGHT_CAMERA_ORTHOGRAPHIC: u32 = 1;
+
 /// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
 /// F0 and F90.
 pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;

@@ -104,6 +104,7 @@ unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableF
     }
     // SAFETY: the same contract.
     let table = unsafe { arguments::read(table, "table") }?;
+    arguments::refuse_reserved(table.reserved, "table.reserved")?;
     let format = match table.format {
         AREALIGHT_TABLE_RGBA32F => TableFormat::Rgba32Float,
         AREALIGHT_TABLE_RGBA16F => TableFormat::Rgba16Float,

@@ -54,8 +54,19 @@ impl From<Error> for Failure {
             Error::Light(_) => ArealightResult::ErrorLight,
             _ => ArealightResult::ErrorArgument,
         };
-        Self::new(result, error.to_string())
+        Self::new(result, in_words_of_c(&error.to_string()))
     }
+}
+
+/// A message of the recorder with the names that the header has.
+fn in_words_of_c(message: &str) -> String {
+    let names = [
+        ("ShadeOptions::MOST_SHADOW_RAYS", "4"),
+        ("ShadeOptions::reads_", "ArealightResources."),
+        ("ShadeOptions::", "ArealightPassOptions."),
+        ("ShadowOptions::", "ArealightShadowOptions."),
+    ];
+    names.into_iter().fold(message.to_owned(), |text, (rust, c)| text.replace(rust, c))
 }
 
 impl From<arealight::LightError> for Failure {
@@ -106,6 +117,18 @@ mod tests {
     fn last() -> String {
         // SAFETY: the message is this thread's, and lives until the next failure.
         unsafe { CStr::from_ptr(arealight_last_error()) }.to_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn messages_have_the_headers_names() {
+        let failure = |message: &str| {
+            Failure::from(Error::InvalidArgument { field: "offset", message: message.into() }).message
+        };
+        let text = failure(
+            "made without ShadeOptions::rectangle; see ShadeOptions::reads_coat and ShadowOptions::output",
+        );
+        assert!(text.contains("ArealightPassOptions.rectangle; see ArealightResources.coat and ArealightShadowOptions.output"), "{text}");
+        assert!(!text.contains("::"), "{text}");
     }
 
     #[test]

@@ -142,6 +142,7 @@ unsafe fn read_light(index: usize, light: &ArealightLight) -> Result<Light, Fail
     let wrong = |name, number, known| Failure::argument(format!("{}: {number} is no {known}", field(name)));
     let [center, axis_u, axis_v] = [light.center, light.axis_u, light.axis_v].map(DVec3::from_array);
     let radius = light.radius;
+    arguments::refuse_reserved(light.reserved, &field("reserved"))?;
     // SAFETY: the same contract, here and below.
     let outlines = || unsafe { read_outlines(light, &field) };
     let (mut uvs, mut holes) = (vec![], vec![]);

@@ -5,13 +5,13 @@ use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{read_effects, read_summary};
 use crate::types::{
     ArealightBuffer, ArealightFrame, ArealightImage, ArealightPassOptions, ArealightResources,
-    ArealightSetLayout, ArealightTileMemory,
+    ArealightSetLayout, ArealightTileMemory, ArealightViewport,
 };
 use crate::{arguments, handles};
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, Viewport};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -158,6 +158,9 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
             "options.radiance_format",
         )?,
         shadow_rays: level(options.shadow_rays, &RAYS, "options.shadow_rays")?,
+        orthographic: level(options.camera, &[false, true], "options.camera")?,
+        rectangle: level(options.rectangle, &[false, true], "options.rectangle")?,
+        texels_per_pixel: options.texels_per_pixel.max(1),
     })
 }
 
@@ -245,6 +248,20 @@ pub(crate) fn read_resources(
     let table = arealight.table_resource().ok_or_else(|| {
         Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
     })?;
+    for (image, field) in [
+        (resources.position, "position"),
+        (resources.normal, "normal"),
+        (resources.base_color, "base_color"),
+        (resources.specular, "specular"),
+        (resources.coat, "coat"),
+        (resources.sheen, "sheen"),
+        (resources.anisotropy, "anisotropy"),
+        (resources.light_textures, "light_textures"),
+        (resources.radiance, "radiance"),
+        (resources.glossy, "glossy"),
+    ] {
+        arguments::refuse_reserved(image.reserved, &format!("resources.{field}.reserved"))?;
+    }
     Ok(ShadeResources {
         table,
         lights: buffer(resources.lights),
@@ -349,7 +366,14 @@ pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Fa
         lights: read_summary(frame.lights)?,
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
         seed: frame.seed,
+        offset: frame.offset,
+        viewport: (frame.viewport != ArealightViewport::default()).then(|| viewport(frame.viewport)),
     })
+}
+
+fn viewport(viewport: ArealightViewport) -> Viewport {
+    let ArealightViewport { x, y, width, height, min_depth, max_depth } = viewport;
+    Viewport { x, y, width, height, min_depth, max_depth }
 }
 
 /// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
@@ -449,6 +473,8 @@ mod tests {
             (ArealightPassOptions { g_buffer: 4, ..zero }, "options.g_buffer"),
             (ArealightPassOptions { radiance_images: 2, ..zero }, "options.radiance_images"),
             (ArealightPassOptions { radiance_format: 2, ..zero }, "options.radiance_format"),
+            (ArealightPassOptions { camera: 2, ..zero }, "options.camera"),
+            (ArealightPassOptions { rectangle: 2, ..zero }, "options.rectangle"),
             (ArealightPassOptions { shadow_rays: 5, ..zero }, "options.shadow_rays: 5 must be from 0 to 4"),
         ] {
             let message = shade_options(&wrong).err().unwrap().message;

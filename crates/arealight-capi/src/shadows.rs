@@ -179,13 +179,13 @@ unsafe fn create(
 
 fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Failure> {
     Ok(ShadowOptions {
-        filter: level(options.filter, &[ShadowFilter::Off, ShadowFilter::Gather], "filter")?,
+        filter: level(options.filter, &[ShadowFilter::Off, ShadowFilter::Gather], "options.filter")?,
         history: level(
             options.history,
             &[ShadowHistory::Off, ShadowHistory::Camera, ShadowHistory::MotionVectors],
-            "history",
+            "options.history",
         )?,
-        output: level(options.output, &[Output::Overwrite, Output::Add], "output")?,
+        output: level(options.output, &[Output::Overwrite, Output::Add], "options.output")?,
     })
 }
 
@@ -323,6 +323,7 @@ pub unsafe extern "C" fn arealight_shadow_pass_record(
             )
         };
         arguments::refuse_null([(command_buffer.is_null(), "command_buffer"), (set == 0, "set")])?;
+        arguments::refuse_reserved(given.reserved, "frame.reserved")?;
         // SAFETY: as above.
         let shade = unsafe { read_frame(arguments::read(given.frame, "frame.frame")?) }?;
         let frame = ShadowFrame {

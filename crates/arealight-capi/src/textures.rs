@@ -66,6 +66,7 @@ pub unsafe extern "C" fn arealight_textures_create(
             arguments::write(out, std::ptr::null_mut(), "out")?;
             (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
         };
+        arguments::refuse_reserved(options.reserved, "options.reserved")?;
         let size = PyramidSize::new(options.width, options.height)
             .map_err(|error| Failure::argument(format!("options.width, options.height: {error}")))?;
         // SAFETY: the textures are destroyed by the host, by the contract of arealight_textures_destroy.
@@ -126,6 +127,7 @@ pub unsafe extern "C" fn arealight_textures_setup(
         // SAFETY: the caller vouches for the pointers, here and below.
         let (textures, setup) =
             unsafe { (handles::borrow(textures, "textures")?, arguments::read(setup, "setup")?) };
+        arguments::refuse_reserved(setup.reserved, "setup.reserved")?;
         // SAFETY: as above.
         let sets = unsafe {
             arguments::array(setup.level_sets, setup.level_set_count as usize, "setup.level_sets")?

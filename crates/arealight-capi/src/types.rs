@@ -122,6 +122,13 @@ pub struct ArealightPassOptions {
     pub tile_least_quads: u32,
     /// How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
     pub shadow_rays: u32,
+    /// One of AREALIGHT_CAMERA_*. Shadow rays are of perspective cameras.
+    pub camera: u32,
+    /// 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
+    pub rectangle: u32,
+    /// How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
+    /// rays. 0 is 1.
+    pub texels_per_pixel: u32,
 }
 
 /// What a descriptor set is made with.
@@ -289,15 +296,33 @@ pub struct ArealightResources {
     pub shadow_picks: ArealightBuffer,
 }
 
+/// The rectangle of a G-buffer's texels that clip space was drawn to: VkViewport.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ArealightViewport {
+    /// Where x = -1 in clip space is, in texels.
+    pub x: f32,
+    /// Where y = -1 in clip space is, in texels: with a negative height the lower edge.
+    pub y: f32,
+    /// Above 0.
+    pub width: f32,
+    /// Negative where y is up in clip space.
+    pub height: f32,
+    /// The depth that is stored of depth 0 in clip space.
+    pub min_depth: f32,
+    /// Likewise, of depth 1.
+    pub max_depth: f32,
+}
+
 /// What differs from frame to frame.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightFrame {
-    /// Of the radiance image, in pixels; those of the G-buffer are of the same size.
+    /// How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may be larger.
     pub width: u32,
     /// Likewise.
     pub height: u32,
-    /// The camera's position relative to the origin of positions and lights.
+    /// The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it.
     pub camera: [f32; 3],
     /// ArealightPackedLights.summary of the lights in the set's buffers.
     pub lights: ArealightLightSummary,
@@ -308,6 +333,11 @@ pub struct ArealightFrame {
     pub position_from_clip: *const f32,
     /// With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     pub tile_lists: ArealightBuffer,
+    /// The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of the frame's pixels, y down. Only
+    /// positions from depth, and a shadow's history, depend on it.
+    pub viewport: ArealightViewport,
+    /// With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
+    pub offset: [u32; 2],
 }
 
 /// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host

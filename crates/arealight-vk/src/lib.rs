@@ -58,6 +58,7 @@ mod shade;
 mod shadows;
 mod table_image;
 mod tiles;
+mod view;
 mod written_sets;
 
 pub use ash;
@@ -72,3 +73,20 @@ pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
 pub use table_image::{TableFormat, TableImage};
 pub use tiles::TileMemory;
+pub use view::Viewport;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_shared<T: Send + Sync>() {}
+
+    #[test]
+    fn threads_may_share_what_records() {
+        is_shared::<Context>();
+        is_shared::<ShadePass>();
+        is_shared::<ShadowPass>();
+        is_shared::<TableImage>();
+        is_shared::<LightTextures>();
+    }
+}

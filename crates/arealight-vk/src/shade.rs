@@ -12,6 +12,7 @@ use crate::module::check_module;
 use crate::pass::Resource;
 use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
+use crate::view::{Viewport, check_view, view_of};
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, SHADE, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
@@ -23,12 +24,21 @@ use resources::{LOBE_HORIZONS, TILE_LISTS, needed};
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShadeFrame {
-    /// Size of the radiance images in pixels. The G-buffer's images are of the same size.
+    /// How many pixels are shaded, from the corner x = y = 0 of the radiance images on, or from `offset`. The images may be larger. The G-buffer's images
+    /// have a texel for each pixel, or [`ShadeOptions::texels_per_pixel`] to a side.
     pub size: [u32; 2],
-    /// The camera's position relative to the origin that lights and positions are packed with.
+    /// With [`ShadeOptions::rectangle`], the first pixel that is shaded; else zero. In the G-buffer it has the same place, times
+    /// [`ShadeOptions::texels_per_pixel`].
+    pub offset: [u32; 2],
+    /// The viewport that drew the G-buffer. Its height is negative where y is up in clip space,
+    /// as in hosts that come from Direct3D, Metal or WebGPU. None: just the texels of `size` and `offset`, y down, depth from 0 to 1.
+    /// Only positions from depth, and a shadow's history, depend on it.
+    pub viewport: Option<Viewport>,
+    /// The camera's position relative to the origin that lights and positions are packed with; with [`ShadeOptions::orthographic`] the
+    /// direction to it, of any length but zero.
     pub camera: Vec3,
-    /// The inverse of (projection × view), from clip space to positions relative to the origin. Needed with
-    /// [`ShadeOptions::from_depth`], else ignored.
+    /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix that drew the depth, jitter
+    /// included. Needed with [`ShadeOptions::from_depth`], else ignored.
     pub position_from_clip: Option<Mat4>,
     /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers.
     pub lights: LightSummary,
@@ -80,7 +90,7 @@ impl ShadePass {
         tiles: TileOptions,
         table_size: u32,
     ) -> Result<Self, Error> {
-        check_shadows(options)?;
+        check_options(options)?;
         // SAFETY: the same contract; the modules are the kernels'.
         unsafe {
             let layouts = Layouts::new(context, &SHADE)?;
@@ -135,7 +145,7 @@ impl ShadePass {
         mut module: Vec<u32>,
         host_set: Option<vk::DescriptorSetLayout>,
     ) -> Result<Self, Error> {
-        check_shadows(options)?;
+        check_options(options)?;
         store_to(options.format, &mut module);
         // Frames without tiles have none of their bindings
         let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
@@ -229,7 +239,7 @@ impl ShadePass {
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
-    /// - `set` was written by [`ShadePass::write_set`], with images of `frame.size` and buffers that hold
+    /// - `set` was written by [`ShadePass::write_set`], with images that hold the frame's pixels and buffers that hold
     ///   the lights that `frame.lights` is of; with tiles, with `frame.tile_lists`, a buffer of
     ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
@@ -309,47 +319,31 @@ impl ShadePass {
 
     /// The push constants of a frame.
     fn constants(&self, frame: &ShadeFrame) -> Result<ShadeConstants, Error> {
-        let (position_from_clip, camera) = push_constants_of_view(self.options, frame)?;
+        let view = view_of(self.options, frame)?;
         check_lights(frame.lights)?;
         Ok(ShadeConstants {
-            position_from_clip,
-            camera,
+            position_from_clip: view.position_from_clip.to_cols_array_2d(),
+            camera: view.camera,
             light_count: frame.lights.light_count,
             shape_count: frame.lights.shape_count,
             quad_count: frame.lights.quad_count,
             size: frame.size,
+            offset: frame.offset,
             seed: frame.seed,
             ..ShadeConstants::default()
         })
     }
 }
 
-/// A frame's matrix from clip space and its camera, as kernels have them.
-pub(crate) fn push_constants_of_view(
-    options: ShadeOptions,
-    frame: &ShadeFrame,
-) -> Result<([[f32; 4]; 4], [f32; 3]), Error> {
-    let position_from_clip = match (options.from_depth, frame.position_from_clip) {
-        (true, None) => {
-            return Err(Error::InvalidArgument {
-                field: "position_from_clip",
-                message: "is missing, but the pass takes positions from depth".into(),
-            });
-        }
-        (_, matrix) => matrix.unwrap_or(Mat4::IDENTITY),
-    };
-    if !position_from_clip.is_finite() || !frame.camera.is_finite() {
-        let field = if frame.camera.is_finite() { "position_from_clip" } else { "camera" };
-        return Err(Error::InvalidArgument { field, message: "holds NaN or infinity".into() });
+/// Refuses options that no pass can be made with.
+fn check_options(options: ShadeOptions) -> Result<(), Error> {
+    check_view(options)?;
+    if !options.surfaces.intersects(Effects::DIFFUSE | Effects::GLOSSY | Effects::COAT | Effects::SHEEN) {
+        return Err(Error::InvalidArgument {
+            field: "surfaces",
+            message: format!("have no lobe, and would be black: {}", options.surfaces),
+        });
     }
-    if frame.size.contains(&0) {
-        return Err(Error::InvalidArgument { field: "size", message: "has no pixels".into() });
-    }
-    Ok((position_from_clip.to_cols_array_2d(), frame.camera.to_array()))
-}
-
-/// Refuses options that no shadow can be made with.
-fn check_shadows(options: ShadeOptions) -> Result<(), Error> {
     let wrong = |field, message: &str| Err(Error::InvalidArgument { field, message: message.into() });
     if options.shadow_rays > ShadeOptions::MOST_SHADOW_RAYS {
         return wrong("shadow_rays", "is more than ShadeOptions::MOST_SHADOW_RAYS");

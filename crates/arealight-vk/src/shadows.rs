@@ -6,7 +6,8 @@ use crate::layouts::Layouts;
 use crate::module::check_module;
 use crate::pass::Resource;
 use crate::pipelines::Pipelines;
-use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of, push_constants_of_view};
+use crate::shade::{ResourceAccess, ShadeFrame, ShadeResources, accesses_of};
+use crate::view::{View, check_view, view_of};
 use arealight::LightSummary;
 use arealight::gpu::ShadowConstants;
 use arealight::kernels::{SHADOW_FILTER, SHADOW_HISTORY, SHADOW_RAYS, store_to};
@@ -345,10 +346,11 @@ impl ShadowPass {
         frame: &ShadowFrame<'_>,
     ) -> Result<ReadyFrame, Error> {
         self.rays.layouts().check_host_set(frame.host_set)?;
-        let (position_from_clip, camera) = push_constants_of_view(self.options, frame.shade)?;
-        let head = self.history_head(resources, frame)?;
+        let view = view_of(self.options, frame.shade)?;
+        let head = self.history_head(resources, frame, &view)?;
         let ShadeFrame { seed, size, lights, .. } = *frame.shade;
-        let constants = ShadowConstants { position_from_clip, camera, seed, size };
+        let position_from_clip = view.position_from_clip.to_cols_array_2d();
+        let constants = ShadowConstants { position_from_clip, camera: view.camera, seed, size };
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
         self.rays.check(set, bytemuck::bytes_of(&constants), groups)?;
         self.prepare(lights)?;
@@ -399,6 +401,7 @@ impl ShadowPass {
         &self,
         resources: &ShadowResources,
         frame: &ShadowFrame<'_>,
+        view: &View,
     ) -> Result<Option<HistoryHead>, Error> {
         if !self.has_history() {
             return Ok(None);
@@ -407,10 +410,10 @@ impl ShadowPass {
         let Some(Resource::StorageBuffer { buffer, offset, .. }) = resources.history else {
             return wrong("history", "is no buffer, but the pass keeps a history");
         };
-        let Some(position_from_clip) = frame.shade.position_from_clip else {
+        if frame.shade.position_from_clip.is_none() {
             return wrong("position_from_clip", "is missing, but the pass keeps a history");
-        };
-        let clip_from_position = position_from_clip.inverse();
+        }
+        let clip_from_position = view.position_from_clip.inverse();
         if !clip_from_position.is_finite() {
             return wrong("position_from_clip", "has no inverse");
         }
@@ -452,6 +455,7 @@ const USED: (vk::PipelineStageFlags, vk::AccessFlags) = (
 );
 
 fn check_rays(options: ShadeOptions) -> Result<(), Error> {
+    check_view(options)?;
     if (1..=ShadeOptions::MOST_SHADOW_RAYS).contains(&options.shadow_rays) {
         return Ok(());
     }

@@ -84,7 +84,7 @@ pub struct ShadeConstants {
     /// The inverse of (projection × view), from clip space (depth as stored, 0 to 1) to positions relative to
     /// the origin, column-major. Read only when positions come from depth.
     pub position_from_clip: [[f32; 4]; 4],
-    /// The camera's position relative to the origin.
+    /// The camera's position relative to the origin; of an orthographic camera the direction to it.
     pub camera: [f32; 3],
     /// How many polygon lights are shaded.
     pub light_count: u32,
@@ -102,6 +102,8 @@ pub struct ShadeConstants {
     pub horizon_cells: u32,
     /// As [`crate::plan::TileOptions::cull_threshold`]. Not read without tiles.
     pub cull_threshold: f32,
+    /// Where the image's rectangle begins that is shaded; not read without [`crate::plan::ShadeOptions::rectangle`].
+    pub offset: [u32; 2],
 }
 
 /// Push constants of the kernels that trace shadow rays and filter them.

@@ -218,6 +218,7 @@ pub static SHADE: Kernel = Kernel {
         constant::CLASS,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
+        constant::VIEW,
     ],
 };
 
@@ -258,6 +259,7 @@ pub static CLASSIFY: Kernel = Kernel {
         constant::LOBES,
         constant::LAYOUT,
         constant::CULL,
+        constant::VIEW,
     ],
 };
 

@@ -55,6 +55,7 @@
 //! | [`pyramid`] | how large and how blurred the levels of a light's texture are |
 //! | [`effects`] | what lights and surfaces need, and nothing else |
 //! | [`quality`] | the quality levels |
+//! | [`reach`] | how far from a light it is of any matter |
 //! | [`blockers`] | what blocks light, for shadow rays: triangles in a hierarchy |
 //! | [`table`] | the fitted table, with a float64 twin of the shader's lookup |
 //! | [`gpu`] | data laid out as the GPU reads it |
@@ -77,6 +78,7 @@ pub mod packed_lights;
 pub mod plan;
 pub mod pyramid;
 pub mod quality;
+pub mod reach;
 pub mod table;
 pub mod texture_part;
 pub mod tiles;

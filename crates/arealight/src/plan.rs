@@ -51,6 +51,7 @@ pub enum RadianceFormat {
 }
 
 /// Everything that a shade pipeline is specialised for beside a frame's lights.
+#[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
     /// What the host's surfaces need, of [`Effects::SURFACES`]; other effects are a frame's lights' to say, and are not read here.
@@ -72,6 +73,13 @@ pub struct ShadeOptions {
     /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a light and a lobe for each. With 0
     /// there are no shadows, and the pipeline has nothing of them.
     pub shadow_rays: u32,
+    /// Whether the camera is orthographic: `ShadeFrame::camera` is the direction to it then. Without shadow rays.
+    pub orthographic: bool,
+    /// Whether frames are rectangles of larger images, each from `ShadeFrame::offset` on: views side by side, an atlas. Without shadow rays.
+    pub rectangle: bool,
+    /// How many texels of the G-buffer a pixel of radiance has to a side, from 1 to [`ShadeOptions::MOST_TEXELS_PER_PIXEL`]; of them the first is shaded. 2 is half
+    /// resolution. Without shadow rays, unless it is 1.
+    pub texels_per_pixel: u32,
 }
 
 impl Default for ShadeOptions {
@@ -86,6 +94,9 @@ impl Default for ShadeOptions {
             separate_lobes: false,
             format: RadianceFormat::default(),
             shadow_rays: 0,
+            orthographic: false,
+            rectangle: false,
+            texels_per_pixel: 1,
         }
     }
 }
@@ -93,6 +104,9 @@ impl Default for ShadeOptions {
 impl ShadeOptions {
     /// The most shadow rays of a pixel.
     pub const MOST_SHADOW_RAYS: u32 = 4;
+
+    /// The most texels of the G-buffer to a pixel's side.
+    pub const MOST_TEXELS_PER_PIXEL: u32 = 16;
 
     /// The effects of a pipeline: what surfaces need, and `lights`.
     pub fn effects(self, lights: LightSummary) -> Effects {
@@ -123,6 +137,13 @@ impl ShadeOptions {
     pub fn output_bits(self) -> u32 {
         self.output as u32 | u32::from(self.separate_lobes) << 1 | self.format as u32
     }
+
+    /// [`ShadeOptions::orthographic`], [`ShadeOptions::rectangle`] and [`ShadeOptions::texels_per_pixel`] as the bits `VIEW_*`.
+    pub fn view_bits(self) -> u32 {
+        u32::from(self.orthographic)
+            | u32::from(self.rectangle) << 1
+            | self.texels_per_pixel.saturating_sub(1) << 8
+    }
 }
 
 /// The values of the shade kernel's specialisation constants, for a frame's lights: what none of them needs is not in the pipeline.
@@ -149,6 +170,7 @@ fn specialization_of_class(options: ShadeOptions, lights: LightSummary, class: u
         (kernels::constant::HAS_QUADS, u32::from(lights.quad_count > 0)),
         (kernels::constant::CLASS, class),
         (kernels::constant::SHADOW_RAYS, options.shadow_rays),
+        (kernels::constant::VIEW, options.view_bits()),
     ]);
     values
 }
@@ -271,6 +293,7 @@ pub fn classify_specialization(
         (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::CULL, u32::from(tiles.cull_threshold > 0.0)),
+        (kernels::constant::VIEW, options.view_bits()),
     ]
 }
 

@@ -1,15 +1,15 @@
 //! The C library as a host uses and misuses it: each mistake has a result and a message that names it.
 
 use arealight_capi::{
-    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED,
-    AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH, AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, Arealight,
-    ArealightBuffer, ArealightFrame, ArealightHost, ArealightLight, ArealightLightSummary,
-    ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
-    ArealightTable, ArealightTileMemory, ArealightUpload, arealight_abi_version, arealight_create,
-    arealight_destroy, arealight_lobe_horizons, arealight_pack_lights, arealight_pass_create,
-    arealight_pass_create_with_module, arealight_pass_destroy, arealight_pass_prepare, arealight_pass_record,
-    arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set, arealight_table_memory,
-    arealight_table_upload,
+    AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT,
+    AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
+    AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost,
+    ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightPass, ArealightPassOptions,
+    ArealightResources, ArealightResult, ArealightTable, ArealightTileMemory, ArealightUpload,
+    ArealightViewport, arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
+    arealight_pack_lights, arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy,
+    arealight_pass_prepare, arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory,
+    arealight_pass_write_set, arealight_table_memory, arealight_table_upload,
 };
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};
@@ -149,6 +149,18 @@ fn lights_that_cannot_be_shaded_are_named() {
 }
 
 #[test]
+fn reserved_fields_are_zero() {
+    let mut arrays = NO_ARRAYS;
+    let later = ArealightLight { reserved: 7, ..light() };
+    refused(
+        pack(&[light(), later], &mut arrays),
+        ArealightResult::ErrorArgument,
+        "lights[1].reserved: 7 must be 0",
+    );
+    good(pack(&[light()], &mut arrays));
+}
+
+#[test]
 fn arrays_of_the_host_are_filled_where_they_are_large_enough() {
     use ArealightResult::ErrorTooSmall;
     let given = [moon(), ArealightLight { two_sided: 1, ..light() }];
@@ -240,6 +252,8 @@ fn dark_frame(width: u32) -> ArealightFrame {
         seed: 0,
         position_from_clip: null(),
         tile_lists: ArealightBuffer::default(),
+        viewport: ArealightViewport::default(),
+        offset: [0; 2],
     }
 }
 
@@ -286,6 +300,14 @@ fn calls_out_of_order_are_refused() {
         good(arealight_pass_prepare(pass, &raw const right));
     }
 
+    // A pass without a lobe would be black
+    let lobeless =
+        ArealightPassOptions { surfaces: AREALIGHT_EFFECT_SPECULAR_INPUT, ..ArealightPassOptions::default() };
+    let mut black = null_mut();
+    // SAFETY: the pointers are valid; nothing is made where an error is returned.
+    let made = unsafe { arealight_pass_create(arealight, &raw const lobeless, &raw mut black) };
+    refused(made, ErrorArgument, "surfaces: have no lobe");
+
     // An upload that lacks something
     let memory = library.table_memory();
     assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 6 * 16);
@@ -303,7 +325,7 @@ fn calls_out_of_order_are_refused() {
         (ArealightUpload { staging_data: null_mut(), ..whole }, ErrorArgument, "upload.staging_data"),
         (ArealightUpload { staging_buffer: 0, ..whole }, ErrorArgument, "upload.staging_buffer"),
         (ArealightUpload { command_buffer: null_mut(), ..whole }, ErrorArgument, "upload.command_buffer"),
-        (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 196608"),
+        (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 458752"),
         (ArealightUpload { staging_offset: 8, ..whole }, ErrorArgument, "upload.staging_offset: 8"),
     ] {
         // SAFETY: what is refused is not looked at.

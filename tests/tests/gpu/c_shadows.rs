@@ -5,11 +5,11 @@ use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
     ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
     ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass,
-    ArealightShadowResources, arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
-    arealight_pack_lights, arealight_pass_create, arealight_pass_destroy, arealight_pass_record,
-    arealight_pass_shadow_picks_size, arealight_pass_write_set, arealight_shadow_pass_create,
-    arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
-    arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
+    ArealightShadowResources, ArealightViewport, arealight_blockers_create, arealight_blockers_destroy,
+    arealight_blockers_read, arealight_pack_lights, arealight_pass_create, arealight_pass_destroy,
+    arealight_pass_record, arealight_pass_shadow_picks_size, arealight_pass_write_set,
+    arealight_shadow_pass_create, arealight_shadow_pass_destroy, arealight_shadow_pass_prepare,
+    arealight_shadow_pass_record, arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
 };
 use arealight_engine::host::{Buffer, Image, Usage};
 use arealight_oracle::material::Material;
@@ -155,6 +155,8 @@ impl<'a> CPasses<'a> {
             seed,
             position_from_clip: std::ptr::null(),
             tile_lists: ArealightBuffer::default(),
+            viewport: ArealightViewport::default(),
+            offset: [0; 2],
         };
         let shadow_frame = ArealightShadowFrame {
             frame: &raw const frame,

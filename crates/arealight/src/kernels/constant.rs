@@ -38,3 +38,5 @@ pub const SHADOW_FILTER: u32 = 16;
 pub const SHADOW_MOTION: u32 = 17;
 /// 1 where shadows are means over frames, else 0.
 pub const SHADOW_HISTORY: u32 = 18;
+/// [`crate::plan::ShadeOptions::view_bits`].
+pub const VIEW: u32 = 19;

@@ -121,6 +121,29 @@ impl LightTable {
         (0..cells * cells).map(cell).collect()
     }
 
+    /// How dense the specular lobes of a surface of this perceptual roughness are a steradian, where they are densest, of any view and any
+    /// reflectance: what is reflected of a light is at most that times the light's solid angle and radiance. 0 to 1; rougher lobes are less dense.
+    /// `lobes` is as in [`LightTable::lobe_horizons`].
+    ///
+    /// Sampled at twice as many views as the table has, and generous by a third for what is between them.
+    pub fn lobe_density(&self, lobes: SpecularLobes, roughness: f64) -> f64 {
+        let rows = 2 * self.size - 1;
+        let mut densest = 0.0_f64;
+        for row in 0..rows {
+            let v = f64::from(row) / f64::from(rows - 1);
+            let cos_view = 1.0 - v * v;
+            let found = self.lookup(roughness, cos_view);
+            for inverse in lobe_ends(lobes, &found).flat_map(between) {
+                let scale = inverse.determinant() / std::f64::consts::PI;
+                directions(inverse, super::mirror_frame(cos_view), |direction| {
+                    let transformed = inverse * direction;
+                    densest = densest.max(scale * transformed.z / transformed.length_squared().powi(2));
+                });
+            }
+        }
+        densest * BETWEEN_NODES
+    }
+
     /// What the envelope is made of at a node: `column` counts half-nodes.
     fn peak(&self, lobes: SpecularLobes, column: u32, row: u32) -> Peak {
         let last = f64::from(self.size - 1);
@@ -129,32 +152,22 @@ impl LightTable {
         let found = self.lookup(u, cos_view);
         let frame = super::mirror_frame(cos_view);
         let mut scaled = [0.0_f64; WIDTHS];
-        let between =
-            |[from, to]: [glam::DMat3; 2]| [0.0, 0.5, 1.0].map(|part| from * (1.0 - part) + to * part);
         for inverse in lobe_ends(lobes, &found).flat_map(between) {
             // A density over the elevation's sine is this over the fourth power of the length in cosine space
             let height = glam::DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z).length();
             let scale = inverse.determinant() * height / std::f64::consts::PI;
-            // About where it is largest, which is in the plane of incidence, as the ridge of a lobe is that is long
-            let largest = least_stretched(inverse).unwrap_or(frame.z_axis);
-            let (u, v) = (frame.y_axis.cross(largest), frame.y_axis);
-            for fall in falls() {
-                let (cosine, sine) = (1.0 - fall, (fall * (2.0 - fall)).max(0.0).sqrt());
-                for turn in 0..=AZIMUTHS {
-                    let (s, c) = (std::f64::consts::PI * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
-                    let direction = largest * cosine + (u * c + v * s) * sine;
-                    let transformed = inverse * direction;
-                    if transformed.z <= 0.0 {
-                        continue;
-                    }
-                    let density = scale / transformed.length_squared().powi(2);
-                    // As precise near the mirror direction as 1 - cos is not
-                    let from_mirror = 0.5 * (direction - frame.z_axis).length_squared();
-                    for (index, most) in scaled.iter_mut().enumerate() {
-                        *most = most.max(density * (width(index) + from_mirror).powi(2));
-                    }
+            directions(inverse, frame, |direction| {
+                let transformed = inverse * direction;
+                if transformed.z <= 0.0 {
+                    return;
                 }
-            }
+                let density = scale / transformed.length_squared().powi(2);
+                // As precise near the mirror direction as 1 - cos is not
+                let from_mirror = 0.5 * (direction - frame.z_axis).length_squared();
+                for (index, most) in scaled.iter_mut().enumerate() {
+                    *most = most.max(density * (width(index) + from_mirror).powi(2));
+                }
+            });
         }
         Peak { scaled, schlick: found.schlick }
     }
@@ -216,6 +229,25 @@ fn lobe_ends(lobes: SpecularLobes, found: &TableSample) -> impl Iterator<Item = 
     let pairs = found.pairs.filter(|_| lobes == SpecularLobes::Two);
     let of_pairs = pairs.into_iter().flat_map(|(inverses, _)| inverses.map(|inverse| [inverse; 2]));
     std::iter::once([found.inverse, found.schlick_inverse]).chain(of_pairs)
+}
+
+/// Both ends of a lobe's reflectances, and half-way between them.
+fn between([from, to]: [glam::DMat3; 2]) -> [glam::DMat3; 3] {
+    [0.0, 0.5, 1.0].map(|part| from * (1.0 - part) + to * part)
+}
+
+/// The directions in which a lobe's densities are taken: about that where it is largest over the elevation's sine, which is in the plane of incidence, as
+/// the ridge of a lobe is that is long. `frame` is the mirror direction's.
+fn directions(inverse: glam::DMat3, frame: glam::DMat3, mut take: impl FnMut(glam::DVec3)) {
+    let largest = least_stretched(inverse).unwrap_or(frame.z_axis);
+    let (u, v) = (frame.y_axis.cross(largest), frame.y_axis);
+    for fall in falls() {
+        let (cosine, sine) = (1.0 - fall, (fall * (2.0 - fall)).max(0.0).sqrt());
+        for turn in 0..=AZIMUTHS {
+            let (s, c) = (std::f64::consts::PI * f64::from(turn) / f64::from(AZIMUTHS)).sin_cos();
+            take(largest * cosine + (u * c + v * s) * sine);
+        }
+    }
 }
 
 /// The direction that a transform into cosine space stretches least, above the lobe's horizon. `None` if it has no inverse.

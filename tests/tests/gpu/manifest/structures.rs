@@ -33,7 +33,8 @@ fn shade_constants() -> Vec<(String, u32)> {
         capacity,
         size,
         horizon_cells,
-        cull_threshold
+        cull_threshold,
+        offset
     )
 }
 

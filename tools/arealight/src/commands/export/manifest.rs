@@ -135,7 +135,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 19] = [
+    const NAMES: [(u32, &str); 20] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -155,6 +155,7 @@ fn constant_name(id: u32) -> &'static str {
         (constant::SHADOW_FILTER, "SHADOW_FILTER"),
         (constant::SHADOW_MOTION, "SHADOW_MOTION"),
         (constant::SHADOW_HISTORY, "SHADOW_HISTORY"),
+        (constant::VIEW, "VIEW"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }

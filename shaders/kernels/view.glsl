@@ -1,0 +1,29 @@
+#ifndef VIEW_GLSL
+#define VIEW_GLSL
+
+// Where a pixel of the frame is in the host's images, and from where it is seen. The including kernel has the specialisation constant VIEW,
+// position.glsl, g_buffer.glsl and shade_constants.glsl. The bits are those of arealight::plan::ShadeOptions::view_bits.
+const uint VIEW_ORTHOGRAPHIC = 1u;
+const uint VIEW_RECTANGLE = 2u;
+const int VIEW_TEXELS_SHIFT = 8; // from here on: texels of the G-buffer to a pixel's side, less one
+
+// Where a pixel's radiance goes.
+ivec2 radiance_texel(ivec2 pixel) {
+    return (VIEW & VIEW_RECTANGLE) != 0u ? pixel + ivec2(constants.offset) : pixel;
+}
+
+// What a pixel sees of the G-buffer: the first of its texels.
+ivec2 g_buffer_texel(ivec2 pixel) {
+    return radiance_texel(pixel) * int((VIEW >> VIEW_TEXELS_SHIFT) + 1u);
+}
+
+// The surface of a texel of the G-buffer.
+ArealightSurface load_seen_surface(ivec2 texel, vec3 position) {
+    ArealightSurface surface = load_surface(texel, position, constants.camera);
+    if ((VIEW & VIEW_ORTHOGRAPHIC) != 0u) {
+        surface.view = constants.camera;
+    }
+    return surface;
+}
+
+#endif
