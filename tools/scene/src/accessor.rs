@@ -14,14 +14,21 @@ struct Elements {
     normalized: bool,
 }
 
-/// Vectors of `N` floats: float components as they are, normalised integers as fractions, others as whole numbers (`KHR_mesh_quantization`).
+/// Vectors of `N` floats (of 16, a matrix's columns): float components as they are, normalised integers as fractions, others as whole numbers (`KHR_mesh_quantization`).
 /// None is NaN or infinite.
 pub(crate) fn floats<const N: usize>(
     document: &Document,
     accessor: usize,
     field: &str,
 ) -> Result<Vec<[f32; N]>, SceneError> {
-    let shape = [Type::Scalar, Type::Vec2, Type::Vec3, Type::Vec4][N - 1];
+    let shape = match N {
+        1 => Type::Scalar,
+        2 => Type::Vec2,
+        3 => Type::Vec3,
+        4 => Type::Vec4,
+        16 => Type::Mat4,
+        _ => unreachable!("no accessor is read as vectors of {N}"),
+    };
     let elements = elements(document, accessor, field, shape)?;
     let decode: fn(&[u8]) -> f32 = match (elements.component, elements.normalized) {
         (ComponentType::F32, _) => |b| f32::from_le_bytes([b[0], b[1], b[2], b[3]]),

@@ -7,8 +7,9 @@ use gltf::json;
 use std::collections::BTreeSet;
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
-const READ: [&str; 13] = [
+const READ: [&str; 14] = [
     "EXT_lights_area",
+    "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -121,7 +122,6 @@ fn loss(name: &str) -> &'static str {
     match name {
         "KHR_lights_punctual" => "points have no area: these lights are left out",
         "EXT_lights_image_based" => "light from all around is left out",
-        "EXT_mesh_gpu_instancing" => "is not supported: one instance is shown, at its node",
         "KHR_materials_variants" => "the default materials are shown",
         "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {
             "is not supported: the textures' other images are shown"

@@ -14,6 +14,7 @@
 //!   where the mapping has a seam, another light begins. Parts that are black are no lights.
 //! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
 //!   [`LUMENS_PER_WATT`].
+//! - A mesh on the joints of a skin shines where they are, and one of `EXT_mesh_gpu_instancing` once an instance.
 //! - Emissive meshes whose node has a word for what they stand for: `"extras": { "arealight": { "shape": "sphere", "radius": 0.5 } }`.
 //!   The mesh is drawn, and a [`Light`](arealight::Light) of that shape lights. Shapes are `disk` (which faces
 //!   +Y), `sphere`, `cylinder`, `pipe` (a cylinder without caps) and `capsule`, about the node's origin and its Y axis,
@@ -38,6 +39,7 @@ mod error;
 mod extensions;
 mod gpu;
 mod images;
+mod instancing;
 mod light_textures;
 mod lit_texels;
 mod load;
@@ -49,6 +51,7 @@ pub mod rays;
 mod scene;
 mod shape_lights;
 mod shown;
+mod skins;
 mod tangents;
 mod uv_map;
 mod uv_mapping;

@@ -3,7 +3,7 @@
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
 use crate::{
-    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes,
+    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes, skins,
 };
 use glam::Vec3;
 use std::ops::Range;
@@ -23,7 +23,7 @@ pub(crate) struct Loader {
     pub textured: Vec<TexturedLight>,
     /// What the lights look like, until all are known.
     pub lamps: Vec<Lamp>,
-    /// The node whose mesh was last found to stand for a shape, and what it shines with.
+    /// The [`nodes::PlacedNode::number`] whose mesh was last found to stand for a shape, and what it shines with.
     pub shaped: Option<(usize, Vec3)>,
 }
 
@@ -71,11 +71,13 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let placed = nodes::place(&mut loader)?;
     // Give every primitive to the triangles, and to the lights where it emits
     let mut primitives = meshes::Meshes::new(&loader);
+    let worlds = nodes::worlds(&placed);
     for node in &placed {
+        let pose = skins::pose(&mut loader, &worlds, node)?;
         for primitive in &*primitives.of_node(&mut loader, node)? {
             let material = materials::resolve(&mut loader, primitive)?;
             let first = loader.scene.triangles.len();
-            let instance = meshes::place(&mut loader, node, primitive, material)?;
+            let instance = meshes::place(&mut loader, (node, pose.as_deref()), primitive, material)?;
             let lights = emitters::add(&mut loader, node, &instance);
             loader.lamps.push(Lamp { triangles: first..loader.scene.triangles.len(), lights });
         }

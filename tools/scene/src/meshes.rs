@@ -3,8 +3,8 @@
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
 use crate::uv_mapping::{Mappings, UvMapping};
-use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor, materials, tangents};
-use glam::{DMat3, DVec3, Vec2, Vec3, Vec4};
+use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor, materials, skins, tangents};
+use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
@@ -31,6 +31,8 @@ pub(crate) struct Primitive {
     uvs: Vec<Vec2>,
     /// The same for the emissive texture, where it is mapped otherwise.
     light_uvs: Option<Vec<Vec2>>,
+    /// What moves each vertex, where the file says it.
+    influences: Option<Vec<skins::Influence>>,
     /// Indices of vertices that exist.
     triangles: Vec<[u32; 3]>,
     /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says what they are.
@@ -154,6 +156,11 @@ fn read(
     if left_over > 0 {
         loader.warn(field.as_str(), format!("{left_over} corners are no whole triangle: left out"));
     }
+    if light_uvs.is_some() && attribute(Semantic::TexCoords(light.set)).is_none() {
+        let text = format!("has no TEXCOORD_{}: its emissive texture is read at (0, 0)", light.set);
+        loader.warn(field.as_str(), text);
+    }
+    let influences = skins::read(loader, source, &field, count)?;
     let normals: Vec<Vec3> = normals.into_iter().map(Vec3::from_array).collect();
     // Tangents
     let mut tangents = None;
@@ -177,6 +184,7 @@ fn read(
         normals,
         uvs,
         light_uvs,
+        influences,
         triangles,
         tangents: tangents.unwrap_or_default(),
     }))
@@ -201,10 +209,10 @@ fn assemble(mode: Mode, corners: &[u32]) -> (Vec<[u32; 3]>, usize) {
     (triangles, left_over)
 }
 
-/// Adds a primitive's triangles to the scene, as its node places them.
+/// Adds a primitive's triangles to the scene, as its node places them, or the pose of its skin.
 pub(crate) fn place<'a>(
     loader: &mut Loader,
-    node: &PlacedNode,
+    (node, pose): (&PlacedNode, Option<&[DAffine3]>),
     primitive: &'a Primitive,
     material: u32,
 ) -> Result<Instance<'a>, SceneError> {
@@ -213,27 +221,43 @@ pub(crate) fn place<'a>(
         return Err(loader.document.too_large("triangles", total as u64, MAX_TRIANGLES as u64));
     }
     // Move the vertices into the world
-    let positions: Vec<DVec3> = primitive
-        .positions
-        .iter()
-        .map(|p| node.world.transform_point3(DVec3::from_array(p.map(f64::from))))
-        .collect();
+    let moved = match (pose, &primitive.influences) {
+        (Some(pose), Some(influences)) => Some(skins::transforms(pose, influences).map_err(|vertex| {
+            let field = format!("{}.JOINTS_0[{vertex}]", primitive.field);
+            loader
+                .document
+                .invalid(field, format!("the skin of nodes[{}] has {} joints", node.index, pose.len()))
+        })?),
+        (Some(_), None) => {
+            loader.warn(primitive.field.as_str(), "has no JOINTS_0 and WEIGHTS_0: it is where its node is");
+            None
+        }
+        _ => None,
+    };
+    let to_world = |vertex: usize| moved.as_ref().map_or(node.world, |moved| moved[vertex]);
+    let in_space = primitive.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
+    let positions: Vec<DVec3> = in_space.enumerate().map(|(i, p)| to_world(i).transform_point3(p)).collect();
     if let Some(bad) = positions.iter().position(|p| p.is_nan() || p.abs().max_element() > MAX_COORDINATE) {
         let field = format!("{}.POSITION[{bad}] in the world", primitive.field);
         return Err(loader.document.not_finite(field, positions[bad].to_array()));
     }
     // Normals go by the cofactors; a mirror turns them, and the vertex order, around
-    let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
-    let mirrored = x.cross(y).dot(z) < 0.0;
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * if mirrored { -1.0 } else { 1.0 };
-    let normals: Vec<Vec3> =
-        primitive.normals.iter().map(|n| (cofactors * n.as_dvec3()).normalize_or_zero().as_vec3()).collect();
+    let is_mirrored = |vertex: usize| to_world(vertex).matrix3.determinant() < 0.0;
+    let normal = |(vertex, normal): (usize, &Vec3)| {
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world(vertex).matrix3;
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        let turned = if is_mirrored(vertex) { -normal.as_dvec3() } else { normal.as_dvec3() };
+        (cofactors * turned).normalize_or_zero().as_vec3()
+    };
+    let normals: Vec<Vec3> = primitive.normals.iter().enumerate().map(normal).collect();
     let mut kept = Vec::with_capacity(primitive.triangles.len());
     for (number, &[a, b, c]) in primitive.triangles.iter().enumerate() {
+        let mirrored = is_mirrored(a as usize);
         let corners = if mirrored { [a, c, b] } else { [a, b, c] }.map(|i| i as usize);
         let [d, e, f] = primitive.tangents.get(number).map_or([Vec4::ZERO; 3], |of_corners| {
-            of_corners.map(|tangent| {
-                let direction = node.world.matrix3 * tangent.truncate().as_dvec3();
+            std::array::from_fn(|i| {
+                let (tangent, vertex) = (of_corners[i], [a, b, c][i] as usize);
+                let direction = to_world(vertex).matrix3 * tangent.truncate().as_dvec3();
                 let side = if mirrored { -tangent.w } else { tangent.w };
                 direction.normalize_or_zero().as_vec3().extend(side)
             })
@@ -250,7 +274,12 @@ pub(crate) fn place<'a>(
     }
     let largest =
         primitive.positions.iter().flatten().fold(0.0_f64, |largest, x| largest.max(f64::from(x.abs())));
-    let stretch = x.length().max(y.length()).max(z.length());
+    let stretch = |vertex: usize| {
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world(vertex).matrix3;
+        x.length().max(y.length()).max(z.length())
+    };
+    let vertices = if moved.is_some() { 0..positions.len() } else { 0..1 };
+    let stretch = vertices.map(stretch).fold(0.0, f64::max);
     let name = node.name.as_ref().or(primitive.mesh_name.as_ref()).filter(|name| !name.is_empty());
     Ok(Instance {
         name: name.map_or_else(|| format!("node {}", node.index), Clone::clone),

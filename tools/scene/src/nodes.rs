@@ -1,21 +1,26 @@
 //! The tree of nodes, flattened: who is where in the world.
 
 use crate::load::Loader;
-use crate::{Camera, MAX_COORDINATE, SceneError, shape_lights};
+use crate::{Camera, MAX_COORDINATE, SceneError, instancing, shape_lights};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json;
 use serde_json::Value;
+use std::collections::HashMap;
 
 /// A node with its place in the world.
 pub(crate) struct PlacedNode {
     /// Index in the file.
     pub index: usize,
+    /// Index among those placed: each instance of a node has its own.
+    pub number: usize,
     /// The file's name for it.
     pub name: Option<String>,
     /// From the node's space to the world's. Finite.
     pub world: DAffine3,
     /// Its mesh.
     pub mesh: Option<usize>,
+    /// Its skin.
+    pub skin: Option<usize>,
     /// Its camera.
     camera: Option<usize>,
     /// Its `EXT_lights_area` extension.
@@ -31,7 +36,6 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
     let nodes = &document.root.nodes;
     let mut seen = vec![false; nodes.len()];
     let mut placed = Vec::new();
-    let mut skinned = Vec::new();
     let mut hidden = 0;
     // Traverse depth first with a stack of our own: a file may nest deeper than the thread's stack
     let mut stack: Vec<(usize, DAffine3)> =
@@ -53,24 +57,41 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             hidden += 1;
             continue;
         }
-        if node.skin.is_some() {
-            skinned.push(index);
-        }
         let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_lights_area"));
-        placed.push(PlacedNode {
+        let once = PlacedNode {
             index,
+            number: placed.len(),
             name: node.name.clone(),
             world,
             mesh: node.mesh.map(|m| m.value()),
+            skin: node.skin.map(|s| s.value()),
             camera: node.camera.map(|c| c.value()),
             area_light: extension.cloned(),
             shape: shape_lights::said(&node.extras),
-        });
+        };
+        match instancing::instances(document, index, node, placed.len())? {
+            None => placed.push(once),
+            // The node itself is there once, with its camera and its light; its mesh is where the instances are
+            Some(instances) => {
+                let first = placed.len() + 1;
+                let instance = |(at, local): (usize, DAffine3)| PlacedNode {
+                    number: first + at,
+                    name: once.name.clone(),
+                    world: world * local,
+                    mesh: once.mesh,
+                    shape: once.shape.clone(),
+                    skin: None,
+                    camera: None,
+                    area_light: None,
+                    index,
+                };
+                let instances: Vec<PlacedNode> = instances.into_iter().enumerate().map(instance).collect();
+                placed.push(PlacedNode { mesh: None, ..once });
+                placed.extend(instances);
+            }
+        }
         let children = node.children.iter().flatten().rev();
         stack.extend(children.map(|child| (child.value(), world)));
-    }
-    for index in skinned {
-        loader.warn(format!("nodes[{index}]"), "skin ignored; the mesh is shown at rest");
     }
     if hidden > 0 {
         loader.note(
@@ -79,6 +100,15 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
         );
     }
     Ok(placed)
+}
+
+/// Where each of the file's nodes is that is in the scene: without its instances.
+pub(crate) fn worlds(placed: &[PlacedNode]) -> HashMap<usize, DAffine3> {
+    let mut worlds = HashMap::new();
+    for node in placed {
+        worlds.entry(node.index).or_insert(node.world);
+    }
+    worlds
 }
 
 /// Whether the file hides a node and all that is below it, by `KHR_node_visibility`.
@@ -110,7 +140,7 @@ fn root_nodes(loader: &mut Loader) -> Vec<usize> {
     nodes
 }
 
-fn local_transform(node: &json::Node) -> Result<DAffine3, String> {
+pub(crate) fn local_transform(node: &json::Node) -> Result<DAffine3, String> {
     if let Some(matrix) = node.matrix {
         return Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))));
     }

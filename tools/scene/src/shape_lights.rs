@@ -52,9 +52,10 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     let material = &loader.scene.materials[instance.material as usize];
     let radiance = material.emission;
     // A mesh of several materials is several primitives, and one light
-    if let Some((index, shone)) = loader.shaped.filter(|(index, _)| *index == node.index) {
+    if let Some((_, shone)) = loader.shaped.filter(|(number, _)| *number == node.number) {
         if shone != radiance {
-            loader.warn(place, format!("node {index} shines with the emission of its first primitive"));
+            loader
+                .warn(place, format!("node {} shines with the emission of its first primitive", node.index));
         }
         return true;
     }
@@ -84,7 +85,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
             } else if texture.is_some() {
                 loader.warn(place, "its texture is not shown in what it lights: only disks are textured");
             }
-            loader.shaped = Some((node.index, radiance));
+            loader.shaped = Some((node.number, radiance));
             loader.scene.lights.push(light);
             true
         }

@@ -104,10 +104,10 @@ fn what_is_ignored_is_said() {
     let expected = [
         "animations: 1 ignored; the scene is shown at rest",
         "KHR_lights_punctual: points have no area: these lights are left out",
-        "nodes[0]: skin ignored; the mesh is shown at rest",
         "meshes[0] 'panel': morph targets ignored; the mesh is shown at rest",
         "meshes[0] 'panel'.primitives[0]: COLOR_0 is not supported: ignored",
         "meshes[0] 'panel'.primitives[0]: 2 corners are no whole triangle: left out",
+        "meshes[0] 'panel'.primitives[0]: has no JOINTS_0 and WEIGHTS_0: it is where its node is",
     ];
     assert_eq!(warnings(&load(writer)), expected);
 }

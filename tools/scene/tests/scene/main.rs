@@ -8,6 +8,7 @@ mod hostile;
 mod lights;
 mod materials;
 mod own_scenes;
+mod placed_meshes;
 mod rays;
 mod shape_lights;
 mod tangents;
