@@ -29,12 +29,56 @@ pub enum Format {
 
 /// How radiance becomes what a screen shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exposure {
-    /// Stops: radiance is multiplied by 2^ev.
-    pub ev: f32,
+pub enum Exposure {
+    /// Radiance is multiplied by 2^stops; within [`MAX_STOPS`].
+    Stops(f32),
+    /// By so many stops that [`AUTO_PART`] of the samples that are not black have a luminance of at most [`AUTO_LUMINANCE`].
+    Auto,
+}
+
+/// The most stops, up or down: within what float32 radiance bears.
+pub const MAX_STOPS: f32 = 64.0;
+
+/// The part of the samples that is not brighter than [`AUTO_LUMINANCE`] in a picture that is exposed by itself: lamps and highlights,
+/// which are few, may be.
+pub const AUTO_PART: f64 = 0.9;
+
+/// Where the tone map begins to roll off, nearly: most of the picture keeps its contrast.
+pub const AUTO_LUMINANCE: f32 = 0.7;
+
+impl std::str::FromStr for Exposure {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= MAX_STOPS);
+        stops.map(Self::Stops).ok_or_else(|| "must be auto, or a number of stops from -64 to 64".to_owned())
+    }
+}
+
+/// Of linear Rec. 709.
+fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
 impl Picture {
+    /// The stops that an exposure is for this picture; 0 where it is black.
+    pub fn stops(&self, exposure: Exposure) -> f32 {
+        if let Exposure::Stops(stops) = exposure {
+            return stops;
+        }
+        let all = self.pixels.iter().map(|pixel| luminance(*pixel));
+        let mut lit: Vec<f32> = all.filter(|luminance| *luminance > 0.0 && luminance.is_finite()).collect();
+        if lit.is_empty() {
+            return 0.0;
+        }
+        let rank = ((lit.len() - 1) as f64 * AUTO_PART) as usize;
+        let (_, bright, _) = lit.select_nth_unstable_by(rank, f32::total_cmp);
+        (AUTO_LUMINANCE / *bright).log2().clamp(-MAX_STOPS, MAX_STOPS)
+    }
+
     /// Means over `factor` × `factor` samples of `map` applied to each sample.
     fn resolve(&self, factor: u32, map: impl Fn(Vec3) -> Vec3) -> Self {
         let (width, height) = (self.width / factor, self.height / factor);
@@ -50,14 +94,12 @@ impl Picture {
     }
 
     /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending names:
-    /// `.exr` holds the mean radiance in float32, untouched by `exposure`; `.png` is exposed, tone-mapped sample
+    /// `.exr` holds the mean radiance in float32, untouched by `stops`; `.png` is multiplied by 2^stops, tone-mapped sample
     /// by sample (so that the edge of a bright light stays smooth), and encoded as sRGB.
-    pub fn save(&self, path: &Path, factor: u32, exposure: Exposure) -> Result<(), Failure> {
+    pub fn save(&self, path: &Path, factor: u32, stops: f32) -> Result<(), Failure> {
         match Self::check_format(path)? {
             Format::Exr => self.resolve(factor, |radiance| radiance).save_exr(path),
-            Format::Png => {
-                self.resolve(factor, |radiance| tone_map(radiance * exposure.ev.exp2())).save_png(path)
-            }
+            Format::Png => self.resolve(factor, |radiance| tone_map(radiance * stops.exp2())).save_png(path),
         }
     }
 
@@ -149,7 +191,7 @@ mod tests {
         let picture = Picture { width: 4, height: 2, pixels };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("picture.exr");
-        picture.save(&path, 2, Exposure { ev: 3.0 }).unwrap();
+        picture.save(&path, 2, 3.0).unwrap();
 
         let layer = exr::prelude::read_first_flat_layer_from_file(&path).unwrap().layer_data;
         assert_eq!((layer.size.width(), layer.size.height()), (2, 1));
@@ -169,9 +211,38 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_exposes_itself() {
+        // Black, a hundred greys up to 8, and a lamp a thousand times as bright
+        let mut pixels: Vec<Vec3> = (0..=100).map(|i| Vec3::splat(i as f32 * 0.08)).collect();
+        pixels.push(Vec3::splat(8000.0));
+        let stops = |pixels: Vec<Vec3>, exposure| {
+            Picture { width: pixels.len() as u32, height: 1, pixels }.stops(exposure)
+        };
+        let auto = stops(pixels.clone(), Exposure::Auto);
+        let brightest_kept = pixels[91].x * auto.exp2();
+        assert!((brightest_kept - AUTO_LUMINANCE).abs() < 0.02, "{brightest_kept}");
+        // The lamp's brightness does not matter, what it lights does
+        *pixels.last_mut().unwrap() *= 100.0;
+        assert_eq!(stops(pixels.clone(), Exposure::Auto), auto);
+        pixels.iter_mut().for_each(|pixel| *pixel *= 4.0);
+        assert!((stops(pixels.clone(), Exposure::Auto) - (auto - 2.0)).abs() < 1e-5);
+        // The twin: stated stops are kept; and no picture is beyond the limits
+        assert_eq!(stops(pixels, Exposure::Stops(1.5)), 1.5);
+        assert_eq!(stops(vec![Vec3::ZERO, Vec3::NAN], Exposure::Auto), 0.0);
+        assert_eq!(stops(vec![Vec3::splat(1e-30)], Exposure::Auto), MAX_STOPS);
+    }
+
+    #[test]
+    fn exposures_are_stops_or_auto() {
+        assert_eq!("-1.5".parse(), Ok(Exposure::Stops(-1.5)));
+        assert_eq!("auto".parse(), Ok(Exposure::Auto));
+        assert!(["nan", "inf", "200", "", "Auto"].iter().all(|bad| bad.parse::<Exposure>().is_err()));
+    }
+
+    #[test]
     fn another_ending_is_refused() {
         let picture = Picture { width: 1, height: 1, pixels: vec![Vec3::ONE] };
-        let error = picture.save(Path::new("out.bmp"), 1, Exposure { ev: 0.0 }).unwrap_err();
+        let error = picture.save(Path::new("out.bmp"), 1, 0.0).unwrap_err();
         assert!(error.to_string().contains("must end in .png or .exr"));
     }
 }

@@ -44,9 +44,10 @@ pub struct Arguments {
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
-    /// Exposure of a .png in stops: radiance is multiplied by 2^EV
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_exposure)]
-    exposure: f32,
+    /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is not black have a luminance of at
+    /// most 0.7
+    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    exposure: Exposure,
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
@@ -174,6 +175,8 @@ struct Outcome {
     picked: Option<ProfileLevel>,
     tiles: Option<TileCounts>,
     picture: Picture,
+    /// The exposure that the picture has.
+    stops: f32,
 }
 
 /// The most texels a side that a light's texture gets.
@@ -210,7 +213,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut outcome = render(&engine, &scene, &camera, samples, (surfaces, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picked = picked;
-    outcome.picture.save(&output, arguments.supersample, Exposure { ev: arguments.exposure })?;
+    outcome.stops = outcome.picture.stops(arguments.exposure);
+    outcome.picture.save(&output, arguments.supersample, outcome.stops)?;
     let device = engine.host().device_name();
     let summary = Summary {
         arguments,
@@ -262,7 +266,7 @@ fn render(
     };
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
-    Ok(Outcome { visibility, shading, picked: None, tiles, picture })
+    Ok(Outcome { visibility, shading, picked: None, tiles, picture, stops: 0.0 })
 }
 
 /// Shades a view with shadows or without.
@@ -276,12 +280,6 @@ fn shade(
     let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
     let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
     renderer.shade_shadowed(&view, 0)
-}
-
-/// Stops within what float32 radiance bears.
-fn parse_exposure(text: &str) -> Result<f32, String> {
-    let stops = text.parse().ok().filter(|stops: &f32| stops.abs() <= 64.0);
-    stops.ok_or_else(|| "must be a number of stops from -64 to 64".to_owned())
 }
 
 /// A part of a pixel.
@@ -369,10 +367,10 @@ impl Summary<'_> {
         }
         let per_pixel = arguments.supersample * arguments.supersample;
         lines.push(format!(
-            "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {:+} EV)\n",
+            "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {} EV)\n",
             output.display(),
             if per_pixel == 1 { "" } else { "s" },
-            arguments.exposure
+            stops_text(outcome.stops)
         ));
         lines.join("\n")
     }
@@ -408,10 +406,16 @@ impl Summary<'_> {
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
             "picture": output,
             "size": arguments.size,
+            "exposure": outcome.stops,
             "samples_per_pixel": arguments.supersample * arguments.supersample,
         });
         format!("{summary:#}\n")
     }
+}
+
+/// To a hundredth, with its sign.
+fn stops_text(stops: f32) -> String {
+    format!("{:+}", (stops * 100.0).round() / 100.0)
 }
 
 fn milliseconds(time: Option<Duration>) -> String {
@@ -437,8 +441,6 @@ mod tests {
     #[test]
     fn sizes_are_two_numbers_within_limits() {
         assert_eq!(parse_size("640x480"), Ok([640, 480]));
-        assert_eq!(parse_exposure("-1.5"), Ok(-1.5));
-        assert!(["nan", "inf", "200", ""].iter().all(|bad| parse_exposure(bad).is_err()));
         assert_eq!(parse_part("0.01"), Ok(0.01));
         assert!(["nan", "1", "-0.1", ""].iter().all(|bad| parse_part(bad).is_err()));
         for bad in ["", "640", "640x", "0x480", "640x9000", "-1x2", "1x2x3", "axb"] {
