@@ -224,7 +224,9 @@ mod tests {
         // The lamp's brightness does not matter, what it lights does
         *pixels.last_mut().unwrap() *= 100.0;
         assert_eq!(stops(pixels.clone(), Exposure::Auto), auto);
-        pixels.iter_mut().for_each(|pixel| *pixel *= 4.0);
+        for pixel in &mut pixels {
+            *pixel *= 4.0;
+        }
         assert!((stops(pixels.clone(), Exposure::Auto) - (auto - 2.0)).abs() < 1e-5);
         // The twin: stated stops are kept; and no picture is beyond the limits
         assert_eq!(stops(pixels, Exposure::Stops(1.5)), 1.5);
