@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 /// What the tables' columns are.
 const MEASURES: &str = "\
 Errors of *S* times 100: the root of the mean square over lit pixels of the judged frames; over those in a penumbra; over those whose surface the frame \
-before did not see; and of the worst frame. The truth of each frame is the mean of many frames of four rays as they are, with the same \
+before did not see; and of the worst frame. The lag is how many frames shadows are behind. The truth of each frame is the mean of many frames of four rays as they are, with the same \
 lobes; its noise, known from its halves, is taken out of the squares. At `camera` the camera goes about the scene by 1 degree a frame, at `light` the light \
 moves by 4 cm and turns by 1 degree a frame, at `both` they do so together.";
 
@@ -19,12 +19,14 @@ fn cells(film: &FilmErrors) -> Vec<String> {
         number(film.penumbra),
         film.uncovered.map_or_else(String::new, number),
         number(film.worst),
+        film.lag.map_or_else(String::new, |lag| format!("{lag:.2}")),
     ]
 }
 
 impl SceneFilms {
     fn table(&self) -> Table {
-        let heads = ["motion, level", "S, RMSE x 100", "in penumbra", "uncovered", "worst frame"];
+        let heads =
+            ["motion, level", "S, RMSE x 100", "in penumbra", "uncovered", "worst frame", "lag, frames"];
         let order = Motion::ALL.iter().flat_map(|motion| Scheme::ALL.map(|scheme| (*motion, scheme)));
         let rows = order.filter_map(|(motion, scheme)| self.find(motion, scheme)).map(cells).collect();
         Table { heads: heads.map(String::from).into(), rows }

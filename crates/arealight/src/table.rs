@@ -230,7 +230,7 @@ impl LightTable {
         Ok(Self { schlick_matrix: Some(matrix), ..self })
     }
 
-    /// This table with two lobes for one, for [`SpecularLobes::Two`].
+    /// This table with two lobes for one, for [`crate::SpecularLobes::Two`].
     ///
     /// # Errors
     /// [`TableError`] says which layer, texel and channel is wrong.

@@ -325,7 +325,7 @@ fn calls_out_of_order_are_refused() {
         (ArealightUpload { staging_data: null_mut(), ..whole }, ErrorArgument, "upload.staging_data"),
         (ArealightUpload { staging_buffer: 0, ..whole }, ErrorArgument, "upload.staging_buffer"),
         (ArealightUpload { command_buffer: null_mut(), ..whole }, ErrorArgument, "upload.command_buffer"),
-        (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 458752"),
+        (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 393216"),
         (ArealightUpload { staging_offset: 8, ..whole }, ErrorArgument, "upload.staging_offset: 8"),
     ] {
         // SAFETY: what is refused is not looked at.

@@ -89,15 +89,24 @@ fn each_method_meets_its_measure() {
 #[test]
 fn what_is_visible_of_lights_behind_triangles_shines() {
     let device = device();
-    for (method, bounds) in
-        [("truth", [1e-9, 1e-8, 1e-8]), ("oracle", [1e-14, 1.4e-2, 0.12]), ("gpu", [1e-6, 1.4e-2, 0.12])]
-    {
+    // Of two lobes one case makes the last: a dielectric that is seen at 77 degrees. Without it they err less than one does
+    let [one, two] = ["one", "two"];
+    for (method, lobes, bounds) in [
+        ("truth", two, [1e-9, 1e-8, 1e-8]),
+        ("oracle", one, [1e-14, 1.4e-2, 0.12]),
+        ("oracle", two, [1e-14, 7.5e-3, 0.13]),
+        ("gpu", one, [1e-6, 1.4e-2, 0.12]),
+        ("gpu", two, [1e-6, 7.5e-3, 0.13]),
+    ] {
         if method == "gpu" && !device {
             continue;
         }
         let measures = |cases: &str| -> Vec<f64> {
-            let output =
-                eval(&[cases, "--on", method, "--against", &reference("shadows-truth.json"), "--json"]);
+            let truth = reference("shadows-truth.json");
+            let output = match method {
+                "truth" => eval(&[cases, "--on", method, "--against", &truth, "--json"]),
+                _ => eval(&[cases, "--on", method, "--specular-lobes", lobes, "--against", &truth, "--json"]),
+            };
             assert!(output.status.success(), "{}", text(&output.stderr));
             let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
             let families = summary["families"].as_array().unwrap().iter();
@@ -106,7 +115,7 @@ fn what_is_visible_of_lights_behind_triangles_shines() {
         let found = measures(&reference("shadows.json"));
         assert!(
             found.len() == 3 && found.iter().zip(bounds).all(|(f, bound)| *f <= bound),
-            "{method}: {found:?}"
+            "{method}, {lobes}: {found:?}"
         );
         // The twin: without what blocks them
         let mut cases = json(reference("shadows.json"));

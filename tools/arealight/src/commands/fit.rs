@@ -307,9 +307,9 @@ mod tests {
         assert_eq!(value["output"], "a.exr");
         let lines = value["report"]["cosine_space"].as_array().unwrap();
         assert_eq!(lines.len(), PUBLISHED.len() + METALS.len());
-        assert_eq!(lines[6]["split"]["max"], 0.234);
+        assert_eq!(lines[6]["two_lobes"]["max"], 0.234);
         assert_eq!(lines[7]["metal"], "gold");
-        assert_eq!(value["report"]["formula"]["both_horizons"][6]["by_f0"]["max"], 0.234);
+        assert_eq!(value["report"]["formula"]["both_horizons"][6]["one_lobe"]["max"], 0.234);
         assert_eq!(value["formula"]["lobe"][9][3], Formula::GGX.lobe[9][3]);
         let text = summary.to_text();
         assert!(text.starts_with("fitted ggx-correlated-smith, 64 x 64 nodes, in 1.5 s\nwrote a.exr\n"));

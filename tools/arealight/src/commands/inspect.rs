@@ -306,7 +306,7 @@ mod tests {
         let errors = Some(maps.as_slice());
         let summary = Summary { name: "t", table: &table, fit_error: None, channels: &channels, errors };
         let text = summary.to_text();
-        assert!(!text.contains('\u{1b}') && text.contains(", split, F0 = 0.04"), "{text}");
+        assert!(!text.contains('\u{1b}') && text.contains(", two lobes, F0 = 0.04"), "{text}");
         assert!(text.contains("most 5.00e-1 at roughness 0.99, view 1.4°\n"), "{text}");
         let value: Value = serde_json::from_str(&summary.to_json()).unwrap();
         assert_eq!(value["errors"][0]["largest"]["mean"], 0.5);

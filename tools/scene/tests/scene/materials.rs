@@ -265,6 +265,7 @@ fn texture_features_that_are_missing_are_said() {
     let attributes = &mut writer.root["meshes"][0]["primitives"][0]["attributes"];
     attributes.as_object_mut().unwrap().remove("TEXCOORD_0");
     let expected = [
+        "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_0: its emissive texture is read at (0, 0)",
         "material '#0': normalTexture, emissiveTexture: mapped otherwise than baseColorTexture, drawn as that is",
         "material '#0': KHR_materials_specular: its textures are not supported: ignored",
         "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_1: its textures are read at (0, 0)",

@@ -103,7 +103,7 @@ mod tests {
             f0: 1.0,
             cells: vec![],
         };
-        assert_eq!(short(&map("formula")), "formula, split");
-        assert_eq!(short(&map("a-very-long-name.exr")), "a-very-long-…, split");
+        assert_eq!(short(&map("formula")), "formula, two lobes");
+        assert_eq!(short(&map("a-very-long-name.exr")), "a-very-long-…, two lobes");
     }
 }

@@ -186,7 +186,7 @@ mod tests {
             assert!((1.0 / 3.0..3.0).contains(&ratio), "{specular_lobes:?} {}: {ratio}", map.f0);
             assert!(map.worst().1 > map.mean() && map.cells[map.worst().0] == map.worst().1);
         }
-        // Two lobes are better than one for a dielectric, and the same for a metal
-        assert!(maps[2].mean() < maps[0].mean() && (maps[3].mean() - maps[1].mean()).abs() < 1e-12);
+        // Two lobes are better than one, for a dielectric and for a metal
+        assert!(maps[2].mean() < maps[0].mean() && maps[3].mean() < maps[1].mean());
     }
 }
