@@ -8,11 +8,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Under `cargo test` a benchmark is only to be seen to run
     let size = if std::env::args().any(|argument| argument == "--bench") { 64 } else { 4 };
     println!("| {size} x {size} nodes | seconds |\n|---|---|");
-    for (name, aim) in
-        [("one matrix for all F0", Aim::one_for_all()), ("two matrices", Settings::default().aim)]
-    {
+    let plain = Settings { size, pairs: false, ..Settings::default() };
+    for (name, settings) in [
+        ("one matrix for all F0", Settings { aim: Aim::one_for_all(), ..plain.clone() }),
+        ("two matrices", plain.clone()),
+        ("two matrices and pairs of lobes", Settings { pairs: true, ..plain }),
+    ] {
         let start = Instant::now();
-        let table = fit(&GgxBrdf, &Settings { size, aim, ..Settings::default() }, &|_, _| {})?;
+        let table = fit(&GgxBrdf, &settings, &|_, _| {})?;
         assert_eq!(table.size(), size);
         println!("| {name} | {:.1} |", start.elapsed().as_secs_f64());
     }

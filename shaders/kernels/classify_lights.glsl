@@ -76,7 +76,7 @@ TileLight tile_light(uint index) {
     } else {
         light = shape_light(index - constants.light_count);
     }
-    light.center -= (VIEW & VIEW_ORTHOGRAPHIC) != 0u ? vec3(0.0) : constants.camera;
+    light.center -= IS_ORTHOGRAPHIC ? vec3(0.0) : constants.camera;
     light.distance = sqrt(dot(light.center, light.center)) + tile_distance();
     light.margin = MARGIN * (light.distance + light.radius);
     return light;

@@ -144,13 +144,13 @@ void reduce_pixels(ivec2 pixel) {
     bool has_surface = load_position_of(texel, pixel, ivec2(constants.size), position) && is_inside;
     ArealightSurface surface = load_seen_surface(texel, position);
     vec3 normal = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
-    position = (VIEW & VIEW_ORTHOGRAPHIC) != 0u ? position : -surface.view;
+    position = IS_ORTHOGRAPHIC ? position : -surface.view;
     float distance = sqrt(dot(position, position));
     // Where numbers are infinite or NaN, nothing is known of the tile
     float known_distance = distance > 0.0 && distance < TILE_FAR ? distance : TILE_FAR;
     reduce_planes(SURFACE_PAIR, normal, position, has_surface);
 
-    vec3 view = surface.view / ((VIEW & VIEW_ORTHOGRAPHIC) != 0u ? sqrt(dot(surface.view, surface.view)) : distance);
+    vec3 view = surface.view / (IS_ORTHOGRAPHIC ? sqrt(dot(surface.view, surface.view)) : distance);
     float cosine = dot(normal, view);
     ArealightGpuLobeHorizon cell;
     if (HAS_HORIZON) {

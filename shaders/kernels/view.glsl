@@ -7,6 +7,8 @@ const uint VIEW_ORTHOGRAPHIC = 1u;
 const uint VIEW_RECTANGLE = 2u;
 const int VIEW_TEXELS_SHIFT = 8; // from here on: texels of the G-buffer to a pixel's side, less one
 
+const bool IS_ORTHOGRAPHIC = (VIEW & VIEW_ORTHOGRAPHIC) != 0u;
+
 // Where a pixel's radiance goes.
 ivec2 radiance_texel(ivec2 pixel) {
     return (VIEW & VIEW_RECTANGLE) != 0u ? pixel + ivec2(constants.offset) : pixel;
@@ -20,7 +22,7 @@ ivec2 g_buffer_texel(ivec2 pixel) {
 // The surface of a texel of the G-buffer.
 ArealightSurface load_seen_surface(ivec2 texel, vec3 position) {
     ArealightSurface surface = load_surface(texel, position, constants.camera);
-    if ((VIEW & VIEW_ORTHOGRAPHIC) != 0u) {
+    if (IS_ORTHOGRAPHIC) {
         surface.view = constants.camera;
     }
     return surface;

@@ -145,15 +145,14 @@ pub fn fit_at(
     // The same at every node
     let mut layers = layers.into_iter().map(Vec::from);
     let description = TableDescription { brdf: brdf.name().to_owned(), ..TableDescription::default() };
-    let magnitude_here = magnitude;
-    let magnitude = vec![[magnitude.albedo as f32, magnitude.schlick as f32]; 4];
-    let table = LightTable::new(description, 2, layers.next().unwrap_or_default(), magnitude)?;
+    let albedos = vec![[magnitude.albedo as f32, magnitude.schlick as f32]; 4];
+    let table = LightTable::new(description, 2, layers.next().unwrap_or_default(), albedos)?;
     let table = match layers.next() {
         Some(schlick) => table.with_schlick_matrix(schlick)?,
         None => table,
     };
     let Some((inverses, shares)) = sample.pairs else { return Ok(table) };
-    let (lobes, shares) = fit_pair_at(&texel, magnitude_here, inverses.map(lobe_of), shares)?;
+    let (lobes, shares) = fit_pair_at(&texel, magnitude, inverses.map(lobe_of), shares)?;
     Ok(table.with_pairs(LobePairs {
         matrices: lobes.map(|lobe| vec![lobe.texel.map(|q| q as f32); 4]),
         second_shares: vec![shares.map(|share| share as f32); 4],

@@ -7,8 +7,8 @@ use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::fit::node_of;
 use crate::lobe::Lobe;
-use crate::nodes::{Node, Texel};
-use crate::solve::{Problem, minimise};
+use crate::nodes::Texel;
+use crate::solve::{Quadrature, accumulate, minimise};
 
 /// The numbers of a pair: the four entries of either lobe, and the second one's share of the energy at a reflectance of 1 and at
 /// [`DIELECTRIC_F0`].
@@ -133,10 +133,10 @@ impl Pair {
     }
 }
 
-/// The least squares of a pair: [`Problem`]'s at both reflectances, of the sum of both lobes. Clipped at the surface's horizon too, each is
-/// scaled to keep its energy.
+/// The least squares of a pair: those of one lobe ([`crate::solve::Problem`]) at both reflectances, of the sum of both lobes. Clipped at the
+/// surface's horizon too, each is scaled to keep its energy.
 struct PairProblem {
-    problem: Problem,
+    quadrature: Quadrature,
     /// Of each probe, at either reflectance.
     targets: [Vec<[f64; 2]>; 2],
     guess: Pair,
@@ -146,22 +146,17 @@ struct PairProblem {
 /// What the squares count at either reflectance.
 const WEIGHTS: [f64; 2] = [1.0, DIELECTRIC_WEIGHT];
 
-/// The share above the surface of a lobe and its derivatives by its entries.
-type ShareAbove = (f64, [f64; 4]);
-
 impl PairProblem {
     /// Nodes are laid out for the wider of the guess's lobes, which the other lies in.
     fn new(magnitude: Magnitude, texel: &Texel, guess: Pair) -> Result<Self, FitError> {
         let [first, second] = guess.lobes;
         let wider = if first.texel[3] < second.texel[3] { first } else { second };
-        let at = |f0: f64| {
+        let quadrature = Quadrature::new(texel, &wider)?;
+        let targets = [1.0, DIELECTRIC_F0].map(|f0| {
             let energy = magnitude.at(f0);
-            Problem::new([f0 / energy, (1.0 - f0) / energy], texel, &wider)
-        };
-        let (problem, dielectric) = (at(1.0)?, at(DIELECTRIC_F0)?);
-        let targets =
-            [&problem, &dielectric].map(|problem| problem.probes().map(|(_, target)| target).collect());
-        let unanchored = Self { problem, targets, guess, anchor: [0.0; PARAMETERS] };
+            quadrature.targets([f0 / energy, (1.0 - f0) / energy])
+        });
+        let unanchored = Self { quadrature, targets, guess, anchor: [0.0; PARAMETERS] };
         let (matrix, _) = unanchored.normal_equations(&guess, [true; PARAMETERS]);
         Ok(Self { anchor: std::array::from_fn(|i| ANCHOR * matrix[i][i]), ..unanchored })
     }
@@ -170,17 +165,10 @@ impl PairProblem {
         if !pair.lobes.iter().all(Lobe::is_valid) {
             return f64::INFINITY;
         }
-        let problem = &self.problem;
-        let lobes = pair.lobes.map(|lobe| {
-            let density = |node: &Node| lobe.density(node.direction) as f32;
-            (problem.nodes.iter().map(density).collect::<Vec<f32>>(), lobe.share_above(problem.normal).0)
-        });
+        let [first, second] = pair.lobes.each_ref().map(|lobe| self.quadrature.integrals(lobe));
         let mut misfit = 0.0;
-        for (probe, (row, _)) in problem.probes().enumerate() {
-            let integrals = lobes.each_ref().map(|(densities, share_above)| {
-                let [above, below] = problem.sums(row, densities);
-                [above + below, above / share_above]
-            });
+        for (probe, row) in self.quadrature.probes().enumerate() {
+            let integrals = [first(row), second(row)];
             for ((targets, weight), share) in self.targets.iter().zip(WEIGHTS).zip(pair.second_shares) {
                 for way in 0..2 {
                     let found = (1.0 - share) * integrals[0][way] + share * integrals[1][way];
@@ -202,15 +190,13 @@ impl PairProblem {
         pair: &Pair,
         free: [bool; PARAMETERS],
     ) -> ([[f64; PARAMETERS]; PARAMETERS], [f64; PARAMETERS]) {
-        let problem = &self.problem;
-        let columns = pair.lobes.map(|lobe| Columns::new(problem, &lobe));
-        let shares_above = pair.lobes.map(|lobe| lobe.share_above(problem.normal));
+        let gradients =
+            |k: usize| self.quadrature.gradients(&pair.lobes[k], std::array::from_fn(|i| free[4 * k + i]));
+        let (first, second) = (gradients(0), gradients(1));
         let mut normal = [[0.0; PARAMETERS]; PARAMETERS];
         let mut slope = [0.0; PARAMETERS];
-        for (probe, (row, _)) in problem.probes().enumerate() {
-            let of_lobe =
-                |k: usize| columns[k].integrals(problem, row, shares_above[k], &free[4 * k..4 * k + 4]);
-            let lobes = [of_lobe(0), of_lobe(1)];
+        for (probe, row) in self.quadrature.probes().enumerate() {
+            let lobes = [first(row), second(row)];
             for (at, (targets, weight)) in self.targets.iter().zip(WEIGHTS).enumerate() {
                 let shares = [1.0 - pair.second_shares[at], pair.second_shares[at]];
                 for way in 0..2 {
@@ -224,12 +210,7 @@ impl PairProblem {
                     }
                     // A larger share of the second takes from the first
                     gradient[8 + at] = lobes[1].0[way] - lobes[0].0[way];
-                    for i in 0..PARAMETERS {
-                        slope[i] += weight * residual * gradient[i];
-                        for j in 0..PARAMETERS {
-                            normal[i][j] += weight * gradient[i] * gradient[j];
-                        }
-                    }
+                    accumulate(&mut normal, &mut slope, residual, weight, &gradient);
                 }
             }
         }
@@ -247,45 +228,6 @@ impl PairProblem {
             }
         }
         (normal, slope)
-    }
-}
-
-/// A lobe's density at the nodes, and its derivatives by the entries.
-struct Columns {
-    densities: Vec<f32>,
-    derivatives: [Vec<f32>; 4],
-}
-
-impl Columns {
-    fn new(problem: &Problem, lobe: &Lobe) -> Self {
-        let mut columns = Self { densities: Vec::new(), derivatives: Default::default() };
-        for node in &problem.nodes {
-            let (density, gradient) = lobe.density_and_gradient(node.direction);
-            columns.densities.push(density as f32);
-            for (column, derivative) in columns.derivatives.iter_mut().zip(gradient) {
-                column.push(derivative as f32);
-            }
-        }
-        columns
-    }
-
-    /// The integrals of the lobe over a probe, with either way to clip, and their derivatives by the entries that are free.
-    fn integrals(
-        &self,
-        problem: &Problem,
-        row: &[f32],
-        (share_above, by_entry): ShareAbove,
-        free: &[bool],
-    ) -> ([f64; 2], [[f64; 4]; 2]) {
-        let [above, below] = problem.sums(row, &self.densities);
-        let scaled = above / share_above;
-        let mut gradients = [[0.0; 4]; 2];
-        for i in (0..4).filter(|&i| free[i]) {
-            let [above, below] = problem.sums(row, &self.derivatives[i]);
-            gradients[0][i] = above + below;
-            gradients[1][i] = (above - scaled * by_entry[i]) / share_above;
-        }
-        ([above + below, scaled], gradients)
     }
 }
 

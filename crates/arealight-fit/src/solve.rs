@@ -23,20 +23,102 @@ const ANCHOR: f64 = 1e-3;
 /// the lobe clipped by its own horizon only, once by the surface's as well and scaled to keep its energy. Both
 /// ways are used for shading, and a table that is fitted for one of them alone does badly in the other.
 pub struct Problem {
-    /// Those above the surface come first.
-    pub nodes: Vec<Node>,
-    above: usize,
-    /// The surface's normal, in the mirror frame.
-    pub normal: DVec3,
-    /// Probes by nodes: the solid angle of each node that lies in each probe.
-    rows: Vec<f32>,
-    /// The integrals aimed at, a probe: of the lobe, and of its part above the surface scaled to the same energy.
-    /// A BRDF that reflects nothing below the surface has one and the same for both.
+    quadrature: Quadrature,
+    /// Those of the lobe aimed at, a probe.
     targets: Vec<[f64; 2]>,
     /// The lobe that the nodes were laid out for.
     guess: Lobe,
     /// The weights of the squared distances of the texel's entries from the guess's.
     anchor: [f64; 4],
+}
+
+/// The nodes and the probes of a texel, laid out for some lobe: what every aim there is fitted on.
+pub struct Quadrature {
+    /// Those above the surface come first.
+    nodes: Vec<Node>,
+    above: usize,
+    /// The surface's normal, in the mirror frame.
+    normal: DVec3,
+    /// Probes by nodes: the solid angle of each node that lies in each probe.
+    rows: Vec<f32>,
+}
+
+impl Quadrature {
+    /// That of a texel, for lobes like `guess`.
+    ///
+    /// # Errors
+    /// [`FitError::NoNodes`] if the BRDF has no usable value.
+    pub fn new(texel: &Texel, guess: &Lobe) -> Result<Self, FitError> {
+        let Nodes { all: nodes, above } = texel.nodes(guess);
+        if nodes.is_empty() {
+            return Err(FitError::NoNodes { alpha: texel.alpha, cos_view: texel.cos_view });
+        }
+        let rows = probe_rows(guess, texel.cos_view, &nodes);
+        let normal = mirror_frame(texel.cos_view).transpose() * DVec3::Z;
+        Ok(Self { nodes, above, normal, rows })
+    }
+
+    /// The integrals of the lobe `f * (shares[0] + shares[1] * schlick)`, a probe: of the lobe, and of its part above the surface scaled to
+    /// the same energy. A BRDF that reflects nothing below the surface has one and the same for both.
+    pub fn targets(&self, [of_lobe, of_schlick]: [f64; 2]) -> Vec<[f64; 2]> {
+        let value = |node: &Node| (of_lobe * node.value + of_schlick * node.schlick) as f32;
+        let target: Vec<f32> = self.nodes.iter().map(value).collect();
+        let weights: Vec<f32> = self.nodes.iter().map(|node| node.weight as f32).collect();
+        let [all_above, all_below] = self.sums(&weights, &target);
+        let scale = if all_above > 0.0 { (all_above + all_below) / all_above } else { 1.0 };
+        let integrals = |row| {
+            let [above, below] = self.sums(row, &target);
+            [above + below, scale * above]
+        };
+        self.probes().map(integrals).collect()
+    }
+
+    /// Of each probe the solid angle of each node within it.
+    pub fn probes(&self) -> impl Iterator<Item = &[f32]> {
+        self.rows.chunks_exact(self.nodes.len())
+    }
+
+    /// The integral over a probe of what has `values` at the nodes: its parts above and below the surface.
+    fn sums(&self, row: &[f32], values: &[f32]) -> [f64; 2] {
+        let (row_above, row_below) = row.split_at(self.above);
+        let (above, below) = values.split_at(self.above);
+        [dot(row_above, above), dot(row_below, below)]
+    }
+
+    /// A lobe's integrals over probes: with either way to clip, as [`Quadrature::targets`].
+    pub fn integrals(&self, lobe: &Lobe) -> impl Fn(&[f32]) -> [f64; 2] {
+        let densities: Vec<f32> = self.nodes.iter().map(|node| lobe.density(node.direction) as f32).collect();
+        let (share, _) = lobe.share_above(self.normal);
+        move |row| {
+            let [above, below] = self.sums(row, &densities);
+            [above + below, above / share]
+        }
+    }
+
+    /// The same, and their derivatives by the entries of the lobe that are `free`; by the others 0.
+    pub fn gradients(&self, lobe: &Lobe, free: [bool; 4]) -> impl Fn(&[f32]) -> ([f64; 2], [[f64; 4]; 2]) {
+        let mut densities = Vec::with_capacity(self.nodes.len());
+        let mut derivatives: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(self.nodes.len()));
+        for node in &self.nodes {
+            let (density, gradient) = lobe.density_and_gradient(node.direction);
+            densities.push(density as f32);
+            for (column, derivative) in derivatives.iter_mut().zip(gradient) {
+                column.push(derivative as f32);
+            }
+        }
+        let (share, by_entry) = lobe.share_above(self.normal);
+        move |row| {
+            let [above, below] = self.sums(row, &densities);
+            let scaled = above / share;
+            let mut gradients = [[0.0; 4]; 2];
+            for i in (0..4).filter(|&i| free[i]) {
+                let [above, below] = self.sums(row, &derivatives[i]);
+                gradients[0][i] = above + below;
+                gradients[1][i] = (above - scaled * by_entry[i]) / share;
+            }
+            ([above + below, scaled], gradients)
+        }
+    }
 }
 
 impl Problem {
@@ -46,28 +128,9 @@ impl Problem {
     /// # Errors
     /// [`FitError::NoNodes`] if the BRDF has no usable value.
     pub fn new(shares: [f64; 2], texel: &Texel, guess: &Lobe) -> Result<Self, FitError> {
-        let Nodes { all: nodes, above } = texel.nodes(guess);
-        if nodes.is_empty() {
-            return Err(FitError::NoNodes { alpha: texel.alpha, cos_view: texel.cos_view });
-        }
-        let rows = probe_rows(guess, texel.cos_view, &nodes);
-        let [of_lobe, of_schlick] = shares;
-        let target: Vec<f32> =
-            nodes.iter().map(|node| (of_lobe * node.value + of_schlick * node.schlick) as f32).collect();
-        let normal = mirror_frame(texel.cos_view).transpose() * DVec3::Z;
-        let mut problem =
-            Self { nodes, above, normal, rows, targets: Vec::new(), guess: *guess, anchor: [0.0; 4] };
-        let weights: Vec<f32> = problem.nodes.iter().map(|node| node.weight as f32).collect();
-        let [all_above, all_below] = problem.sums(&weights, &target);
-        let scale = if all_above > 0.0 { (all_above + all_below) / all_above } else { 1.0 };
-        problem.targets = problem
-            .rows
-            .chunks_exact(target.len())
-            .map(|row| {
-                let [above, below] = problem.sums(row, &target);
-                [above + below, scale * above]
-            })
-            .collect();
+        let quadrature = Quadrature::new(texel, guess)?;
+        let targets = quadrature.targets(shares);
+        let mut problem = Self { quadrature, targets, guess: *guess, anchor: [0.0; 4] };
         let (matrix, _) = problem.normal_equations(guess, [true; 4]);
         problem.anchor = std::array::from_fn(|i| ANCHOR * matrix[i][i]);
         Ok(problem)
@@ -78,13 +141,14 @@ impl Problem {
         if !lobe.is_valid() {
             return f64::INFINITY;
         }
-        let densities: Vec<f32> = self.nodes.iter().map(|node| lobe.density(node.direction) as f32).collect();
-        let (share, _) = lobe.share_above(self.normal);
+        let integrals = self.quadrature.integrals(lobe);
         let misfit: f64 = self
+            .quadrature
             .probes()
+            .zip(&self.targets)
             .map(|(row, target)| {
-                let [above, below] = self.sums(row, &densities);
-                (above + below - target[0]).powi(2) + (above / share - target[1]).powi(2)
+                let [whole, above] = integrals(row);
+                (whole - target[0]).powi(2) + (above - target[1]).powi(2)
             })
             .sum();
         let distance: f64 =
@@ -110,37 +174,14 @@ impl Problem {
 
     /// `JᵀJ` and `Jᵀr` of the residuals; entries that are not free get a unit diagonal and no slope.
     fn normal_equations(&self, lobe: &Lobe, free: [bool; 4]) -> ([[f64; 4]; 4], [f64; 4]) {
-        // Evaluate the density and its derivatives at the nodes
-        let mut densities = Vec::with_capacity(self.nodes.len());
-        let mut derivatives: [Vec<f32>; 4] = std::array::from_fn(|_| Vec::with_capacity(self.nodes.len()));
-        for node in &self.nodes {
-            let (density, gradient) = lobe.density_and_gradient(node.direction);
-            densities.push(density as f32);
-            for (column, derivative) in derivatives.iter_mut().zip(gradient) {
-                column.push(derivative as f32);
-            }
-        }
-        // Sum them over each probe, and accumulate both residuals
-        let (share, share_gradient) = lobe.share_above(self.normal);
+        let gradients = self.quadrature.gradients(lobe, free);
         let mut normal = [[0.0; 4]; 4];
         let mut slope = [0.0; 4];
-        let mut accumulate = |residual: f64, gradient: [f64; 4]| {
-            for i in 0..4 {
-                slope[i] += residual * gradient[i];
-                for j in 0..4 {
-                    normal[i][j] += gradient[i] * gradient[j];
-                }
+        for (row, target) in self.quadrature.probes().zip(&self.targets) {
+            let (integrals, gradients) = gradients(row);
+            for (way, gradient) in gradients.iter().enumerate() {
+                accumulate(&mut normal, &mut slope, integrals[way] - target[way], 1.0, gradient);
             }
-        };
-        for (row, target) in self.probes() {
-            let [above, below] = self.sums(row, &densities);
-            let by_entry: [[f64; 2]; 4] =
-                std::array::from_fn(|k| if free[k] { self.sums(row, &derivatives[k]) } else { [0.0; 2] });
-            accumulate(above + below - target[0], by_entry.map(|[above, below]| above + below));
-            let scaled = above / share;
-            let by_share = |k: usize| if free[k] { scaled * share_gradient[k] } else { 0.0 };
-            let gradient = std::array::from_fn(|k| (by_entry[k][0] - by_share(k)) / share);
-            accumulate(scaled - target[1], gradient);
         }
         for i in 0..4 {
             if free[i] {
@@ -152,17 +193,21 @@ impl Problem {
         }
         (normal, slope)
     }
+}
 
-    /// Of each probe the solid angle of each node within it, and the integrals aimed at.
-    pub fn probes(&self) -> impl Iterator<Item = (&[f32], [f64; 2])> {
-        self.rows.chunks_exact(self.nodes.len()).zip(self.targets.iter().copied())
-    }
-
-    /// The integral over a probe of what has `values` at the nodes: its parts above and below the surface.
-    pub fn sums(&self, row: &[f32], values: &[f32]) -> [f64; 2] {
-        let (row_above, row_below) = row.split_at(self.above);
-        let (above, below) = values.split_at(self.above);
-        [dot(row_above, above), dot(row_below, below)]
+/// Adds a residual, whose square counts `weight`, and its derivatives by N parameters to `JᵀJ` and `Jᵀr`.
+pub fn accumulate<const N: usize>(
+    normal: &mut [[f64; N]; N],
+    slope: &mut [f64; N],
+    residual: f64,
+    weight: f64,
+    gradient: &[f64; N],
+) {
+    for i in 0..N {
+        slope[i] += weight * residual * gradient[i];
+        for j in 0..N {
+            normal[i][j] += weight * gradient[i] * gradient[j];
+        }
     }
 }
 

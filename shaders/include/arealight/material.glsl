@@ -40,15 +40,20 @@ bool arealight_has_lobe(int lobe) {
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 }
 
+// Puts two specular lobes of these spaces into `point`, exact in the reflectance and its colour: TableSample::lobes.
+void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surface, ArealightTableSample table, mat3 first, mat3 second) {
+    vec3 albedo = arealight_specular_albedo(table, surface.f0, surface.f90);
+    vec3 second_albedo = arealight_second_albedo(table, surface.f0, surface.f90, albedo);
+    point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_lobe(first, albedo - second_albedo);
+    point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(second, second_albedo);
+}
+
 // Puts the specular lobes of a surface into `point`. Their albedos, without Fresnel term and of Schlick's weight.
 ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
         if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
-            vec3 albedo = arealight_specular_albedo(stretched.table, surface.f0, surface.f90);
-            vec3 second = arealight_second_albedo(stretched.table, surface.f0, surface.f90, albedo);
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_lobe(stretched.space, albedo - second);
-            point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(stretched.schlick_space, second);
+            arealight_put_two_lobes(point, surface, stretched.table, stretched.space, stretched.schlick_space);
         } else {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
         }
@@ -56,10 +61,8 @@ ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, Ar
     }
     ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, AREALIGHT_HAS_TWO_SPECULAR_LOBES);
     if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
-        vec3 albedo = arealight_specular_albedo(table, surface.f0, surface.f90);
-        vec3 second = arealight_second_albedo(table, surface.f0, surface.f90, albedo);
-        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_table_lobe(frame, table.matrix, table.alpha, albedo - second);
-        point.lobes[AREALIGHT_LOBE_SECOND] = arealight_table_lobe(frame, table.schlick_matrix, table.alpha, second);
+        arealight_put_two_lobes(point, surface, table, arealight_table_space(frame, table.matrix, table.alpha),
+                                arealight_table_space(frame, table.schlick_matrix, table.alpha));
     } else {
         point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
     }

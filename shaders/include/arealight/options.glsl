@@ -59,7 +59,7 @@
 #define AREALIGHT_SURFACE_HORIZON 0
 #endif
 
-// Two transformed cosines for the specular lobe (arealight::SpecularLobes::Two), at about half the error of one.
+// Two transformed cosines for the specular lobe (arealight::SpecularLobes::Two), at .6 to .8 times the error of one.
 #ifndef AREALIGHT_TWO_SPECULAR_LOBES
 #define AREALIGHT_TWO_SPECULAR_LOBES 0
 #endif

@@ -1,8 +1,7 @@
 //! The cells of a table's horizons, which tiles are classified with, hold every lookup.
 
-use arealight::LightTable;
-use arealight::SpecularLobes;
 use arealight::table::{LobeHorizon, mirror_frame};
+use arealight::{SpecularLobes, TableSample};
 use glam::{DMat3, DVec3};
 
 /// The last row of the transform into a lobe's cosine space: along the normal of the lobe's horizon.
@@ -24,22 +23,33 @@ fn views() -> impl Iterator<Item = (f64, f64)> {
     places().flat_map(move |roughness| places().skip(1).map(move |v| (roughness, 1.0 - v * v)))
 }
 
-fn cell(horizons: &[LobeHorizon], table: &LightTable, roughness: f64, cos_view: f64) -> LobeHorizon {
+/// A lookup, and the horizons of the cell that it lies in.
+struct View {
+    roughness: f64,
+    cos_view: f64,
+    sample: TableSample,
+    horizon: LobeHorizon,
+}
+
+/// The built-in table at each of [`views`].
+fn looked_up(lobes: SpecularLobes) -> Vec<View> {
+    let table = arealight_table::ggx();
+    let horizons = table.lobe_horizons(lobes);
     let cells = table.size() as usize - 1;
-    let axes = [roughness.max(0.01), (1.0 - cos_view).sqrt()];
-    let [x, y] = axes.map(|axis| ((axis * cells as f64) as usize).min(cells - 1));
-    horizons[y * cells + x]
+    let view = |(roughness, cos_view): (f64, f64)| {
+        let axes = [roughness.max(0.01), (1.0 - cos_view).sqrt()];
+        let [x, y] = axes.map(|axis| ((axis * cells as f64) as usize).min(cells - 1));
+        let sample = table.lookup(roughness, cos_view);
+        View { roughness, cos_view, sample, horizon: horizons[y * cells + x] }
+    };
+    views().map(view).collect()
 }
 
 #[test]
 fn every_lookup_lies_within_the_horizons_of_its_cell() {
-    let table = arealight_table::ggx();
     for lobes in [SpecularLobes::One, SpecularLobes::Two] {
-        let horizons = table.lobe_horizons(lobes);
         let (mut inside, mut near_an_end) = (0, 0);
-        for (roughness, cos_view) in views() {
-            let sample = table.lookup(roughness, cos_view);
-            let horizon = cell(&horizons, &table, roughness, cos_view);
+        for View { roughness, cos_view, sample, horizon } in looked_up(lobes) {
             for reflectance in [0.0, 0.04, 0.5, 1.0] {
                 let weight = horizon.weight.map(|weight| f64::from(weight) * (1.0 - reflectance));
                 // Of two lobes any part, as the kernel has it
@@ -77,13 +87,9 @@ fn used(lobes: [(DMat3, DVec3); 2]) -> impl Iterator<Item = (DMat3, DVec3)> {
 
 #[test]
 fn no_lobe_is_denser_than_the_envelope_of_its_cell() {
-    let table = arealight_table::ggx();
     for lobes in [SpecularLobes::One, SpecularLobes::Two] {
-        let horizons = table.lobe_horizons(lobes);
         let (mut all, mut near) = (0, 0);
-        for (roughness, cos_view) in views() {
-            let sample = table.lookup(roughness, cos_view);
-            let horizon = cell(&horizons, &table, roughness, cos_view);
+        for View { roughness, cos_view, sample, horizon } in looked_up(lobes) {
             assert!(sample.schlick <= f64::from(horizon.schlick_albedo));
             let [a, b] = horizon.envelope.map(f64::from);
             for reflectance in [0.0, 0.04, 1.0] {

@@ -15,7 +15,7 @@ pub struct QualityArguments {
     horizon: Clip,
     /// How many lobes the specular one is made of [default: one for render, two for eval]
     #[arg(long, value_enum, value_name = "COUNT")]
-    specular_lobes: Option<Parts>,
+    specular_lobes: Option<LobeCount>,
     /// Where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
     lobes: Source,
@@ -56,11 +56,20 @@ pub enum Source {
 
 /// How many lobes are integrated.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum Parts {
+pub enum LobeCount {
     /// One integral a light
     One,
-    /// Two integrals a light, at about half the error
+    /// Two integrals a light, at .6 to .8 times the error
     Two,
+}
+
+impl From<LobeCount> for SpecularLobes {
+    fn from(count: LobeCount) -> Self {
+        match count {
+            LobeCount::One => Self::One,
+            LobeCount::Two => Self::Two,
+        }
+    }
 }
 
 /// How the part of a texture that a lobe sees is looked up.
@@ -99,11 +108,7 @@ impl QualityArguments {
             Clip::Cosine => Horizon::Cosine,
             Clip::Both => Horizon::Both,
         };
-        let specular_lobes = match self.specular_lobes {
-            None => default.specular_lobes,
-            Some(Parts::One) => SpecularLobes::One,
-            Some(Parts::Two) => SpecularLobes::Two,
-        };
+        let specular_lobes = self.specular_lobes.map_or(default.specular_lobes, SpecularLobes::from);
         let lobes = match self.lobes {
             Source::Table => Lobes::Table,
             Source::Formula => Lobes::Formula,

@@ -6,6 +6,7 @@ use crate::{
     Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes, skins,
 };
 use glam::Vec3;
+use std::cell::LazyCell;
 use std::ops::Range;
 use std::path::Path;
 
@@ -71,9 +72,12 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let placed = nodes::place(&mut loader)?;
     // Give every primitive to the triangles, and to the lights where it emits
     let mut primitives = meshes::Meshes::new(&loader);
-    let worlds = nodes::worlds(&placed);
+    let worlds = LazyCell::new(|| nodes::worlds(&placed));
     for node in &placed {
-        let pose = skins::pose(&mut loader, &worlds, node)?;
+        let pose = match node.skin {
+            Some(skin) => skins::pose(&mut loader, &worlds, node, skin)?,
+            None => None,
+        };
         for primitive in &*primitives.of_node(&mut loader, node)? {
             let material = materials::resolve(&mut loader, primitive)?;
             let first = loader.scene.triangles.len();

@@ -221,43 +221,25 @@ pub(crate) fn place<'a>(
         return Err(loader.document.too_large("triangles", total as u64, MAX_TRIANGLES as u64));
     }
     // Move the vertices into the world
-    let moved = match (pose, &primitive.influences) {
-        (Some(pose), Some(influences)) => Some(skins::transforms(pose, influences).map_err(|vertex| {
-            let field = format!("{}.JOINTS_0[{vertex}]", primitive.field);
-            loader
-                .document
-                .invalid(field, format!("the skin of nodes[{}] has {} joints", node.index, pose.len()))
-        })?),
-        (Some(_), None) => {
-            loader.warn(primitive.field.as_str(), "has no JOINTS_0 and WEIGHTS_0: it is where its node is");
-            None
-        }
-        _ => None,
-    };
-    let to_world = |vertex: usize| moved.as_ref().map_or(node.world, |moved| moved[vertex]);
+    let moves = moves(loader, (node, pose), primitive)?;
+    let at = |vertex: usize| &moves[if moves.len() == 1 { 0 } else { vertex }];
     let in_space = primitive.positions.iter().map(|p| DVec3::from_array(p.map(f64::from)));
-    let positions: Vec<DVec3> = in_space.enumerate().map(|(i, p)| to_world(i).transform_point3(p)).collect();
+    let positions: Vec<DVec3> =
+        in_space.enumerate().map(|(i, p)| at(i).to_world.transform_point3(p)).collect();
     if let Some(bad) = positions.iter().position(|p| p.is_nan() || p.abs().max_element() > MAX_COORDINATE) {
         let field = format!("{}.POSITION[{bad}] in the world", primitive.field);
         return Err(loader.document.not_finite(field, positions[bad].to_array()));
     }
-    // Normals go by the cofactors; a mirror turns them, and the vertex order, around
-    let is_mirrored = |vertex: usize| to_world(vertex).matrix3.determinant() < 0.0;
-    let normal = |(vertex, normal): (usize, &Vec3)| {
-        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world(vertex).matrix3;
-        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-        let turned = if is_mirrored(vertex) { -normal.as_dvec3() } else { normal.as_dvec3() };
-        (cofactors * turned).normalize_or_zero().as_vec3()
-    };
+    let normal = |(i, n): (usize, &Vec3)| (at(i).of_normals * n.as_dvec3()).normalize_or_zero().as_vec3();
     let normals: Vec<Vec3> = primitive.normals.iter().enumerate().map(normal).collect();
     let mut kept = Vec::with_capacity(primitive.triangles.len());
     for (number, &[a, b, c]) in primitive.triangles.iter().enumerate() {
-        let mirrored = is_mirrored(a as usize);
+        let mirrored = at(a as usize).is_mirrored;
         let corners = if mirrored { [a, c, b] } else { [a, b, c] }.map(|i| i as usize);
         let [d, e, f] = primitive.tangents.get(number).map_or([Vec4::ZERO; 3], |of_corners| {
             std::array::from_fn(|i| {
                 let (tangent, vertex) = (of_corners[i], [a, b, c][i] as usize);
-                let direction = to_world(vertex).matrix3 * tangent.truncate().as_dvec3();
+                let direction = at(vertex).to_world.matrix3 * tangent.truncate().as_dvec3();
                 let side = if mirrored { -tangent.w } else { tangent.w };
                 direction.normalize_or_zero().as_vec3().extend(side)
             })
@@ -274,12 +256,7 @@ pub(crate) fn place<'a>(
     }
     let largest =
         primitive.positions.iter().flatten().fold(0.0_f64, |largest, x| largest.max(f64::from(x.abs())));
-    let stretch = |vertex: usize| {
-        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world(vertex).matrix3;
-        x.length().max(y.length()).max(z.length())
-    };
-    let vertices = if moved.is_some() { 0..positions.len() } else { 0..1 };
-    let stretch = vertices.map(stretch).fold(0.0, f64::max);
+    let stretch = moves.iter().map(|vertex| vertex.stretch).fold(0.0, f64::max);
     let name = node.name.as_ref().or(primitive.mesh_name.as_ref()).filter(|name| !name.is_empty());
     Ok(Instance {
         name: name.map_or_else(|| format!("node {}", node.index), Clone::clone),
@@ -289,4 +266,48 @@ pub(crate) fn place<'a>(
         triangles: kept,
         rounding: largest * stretch * f64::from(f32::EPSILON),
     })
+}
+
+/// What takes vertices into the world.
+struct Move {
+    to_world: DAffine3,
+    /// Normals go by the cofactors; a mirror turns them around.
+    of_normals: DMat3,
+    /// Whether it turns the vertex order around.
+    is_mirrored: bool,
+    /// The most that a length grows along an axis.
+    stretch: f64,
+}
+
+impl Move {
+    fn new(to_world: DAffine3) -> Self {
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = to_world.matrix3;
+        let is_mirrored = x.cross(y).dot(z) < 0.0;
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        Self {
+            to_world,
+            of_normals: cofactors * if is_mirrored { -1.0 } else { 1.0 },
+            is_mirrored,
+            stretch: x.length().max(y.length()).max(z.length()),
+        }
+    }
+}
+
+/// One for all of a primitive's vertices, where its node is; or one for each, by the pose of its skin.
+fn moves(
+    loader: &mut Loader,
+    (node, pose): (&PlacedNode, Option<&[DAffine3]>),
+    primitive: &Primitive,
+) -> Result<Vec<Move>, SceneError> {
+    let Some(pose) = pose else { return Ok(vec![Move::new(node.world)]) };
+    let Some(influences) = &primitive.influences else {
+        loader.warn(primitive.field.as_str(), "has no JOINTS_0 and WEIGHTS_0: it is where its node is");
+        return Ok(vec![Move::new(node.world)]);
+    };
+    let moved = skins::transforms(pose, influences).map_err(|vertex| {
+        let field = format!("{}.JOINTS_0[{vertex}]", primitive.field);
+        let problem = format!("the skin of nodes[{}] has {} joints", node.index, pose.len());
+        loader.document.invalid(field, problem)
+    })?;
+    Ok(moved.into_iter().map(Move::new).collect())
 }

@@ -45,16 +45,15 @@ pub(crate) fn read(
     Ok(Some(joints.iter().zip(&weights).map(influence).collect()))
 }
 
-/// From the mesh's space at binding to the world, for each joint of a node's skin. None if the node has no skin, or one whose joints are not
-/// all in `worlds`, the places of the scene's nodes.
+/// From the mesh's space at binding to the world, for each joint of a node's skin, which is that number in the file. None if the skin's joints are
+/// not all in `worlds`, the places of the scene's nodes.
 pub(crate) fn pose(
     loader: &mut Loader,
     worlds: &HashMap<usize, DAffine3>,
     node: &PlacedNode,
+    skin: usize,
 ) -> Result<Option<Vec<DAffine3>>, SceneError> {
-    let Some(skin) = node.skin.and_then(|index| loader.document.root.skins.get(index)) else {
-        return Ok(None);
-    };
+    let Some(skin) = loader.document.root.skins.get(skin) else { return Ok(None) };
     let joints = skin.joints.iter().map(|joint| worlds.get(&joint.value()).copied());
     let Some(joints) = joints.collect::<Option<Vec<DAffine3>>>() else {
         let text = "its skin has a joint that is not in the scene: skin ignored";

@@ -174,8 +174,8 @@ impl LightTable {
 
     fn horizon(&self, lobes: SpecularLobes, x: usize, y: usize) -> LobeHorizon {
         let cells = f64::from(self.size - 1);
-        let samples: Vec<Vec<[f64; 3]>> = (0..SAMPLES * SAMPLES)
-            .map(|index| {
+        let samples: Vec<[f64; 3]> = (0..SAMPLES * SAMPLES)
+            .flat_map(|index| {
                 let along =
                     |node: usize, step: usize| (node as f64 + step as f64 / (SAMPLES - 1) as f64) / cells;
                 let (u, v) = (along(x, index % SAMPLES), along(y, index / SAMPLES).max(LEAST_SINE));
@@ -183,7 +183,7 @@ impl LightTable {
             })
             .collect();
         let generous = |place: usize, most: f64| {
-            let values = || samples.iter().flatten().map(|sample| sample[place]);
+            let values = || samples.iter().map(|sample| sample[place]);
             let (low, high) =
                 (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
             let by = 0.05 * (high - low) + most * high.abs().max(low.abs()) + 1e-6;
@@ -231,9 +231,10 @@ fn lobe_ends(lobes: SpecularLobes, found: &TableSample) -> impl Iterator<Item = 
     std::iter::once([found.inverse, found.schlick_inverse]).chain(of_pairs)
 }
 
-/// Both ends of a lobe's reflectances, and half-way between them.
-fn between([from, to]: [glam::DMat3; 2]) -> [glam::DMat3; 3] {
-    [0.0, 0.5, 1.0].map(|part| from * (1.0 - part) + to * part)
+/// Both ends of a lobe's reflectances, and half-way between them; one matrix where both are the same.
+fn between([from, to]: [glam::DMat3; 2]) -> impl Iterator<Item = glam::DMat3> {
+    let parts: &[f64] = if from == to { &[0.0] } else { &[0.0, 0.5, 1.0] };
+    parts.iter().map(move |part| from * (1.0 - part) + to * *part)
 }
 
 /// The directions in which a lobe's densities are taken: about that where it is largest over the elevation's sine, which is in the plane of incidence, as

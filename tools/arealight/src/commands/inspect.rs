@@ -3,9 +3,8 @@
 use crate::failure::Failure;
 use crate::output::{self, print};
 use crate::progress;
-use crate::quality::Parts;
-use arealight::LightTable;
-use arealight::SpecularLobes;
+use crate::quality::LobeCount;
+use arealight::{LightTable, SpecularLobes};
 use arealight_table::TableFile;
 use channels::Channel;
 use errors::{CELLS, ErrorMap, Source, Subject};
@@ -39,8 +38,8 @@ pub struct Arguments {
     #[arg(long, value_name = "F0", default_value_t = 1.0)]
     f0: f64,
     /// How many lobes stand for the specular one in the picture.
-    #[arg(long, value_enum, value_name = "COUNT", default_value_t = Parts::One)]
-    specular_lobes: Parts,
+    #[arg(long, value_enum, value_name = "COUNT", default_value_t = LobeCount::One)]
+    specular_lobes: LobeCount,
     /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over roughness and view
     /// angle, and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
@@ -122,11 +121,7 @@ impl Arguments {
     }
 
     fn material(&self) -> Material {
-        let specular_lobes = match self.specular_lobes {
-            Parts::One => SpecularLobes::One,
-            Parts::Two => SpecularLobes::Two,
-        };
-        Material { f0: self.f0, specular_lobes }
+        Material { f0: self.f0, specular_lobes: self.specular_lobes.into() }
     }
 }
 

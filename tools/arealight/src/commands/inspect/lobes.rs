@@ -4,8 +4,7 @@
 
 use super::canvas::{Align, Canvas, LINE};
 use super::colour::{FAINT, INK, PAPER, diverging, viridis};
-use arealight::SpecularLobes;
-use arealight::{LightTable, TableSample};
+use arealight::{LightTable, SpecularLobes, TableSample};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::ltsd::{Original, TransformedDistribution};
 use glam::{DMat3, DVec3};
