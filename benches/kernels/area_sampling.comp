@@ -20,6 +20,7 @@ const int MOST_RAYS = 16;
 #define BLOCKER_TRIANGLES_BINDING 8
 const bool HAS_SPECULAR_INPUT = true;
 #include "light_records.glsl"
+#include "quad_point.glsl"
 #include "g_buffer.glsl"
 #include "blockers.glsl"
 #include "arealight/ggx.glsl"
@@ -27,9 +28,6 @@ const bool HAS_SPECULAR_INPUT = true;
 #include "arealight/shadows/ray_origin.glsl"
 #include "arealight/shadows/sequence.glsl"
 
-layout(set = 0, binding = 1, std430) readonly buffer LightVertices {
-    vec4 light_vertices[];
-};
 layout(set = 0, binding = 6, rgba32f) uniform image2D radiance_image;
 
 #include "shade_constants.glsl"
@@ -70,19 +68,6 @@ void choose_lights(ivec2 pixel, vec3 position, out Choice choices[MOST_RAYS]) {
     for (int ray = 0; ray < RAYS; ray++) {
         choices[ray].probability /= max(sum, AREALIGHT_TINY);
     }
-}
-
-// A point of a quad relative to its center; `area` is what a density of 1 over the random numbers is one over, in area: the quad's, where it is a
-// parallelogram.
-vec3 point_of(ArealightGpuLight light, vec2 random, out float area) {
-    vec3 a = light_vertices[light.first_vertex].xyz;
-    vec3 b = light_vertices[light.first_vertex + 1u].xyz;
-    vec3 c = light_vertices[light.first_vertex + 2u].xyz;
-    vec3 d = light_vertices[light.first_vertex + min(3u, light.vertex_count - 1u)].xyz;
-    vec3 along = mix(b - a, c - d, random.y);
-    vec3 across = mix(d - a, c - b, random.x);
-    area = length(cross(along, across));
-    return a + random.x * (b - a) + random.y * across;
 }
 
 // f cos of both lobes, for directions in the shading frame.

@@ -1,10 +1,12 @@
 //! What shadows err at each level, and what they take: beside the Monte Carlo reference, and beside area sampling with as many rays.
 
 mod area_sampling;
+mod pcss;
 pub(crate) mod pictures;
 mod text;
 
 pub use area_sampling::AREA_SAMPLING;
+pub use pcss::PCSS;
 
 use crate::ladder::Spread;
 use crate::ladder::frame::processors;
@@ -12,8 +14,8 @@ use crate::shadows::{ShadowErrors, ShadowTruth, SizeError, part_found};
 use crate::textures::{clocked, is_software};
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Effects, LightTable};
-use arealight_engine::host::Host;
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
+use arealight_engine::host::{Buffer, Host};
+use arealight_engine::{Engine, EngineError, OtherShadows, Reference, SceneRenderer, ShadowedView};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_vk::{ShadowStage, TableFormat};
 use glam::{DVec3, Vec3};
@@ -71,11 +73,13 @@ pub enum Level {
     History(u32),
     /// So many rays a pixel, by [`AREA_SAMPLING`]. For lights that are convex quads without a texture.
     AreaSampling(u32),
+    /// [`PCSS`] by so many texels for the depth of blockers, and for what arrives. For one light, a convex quad that shines to one side.
+    Pcss(u32, u32),
 }
 
 impl Level {
     /// Every level, in the order of the tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Off,
         Self::Rays(1),
         Self::Rays(2),
@@ -89,17 +93,19 @@ impl Level {
         Self::AreaSampling(2),
         Self::AreaSampling(4),
         Self::AreaSampling(16),
+        Self::Pcss(16, 32),
+        Self::Pcss(256, 1024),
     ];
 
     /// How many rays a pixel has.
     pub fn rays(self) -> u32 {
         match self {
-            Self::Off => 0,
+            Self::Off | Self::Pcss(..) => 0,
             Self::Rays(rays) | Self::Filtered(rays) | Self::History(rays) | Self::AreaSampling(rays) => rays,
         }
     }
 
-    /// As `arealight render --shadows` takes it; area sampling by its name.
+    /// As `arealight render --shadows` takes it; what is only compared with by its name.
     pub fn name(self) -> String {
         match self {
             Self::Off => "off".into(),
@@ -107,6 +113,7 @@ impl Level {
             Self::Filtered(rays) => format!("filtered:{rays}"),
             Self::History(rays) => format!("filtered:{rays}, history"),
             Self::AreaSampling(rays) => format!("area sampling, {rays}"),
+            Self::Pcss(search, filter) => format!("PCSS, {search} + {filter} texels"),
         }
     }
 }
@@ -239,15 +246,24 @@ fn run_scene(
         pictures: Pictures::new(renderer)?,
         scene: &buffers,
         surfaces: scene.effects() & Effects::SURFACES,
+        shadow_map: Some(
+            engine.storage("shadow map", &[0.0_f32; (pcss::MAP_SIZE * pcss::MAP_SIZE) as usize])?,
+        ),
     };
     let lights = view.pictures.renderer.lights();
     let samples = options.samples_under(lights.light_count + lights.shape_count);
     let truth = Truth::new(&mut view, samples, progress)?;
 
     let are_quads = lights.quad_count == lights.light_count && lights.shape_count == 0;
+    let is_one_sided_quad = are_quads && matches!(&*scene.lights, [light] if !light.two_sided);
     let mut levels = vec![];
     for level in Level::ALL {
-        if are_quads || !matches!(level, Level::AreaSampling(_)) {
+        let is_possible = match level {
+            Level::AreaSampling(_) => are_quads,
+            Level::Pcss(..) => is_one_sided_quad,
+            _ => true,
+        };
+        if is_possible {
             levels.push(view.run(level, &truth, options.rounds)?);
         }
         progress(1);
@@ -310,6 +326,8 @@ struct View<'a> {
     pictures: Pictures<'a>,
     scene: &'a SceneBuffers,
     surfaces: Effects,
+    /// Of [`PCSS`].
+    shadow_map: Option<Buffer>,
 }
 
 /// Seconds of each pass that a frame has: of [`PassTimes`].
@@ -327,6 +345,7 @@ impl View<'_> {
         let unshadowed = match (&passes, level) {
             // It knows none
             (_, Level::AreaSampling(_)) => truth.unshadowed.clone(),
+            (_, Level::Pcss(..)) => self.picture(Level::Off, None)?,
             (Some(passes), _) => pictures::unshadowed(passes)?,
             _ => radiance.clone(),
         };
@@ -362,7 +381,7 @@ impl View<'_> {
             Level::Filtered(rays) => (rays, (gather, none)),
             Level::History(rays) => (rays, (gather, ShadowHistory::Camera)),
             // Of the blockers alone
-            Level::AreaSampling(_) => (1, (ShadowFilter::Off, none)),
+            Level::AreaSampling(_) | Level::Pcss(..) => (1, (ShadowFilter::Off, none)),
         };
         let options = self.options(rays, Output::default());
         self.pictures.renderer.shadowed(self.scene, options, filter).map(Some)
@@ -390,10 +409,23 @@ impl View<'_> {
             return Ok([Some(clocked(host, || renderer.shade_as(plain))?), None, None, None]);
         };
         if let Level::AreaSampling(rays) = level {
-            let constants = [(area_sampling::RAYS, rays)];
-            let took =
-                clocked(host, || renderer.shade_shadowed_by(passes, (&AREA_SAMPLING, &constants), seed))?;
+            let rays = [(area_sampling::RAYS, rays)];
+            let kernel = OtherShadows::new(&AREA_SAMPLING, &rays);
+            let took = clocked(host, || renderer.shade_shadowed_by(passes, &kernel, seed))?;
             return Ok([None, Some(took), None, None]);
+        }
+        if let Level::Pcss(search, filter) = level {
+            let taps = [(pcss::SEARCH_TAPS, search), (pcss::FILTER_TAPS, filter)];
+            let by = OtherShadows { buffer: self.shadow_map.as_ref(), ..OtherShadows::new(&PCSS, &taps) };
+            let map = OtherShadows {
+                specialization: &[(pcss::MAKES_MAP, 1)],
+                items: Some([pcss::MAP_SIZE; 2]),
+                ..by
+            };
+            renderer.shade_shadowed_by(passes, &map, seed)?;
+            let shade = clocked(host, || renderer.shade_as(plain))?;
+            let took = clocked(host, || renderer.shade_shadowed_by(passes, &by, seed))?;
+            return Ok([Some(shade), None, None, Some(took)]);
         }
         let mut seconds = [Some(clocked(host, || renderer.shade_picking(passes, seed))?), None, None, None];
         for stage in passes.stages() {

@@ -9,6 +9,14 @@ use arealight::kernels::{
 /// The id of the specialisation constant `RAYS`: how many a pixel has, 1 to 16.
 pub const RAYS: u32 = 0;
 
+/// What the kernels that are compared with change.
+pub(super) const RADIANCE: Binding = Binding {
+    name: "radiance_image",
+    kind: BindingKind::StorageImage,
+    access: Access::ReadWrite,
+    content: "radiance is added to, or multiplied (rgba32f)",
+};
+
 /// Plain area sampling: of each ray the light by power over distance squared, and a point of it by area. For convex quads without a texture.
 pub static AREA_SAMPLING: Kernel = Kernel {
     name: "area_sampling",
@@ -22,12 +30,7 @@ pub static AREA_SAMPLING: Kernel = Kernel {
         G_NORMAL,
         G_BASE_COLOR,
         G_SPECULAR,
-        Binding {
-            name: "radiance_image",
-            kind: BindingKind::StorageImage,
-            access: Access::ReadWrite,
-            content: "radiance is added (rgba32f)",
-        },
+        RADIANCE,
         BLOCKER_NODES,
         BLOCKER_TRIANGLES,
     ],

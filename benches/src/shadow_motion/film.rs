@@ -74,7 +74,7 @@ impl<'a> Film<'a> {
             buffers,
             motion,
             size,
-            middle: f64::from(options.frames) / 2.0,
+            middle: f64::from(options.frames_of(motion)) / 2.0,
             camera,
             seen: vec![],
             uncovered: vec![],
@@ -83,13 +83,13 @@ impl<'a> Film<'a> {
 
     /// Moves what moves to where it is in a frame.
     pub fn advance(&mut self, frame: u32) -> Result<(), EngineError> {
-        let time = f64::from(frame) - self.middle;
-        if matches!(self.motion, Motion::Light | Motion::Both) {
+        let time = f64::from(self.motion.speed()) * (f64::from(frame) - self.middle);
+        if self.motion.moves_light() {
             let lights: Vec<Light> = self.scene.lights.iter().map(|light| moved(light, time)).collect();
             self.pictures.renderer.set_lights(&lights, self.buffers.origin)?;
         }
         let before = self.camera.clone();
-        if matches!(self.motion, Motion::Camera | Motion::Both) {
+        if self.motion.moves_camera() {
             let aspect = f64::from(self.size[0]) / f64::from(self.size[1].max(1));
             if let Some(camera) = self.scene.camera(None, aspect) {
                 self.camera = orbit(camera, time.to_radians());

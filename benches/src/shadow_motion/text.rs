@@ -7,9 +7,10 @@ use std::fmt::Write as _;
 /// What the tables' columns are.
 const MEASURES: &str = "\
 Errors of *S* times 100: the root of the mean square over lit pixels of the judged frames; over those in a penumbra; over those whose surface the frame \
-before did not see; and of the worst frame. The lag is how many frames shadows are behind. The truth of each frame is the mean of many frames of four rays as they are, with the same \
-lobes; its noise, known from its halves, is taken out of the squares. At `camera` the camera goes about the scene by 1 degree a frame, at `light` the light \
-moves by 4 cm and turns by 1 degree a frame, at `both` they do so together.";
+before did not see; and of the worst frame. The lag is how many frames shadows are behind, where the light alone moves. The truth of each frame is the mean of \
+many frames of four rays as they are, with the same lobes; its noise, known from its halves, is taken out of the squares. At `camera` the camera goes about the \
+scene by 1 degree a frame, at `light` the light moves by 4 cm and turns by 1 degree a frame, at `both` they do so at once. At `fast light` the light goes the \
+same way four times as fast, in a quarter of the frames.";
 
 fn cells(film: &FilmErrors) -> Vec<String> {
     let number = |error: f64| format!("{:.2}", 100.0 * error);

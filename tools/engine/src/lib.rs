@@ -23,7 +23,7 @@ pub use g_buffer::GBuffer;
 pub use host::{Host, HostError, HostOptions, Validation};
 pub use kept::Kept;
 pub use passes::{BoundSet, Passes, SharedPass};
-pub use render::shadowed::ShadowedView;
+pub use render::shadowed::{OtherShadows, ShadowedView};
 pub use render::tiled::{TileCounts, TileLists, TiledView};
 pub use render::{Reference, SceneRenderer};
 pub use texture_array::{TextureArray, TextureSource};
@@ -190,7 +190,10 @@ impl Engine {
     }
 
     /// A storage buffer with the device that holds `items`; never empty, since a descriptor wants one.
-    fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device has none as large, or no memory.
+    pub fn storage<T: Pod>(&self, name: &'static str, items: &[T]) -> Result<Buffer, EngineError> {
         self.check_storage(name, size_of_val(items) as u64)?;
         if items.is_empty() {
             return Ok(self.host().storage_buffer(name, &[T::zeroed()])?);

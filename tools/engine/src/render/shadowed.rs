@@ -30,6 +30,28 @@ pub struct ShadowedView {
     blockers: [Buffer; 2],
 }
 
+/// A kernel of another's that shades with shadows. Its bindings are the lights and their vertices, the G-buffer's position, normal, base colour and
+/// reflectance, the radiance that it adds to or multiplies, and [`arealight::Blockers`]' nodes and triangles; its push constants are
+/// [`ShadeConstants`].
+#[derive(Clone, Copy)]
+pub struct OtherShadows<'a> {
+    /// The kernel.
+    pub kernel: &'static Kernel,
+    /// Its specialisation constants.
+    pub specialization: &'a [(u32, u32)],
+    /// A storage buffer of its own, in the binding after them.
+    pub buffer: Option<&'a Buffer>,
+    /// Invocations along x and y; none: the view's pixels.
+    pub items: Option<[u32; 2]>,
+}
+
+impl<'a> OtherShadows<'a> {
+    /// One over the view's pixels, without a buffer of its own.
+    pub fn new(kernel: &'static Kernel, specialization: &'a [(u32, u32)]) -> Self {
+        Self { kernel, specialization, buffer: None, items: None }
+    }
+}
+
 impl ShadowedView {
     /// Makes the images that a run writes ready to be written.
     fn begin(&self, commands: vk::CommandBuffer) {
@@ -233,21 +255,19 @@ impl SceneRenderer<'_> {
         })
     }
 
-    /// As [`SceneRenderer::shade`], with shadows, by one kernel of another's: one to compare with. Its bindings are the lights and their vertices,
-    /// the G-buffer's position, normal, base colour and reflectance, the radiance that it adds to, and [`arealight::Blockers`]' nodes and
-    /// triangles; its push constants are [`ShadeConstants`].
+    /// As [`SceneRenderer::shade`], with shadows, by one kernel of another's: one to compare with.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn shade_shadowed_by(
         &mut self,
         view: &ShadowedView,
-        (kernel, specialization): (&'static Kernel, &[(u32, u32)]),
+        other: &OtherShadows<'_>,
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let [position, normal, base_color, specular, ..] = self.g_buffer.sampled();
-        let resources = [
+        let mut resources = vec![
             Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(self.vertex_buffer.handle()),
             position,
@@ -258,11 +278,13 @@ impl SceneRenderer<'_> {
             Resource::buffer(view.blockers[0].handle()),
             Resource::buffer(view.blockers[1].handle()),
         ];
-        let pass = self.engine.pass(kernel, specialization, &resources)?;
+        resources.extend(other.buffer.map(|buffer| Resource::buffer(buffer.handle())));
+        let pass = self.engine.pass(other.kernel, other.specialization, &resources)?;
+        let items = other.items.map_or(self.items(), |[width, height]| [width, height, 1]);
         let constants = ShadeConstants { seed, ..self.shade_constants() };
         self.engine.host().try_submit_timed(|commands| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            pass.record(commands, &constants, self.items())
+            pass.record(commands, &constants, items)
         })
     }
 }

@@ -1,5 +1,7 @@
 //! `arealight bench shadows`
 
+mod strip;
+
 use super::{Ends, document};
 use crate::failure::Failure;
 use crate::progress;
@@ -7,6 +9,7 @@ use arealight_benches::sections::Markers;
 use arealight_benches::{shadow_levels, shadow_motion};
 use arealight_scene::Scene;
 use serde::Serialize;
+use std::cell::RefCell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -35,6 +38,9 @@ pub struct Arguments {
     /// Judge every so many of a film's 64 frames.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64), requires = "motion")]
     every: u32,
+    /// Draw four frames of the first film in which everything moves: the truth, and one ray a pixel without and with a history (.png).
+    #[arg(long, value_name = "FILE", requires = "motion")]
+    strip: Option<PathBuf>,
     #[command(flatten)]
     ends: Ends,
 }
@@ -117,13 +123,27 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
     let size = [height * 16 / 9, height];
     let options = shadow_motion::Options { size, truth, every: arguments.every, ..base };
     let scenes = arguments.scenes()?;
+    if let Some(path) = &arguments.strip {
+        strip::check(path)?;
+    }
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.steps(scenes.len()), "frames");
-    let found =
-        shadow_motion::run(&host, &arealight_table::ggx(), &scenes, &options, &|count| bar.inc(count));
+    let stills = RefCell::new(vec![]);
+    let first = scenes.first().map(|scene| &*scene.name);
+    let show = |still: shadow_motion::Still| {
+        if arguments.strip.is_some() && first == Some(&*still.scene) {
+            stills.borrow_mut().push(still);
+        }
+    };
+    let advance = |count| bar.inc(count);
+    let found = shadow_motion::run(&host, &arealight_table::ggx(), &scenes, &options, &advance, &show);
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+    if let Some(path) = &arguments.strip {
+        strip::draw(&stills.borrow(), size).save_png(path)?;
+        eprintln!("wrote {}", path.display());
+    }
 
     let command =
         arguments.command(&format!("--motion --size {height} --samples {truth} --every {}", arguments.every));
