@@ -246,9 +246,8 @@ fn run_scene(
         pictures: Pictures::new(renderer)?,
         scene: &buffers,
         surfaces: scene.effects() & Effects::SURFACES,
-        shadow_map: Some(
-            engine.storage("shadow map", &[0.0_f32; (pcss::MAP_SIZE * pcss::MAP_SIZE) as usize])?,
-        ),
+        shadow_map: engine
+            .storage("shadow map", &vec![0.0_f32; (pcss::MAP_SIZE * pcss::MAP_SIZE) as usize])?,
     };
     let lights = view.pictures.renderer.lights();
     let samples = options.samples_under(lights.light_count + lights.shape_count);
@@ -327,7 +326,7 @@ struct View<'a> {
     scene: &'a SceneBuffers,
     surfaces: Effects,
     /// Of [`PCSS`].
-    shadow_map: Option<Buffer>,
+    shadow_map: Buffer,
 }
 
 /// Seconds of each pass that a frame has: of [`PassTimes`].
@@ -416,7 +415,7 @@ impl View<'_> {
         }
         if let Level::Pcss(search, filter) = level {
             let taps = [(pcss::SEARCH_TAPS, search), (pcss::FILTER_TAPS, filter)];
-            let by = OtherShadows { buffer: self.shadow_map.as_ref(), ..OtherShadows::new(&PCSS, &taps) };
+            let by = OtherShadows { buffer: Some(&self.shadow_map), ..OtherShadows::new(&PCSS, &taps) };
             let map = OtherShadows {
                 specialization: &[(pcss::MAKES_MAP, 1)],
                 items: Some([pcss::MAP_SIZE; 2]),

@@ -16,6 +16,7 @@ pub fn lambert(albedo: f32) -> Material {
         coat_roughness: 0.0,
         sheen_color: Vec3::ZERO,
         sheen_roughness: 0.0,
+        film: None,
     }
 }
 
@@ -40,6 +41,9 @@ pub fn without_textures(material: Material) -> SceneMaterial {
         anisotropy_strength: 0.0,
         anisotropy_rotation: 0.0,
         anisotropy_texture: None,
+        film_texture: None,
+        film_thickness_texture: None,
+        film_least_thickness: 0.0,
         alpha_cutoff: None,
         double_sided: true,
     }

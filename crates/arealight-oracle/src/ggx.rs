@@ -28,10 +28,14 @@ impl Ggx {
         self.distribution(half) * self.visibility(view.z, light.z) * light.z
     }
 
+    /// `cos theta_vh` of a pair of directions, in [0, 1].
+    pub fn half_cosine(view: DVec3, light: DVec3) -> f64 {
+        view.dot((view + light).normalize_or_zero()).clamp(0.0, 1.0)
+    }
+
     /// Schlick's weight `(1 - cos theta_vh)^5` of a pair of directions.
     pub fn schlick_weight(view: DVec3, light: DVec3) -> f64 {
-        let half = (view + light).normalize_or_zero();
-        (1.0 - view.dot(half).clamp(0.0, 1.0)).powi(5)
+        (1.0 - Self::half_cosine(view, light)).powi(5)
     }
 
     /// The distribution of normals D, 1/sr.

@@ -34,6 +34,7 @@
 //! | [`microsurface`] | random walks on a GGX microsurface: light that facets reflect more than once |
 //! | [`material`] | metallic-roughness materials, and the surface that they make |
 //! | [`ggx`] | the GGX lobe: evaluation, sampling, density |
+//! | [`thin_film`] | iridescent films, and the Schlick term that stands for them |
 //! | [`sheen`] | the Charlie lobe of sheen, and the transformed cosine that stands for it |
 //! | [`ltsd`] | linearly transformed spherical distributions in general |
 //! | [`polygon`] | the clamped cosine, and its linear transforms, integrated over a polygon in closed form |
@@ -62,5 +63,6 @@ pub mod sheen;
 pub mod sphere;
 pub mod stream;
 pub mod texture;
+pub mod thin_film;
 pub mod tube;
 pub mod visibility;

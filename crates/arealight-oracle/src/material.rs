@@ -1,9 +1,10 @@
 //! Metallic-roughness materials, and the surface that a shading point sees.
 
+use crate::thin_film::ThinFilm;
 use glam::{DVec3, Vec3};
 
 /// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior`,
-/// `KHR_materials_specular`, `KHR_materials_clearcoat` and `KHR_materials_sheen`). Textures belong to the scene that samples them.
+/// `KHR_materials_specular`, `KHR_materials_clearcoat`, `KHR_materials_sheen` and `KHR_materials_iridescence`). Textures belong to the scene that samples them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Linear Rec. 709 colour in [0, 1]: the Lambert albedo of a dielectric, F0 of a metal.
@@ -24,6 +25,8 @@ pub struct Material {
     pub sheen_color: Vec3,
     /// Perceptual roughness of the sheen, in [0, 1].
     pub sheen_roughness: f32,
+    /// A thin film on the surface, below sheen and the coat.
+    pub film: Option<ThinFilm>,
 }
 
 impl Default for Material {
@@ -39,6 +42,7 @@ impl Default for Material {
             coat_roughness: 0.0,
             sheen_color: Vec3::ZERO,
             sheen_roughness: 0.0,
+            film: None,
         }
     }
 }
@@ -66,6 +70,8 @@ pub struct Surface {
     /// ([`Effects::MULTIPLE_SCATTERING`](arealight::Effects::MULTIPLE_SCATTERING)); else it is lost. [`crate::microsurface`] has the truth, which
     /// [`crate::shading::truth`] leaves out.
     pub multiple_scattering: bool,
+    /// A film that replaces the Fresnel term of the GGX lobe, and of the interface.
+    pub film: Option<ThinFilm>,
     /// Where the GGX lobe is stretched along a tangent; [`Surface::alpha`] is that across it then.
     pub anisotropy: Option<Anisotropy>,
 }
@@ -102,8 +108,32 @@ impl Default for Surface {
             interface: None,
             coat: None,
             sheen: None,
+            film: None,
             anisotropy: None,
         }
+    }
+}
+
+impl Surface {
+    /// What the GGX lobe's facets reflect of light that comes in at this cosine: Schlick's term, or the film's.
+    pub fn fresnel(&self, cosine: f64) -> DVec3 {
+        match &self.film {
+            None => self.f0 + (DVec3::splat(self.f90) - self.f0) * (1.0 - cosine).powi(5),
+            Some(film) => film.reflectance(self.f0, self.f90, cosine),
+        }
+    }
+
+    /// The same surface with Schlick's term in the place of a film, for a view at this cosine to its normal.
+    #[must_use]
+    pub fn without_film(self, cos_view: f64) -> Self {
+        let Some(film) = &self.film else { return self };
+        let schlick = |f0, f90| film.as_schlick(f0, f90, cos_view, self.alpha.sqrt());
+        let (f0, f90) = schlick(self.f0, self.f90);
+        let interface = self.interface.map(|interface| {
+            let (f0, f90) = schlick(DVec3::splat(interface.f0), interface.f90);
+            Interface { f0: f0.max_element(), f90, ..interface }
+        });
+        Self { f0, f90, interface, film: None, ..self }
     }
 }
 
@@ -191,6 +221,7 @@ impl Material {
                 color: self.sheen_color.as_dvec3(),
                 roughness: f64::from(self.sheen_roughness),
             }),
+            film: self.film,
             anisotropy: None,
         }
     }

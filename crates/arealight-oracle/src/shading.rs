@@ -150,7 +150,7 @@ fn reflected(
     } else {
         let by_albedo = diffuse::albedo_part(surface, frame, settings);
         region.integrate(settings, angles, |direction| {
-            let part = diffuse::part(surface.interface, by_albedo, view, direction);
+            let part = diffuse::part(surface, by_albedo, view, direction);
             let albedo = diffuse::rough(surface.diffuse_albedo, surface.diffuse_roughness, view, direction);
             (albedo * shown(direction) * (part * direction.z.max(0.0) / PI)).to_array()
         })
@@ -158,9 +158,8 @@ fn reflected(
     let glossy = if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
         Estimate::default()
     } else {
-        let grazing = DVec3::splat(surface.f90) - surface.f0;
         let weigh = |direction: DVec3, value: f64| {
-            let fresnel = surface.f0 + grazing * Ggx::schlick_weight(view, direction);
+            let fresnel = surface.fresnel(Ggx::half_cosine(view, direction));
             (shown(direction) * fresnel * value).to_array()
         };
         match AnisotropicGgx::of(surface, frame) {
@@ -208,11 +207,17 @@ fn integrals_of(lobe: impl Microfacets, view: DVec3, region: &Region, settings: 
     })
 }
 
-/// What a GGX lobe with Schlick's Fresnel term reflects of light from everywhere.
-fn hemisphere_albedo(lobe: impl Microfacets, f0: f64, f90: f64, view: DVec3, settings: &Settings) -> f64 {
+/// What a GGX lobe with a Fresnel term of the half vector's cosine reflects of light from everywhere.
+fn hemisphere_albedo(
+    lobe: impl Microfacets,
+    view: DVec3,
+    settings: &Settings,
+    fresnel: impl Fn(f64) -> f64,
+) -> f64 {
     let hemisphere = Region::sphere().clipped(DVec3::Z);
-    let [lobe, schlick] = integrals_of(lobe, view, &hemisphere, settings).value;
-    f0 * lobe + (f90 - f0) * schlick
+    let weigh = |direction, value| [value * fresnel(Ggx::half_cosine(view, direction))];
+    let [albedo] = integrate_lobe(lobe, view, &hemisphere, settings, weigh).value;
+    albedo
 }
 
 /// A lobe as its integration needs it.
@@ -314,6 +319,7 @@ pub fn ltc_on(
     light: &RelativeLight,
 ) -> DVec3 {
     let frame = SurfaceFrame::new(normal, view);
+    let surface = &surface.without_film(frame.cos_view());
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     // Integrate the transformed cosine
     let both_horizons = quality.horizon == Horizon::Both;

@@ -141,6 +141,10 @@ fn buffers() -> Buffers {
             reserved: 0.0,
             tangent: surface.vector(&mut random),
             tangent_roughness: surface.number(&mut random),
+            film_weight: 0.5 * glossy,
+            film_ior: surface.number(&mut random),
+            film_thickness: surface.number(&mut random),
+            reserved1: 0.0,
         });
     }
     buffers

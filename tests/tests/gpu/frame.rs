@@ -72,6 +72,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             coat_roughness: coats[i].y,
             sheen_color: sheens[i].truncate(),
             sheen_roughness: sheens[i].w,
+            film: None,
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
         let surface = material.coupled_surface();

@@ -24,7 +24,7 @@ fn views() -> impl Iterator<Item = (f64, f64)> {
 }
 
 /// A lookup, and the horizons of the cell that it lies in.
-struct View {
+struct Lookup {
     roughness: f64,
     cos_view: f64,
     sample: TableSample,
@@ -32,7 +32,7 @@ struct View {
 }
 
 /// The built-in table at each of [`views`].
-fn looked_up(lobes: SpecularLobes) -> Vec<View> {
+fn looked_up(lobes: SpecularLobes) -> Vec<Lookup> {
     let table = arealight_table::ggx();
     let horizons = table.lobe_horizons(lobes);
     let cells = table.size() as usize - 1;
@@ -40,7 +40,7 @@ fn looked_up(lobes: SpecularLobes) -> Vec<View> {
         let axes = [roughness.max(0.01), (1.0 - cos_view).sqrt()];
         let [x, y] = axes.map(|axis| ((axis * cells as f64) as usize).min(cells - 1));
         let sample = table.lookup(roughness, cos_view);
-        View { roughness, cos_view, sample, horizon: horizons[y * cells + x] }
+        Lookup { roughness, cos_view, sample, horizon: horizons[y * cells + x] }
     };
     views().map(view).collect()
 }
@@ -49,7 +49,7 @@ fn looked_up(lobes: SpecularLobes) -> Vec<View> {
 fn every_lookup_lies_within_the_horizons_of_its_cell() {
     for lobes in [SpecularLobes::One, SpecularLobes::Two] {
         let (mut inside, mut near_an_end) = (0, 0);
-        for View { roughness, cos_view, sample, horizon } in looked_up(lobes) {
+        for Lookup { roughness, cos_view, sample, horizon } in looked_up(lobes) {
             for reflectance in [0.0, 0.04, 0.5, 1.0] {
                 let weight = horizon.weight.map(|weight| f64::from(weight) * (1.0 - reflectance));
                 // Of two lobes any part, as the kernel has it
@@ -89,7 +89,7 @@ fn used(lobes: [(DMat3, DVec3); 2]) -> impl Iterator<Item = (DMat3, DVec3)> {
 fn no_lobe_is_denser_than_the_envelope_of_its_cell() {
     for lobes in [SpecularLobes::One, SpecularLobes::Two] {
         let (mut all, mut near) = (0, 0);
-        for View { roughness, cos_view, sample, horizon } in looked_up(lobes) {
+        for Lookup { roughness, cos_view, sample, horizon } in looked_up(lobes) {
             assert!(sample.schlick <= f64::from(horizon.schlick_albedo));
             let [a, b] = horizon.envelope.map(f64::from);
             for reflectance in [0.0, 0.04, 1.0] {

@@ -116,6 +116,10 @@ impl<'a> Sweep<'a> {
                 reserved: 0.0,
                 tangent: [0.0; 3],
                 tangent_roughness: material.roughness,
+                film_weight: 0.0,
+                film_ior: 1.0,
+                film_thickness: 0.0,
+                reserved1: 0.0,
             });
         }
         let positions: Vec<[f32; 4]> = pixels.iter().map(|(p, _)| p.extend(1.0).to_array()).collect();

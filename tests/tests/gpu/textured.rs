@@ -362,10 +362,10 @@ fn the_largest_numbers_stay_finite_and_within_the_image() {
 }
 
 /// What a surface sees of a far light, relative to the image's mean.
-fn far_light(engine: &TestEngine, surface: Surface, footprint: Footprint) -> Vec3 {
+fn far_light(engine: &TestEngine, surface: &Surface, footprint: Footprint) -> Vec3 {
     let corner = |x: f64, y: f64| DVec3::new(x, y, 1e3);
     let vertices = vec![corner(-1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0)];
-    let mut far = point(surface, DVec3::Z, vertices, false);
+    let mut far = point(*surface, DVec3::Z, vertices, false);
     let quality = Quality { form_factor: FormFactor::Difference, footprint, ..Quality::default() };
     let plain = engine.eval(&[far.clone()], quality).unwrap()[0];
     let uvs = vec![DVec2::ZERO, DVec2::Y, DVec2::ONE, DVec2::X];
@@ -378,7 +378,7 @@ fn a_far_light_shows_its_mean() {
     let Some(engine) = engine() else { return };
     for footprint in FOOTPRINTS {
         for surface in [lambert_surface(), glossy_surface(0.5)] {
-            let ratio = far_light(&engine, surface, footprint);
+            let ratio = far_light(&engine, &surface, footprint);
             // Of an image whose halves are the same about its middle, the mean is seen exactly but for binary16's and the
             // sampler's rounding
             assert!((ratio - Vec3::ONE).abs().max_element() < 4e-3, "{footprint:?}: {ratio}");

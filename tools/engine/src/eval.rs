@@ -4,6 +4,7 @@ use crate::{Engine, EngineError};
 use arealight::kernels::Kernel;
 use arealight::{Effects, Light, PackedLights, Quality};
 use arealight_oracle::material::{Coat, Sheen, Surface};
+use arealight_oracle::thin_film::ThinFilm;
 use arealight_tool_kernels::gpu::{EvalConstants, GpuCase};
 use arealight_tool_kernels::plan;
 use arealight_vk::Resource;
@@ -161,6 +162,7 @@ pub(crate) fn layer_effects(surface: &Surface) -> Effects {
 pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light: u32) -> GpuCase {
     let coat = surface.coat.unwrap_or(Coat { weight: 0.0, alpha: 1.0, normal: None, by_albedo: false });
     let sheen = surface.sheen.unwrap_or(Sheen { color: DVec3::ZERO, roughness: 1.0 });
+    let film = surface.film.unwrap_or(ThinFilm { weight: 0.0, ior: 1.0, thickness: 0.0 });
     let [interface_f0, interface_f90] =
         surface.interface.map_or([0.0; 2], |it| [it.f0 as f32, it.f90 as f32]);
     GpuCase {
@@ -183,6 +185,10 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
         tangent: surface.anisotropy.map_or([0.0; 3], |anisotropy| rounded(anisotropy.tangent)),
         tangent_roughness: surface.anisotropy.map_or(surface.alpha, |anisotropy| anisotropy.alpha).sqrt()
             as f32,
+        film_weight: film.weight as f32,
+        film_ior: film.ior as f32,
+        film_thickness: film.thickness as f32,
+        reserved1: 0.0,
     }
 }
 

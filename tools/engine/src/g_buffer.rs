@@ -21,6 +21,8 @@ pub struct GBuffer {
     pub sheen: Image,
     /// Tangent, roughness along it, and roughness of the diffuse lobe.
     pub anisotropy: Image,
+    /// Thin films, for Monte Carlo alone, as reference.comp has them: reflectances are below them in it, and above them in the other images.
+    pub film: Image,
     /// Radiance.
     pub radiance: Image,
 }
@@ -51,18 +53,19 @@ impl GBuffer {
             coat: image("coat", full)?,
             sheen: image("sheen", full)?,
             anisotropy: image("anisotropy", full)?,
+            film: image("thin film", vk::Format::R32G32B32A32_UINT)?,
             radiance: image("radiance", full)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen and anisotropy are the last.
-    pub fn surfaces(&self) -> [&Image; 7] {
-        let Self { position, normal, base_color, specular, coat, sheen, anisotropy, .. } = self;
-        [position, normal, base_color, specular, coat, sheen, anisotropy]
+    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy and films are the last.
+    pub fn surfaces(&self) -> [&Image; 8] {
+        let Self { position, normal, base_color, specular, coat, sheen, anisotropy, film, .. } = self;
+        [position, normal, base_color, specular, coat, sheen, anisotropy, film]
     }
 
     /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 7] {
+    pub fn sampled(&self) -> [Resource; 8] {
         let layout = Usage::COMPUTE_READ.layout;
         self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
     }

@@ -100,9 +100,10 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let GBuffer { position, normal, base_color, specular, coat, sheen, anisotropy, radiance } =
+        let GBuffer { position, normal, base_color, specular, coat, sheen, anisotropy, film, radiance } =
             &self.g_buffer;
-        let images = [position, normal, base_color, specular, radiance, coat, sheen, anisotropy].into_iter();
+        let images =
+            [position, normal, base_color, specular, radiance, coat, sheen, anisotropy, film].into_iter();
         let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
         let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
         let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
@@ -162,7 +163,7 @@ impl<'a> SceneRenderer<'a> {
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, _] = self.g_buffer.sampled();
         let resources = [
             self.engine.table(),
             Resource::buffer(self.light_buffer.handle()),
@@ -204,7 +205,7 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = self.g_buffer.sampled();
         let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
         let resources: Vec<_> = buffers
             .into_iter()
@@ -220,6 +221,7 @@ impl<'a> SceneRenderer<'a> {
                 coat,
                 sheen,
                 anisotropy,
+                film,
             ])
             .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
             .collect();
@@ -320,7 +322,7 @@ impl<'a> SceneRenderer<'a> {
     }
 
     fn shade_resources(&self) -> ShadeResources {
-        let [position, normal, base_color, specular, coat, sheen, anisotropy] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, _] = self.g_buffer.sampled();
         ShadeResources {
             table: self.engine.table(),
             lights: Resource::buffer(self.light_buffer.handle()),

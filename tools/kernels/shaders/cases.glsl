@@ -4,7 +4,7 @@
 // A list of shading points, and where their radiance goes. Their lights' centers are relative to them. The including kernel
 // defines CASES_BINDING; the results are at the binding after it.
 
-#include "arealight/surface.glsl"
+#include "arealight/thin_film.glsl"
 
 struct ArealightGpuCase {
     vec3 normal;
@@ -25,6 +25,10 @@ struct ArealightGpuCase {
     float reserved;
     vec3 tangent;
     float tangent_roughness;
+    float film_weight;
+    float film_ior;
+    float film_thickness;
+    float reserved1;
 };
 
 layout(set = 0, binding = CASES_BINDING, std430) readonly buffer Cases {
@@ -39,11 +43,13 @@ layout(push_constant, std430) uniform EvalConstants {
 } constants;
 
 ArealightSurface case_surface(ArealightGpuCase given) {
-    return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
+    ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
                             given.roughness, given.interface_f0, given.interface_f90, given.diffuse_roughness,
                             ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness),
                             ArealightAnisotropy(given.tangent, given.tangent_roughness),
                             ArealightSheen(given.sheen_color, given.sheen_roughness));
+    arealight_put_thin_film(surface, ArealightThinFilm(given.film_weight, given.film_ior, given.film_thickness));
+    return surface;
 }
 
 #endif

@@ -16,7 +16,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
-#define SCENE_BINDING 14
+#define FILM_BINDING 14
+#define SCENE_BINDING 15
 #define AREALIGHT_COAT 1
 #define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_SHEEN 1
@@ -35,6 +36,7 @@ layout(constant_id = 100) const uint SHADOWS = 0u;
 layout(constant_id = 101) const uint COUPLED = 0u;
 
 #include "arealight/ggx.glsl"
+#include "arealight/thin_film.glsl"
 #include "arealight/shadows/ray_origin.glsl"
 #include "polygon_lights.glsl"
 #include "g_buffer.glsl"
@@ -92,6 +94,28 @@ struct SheenLobe {
     float base; // of the light that the lobes below get
 };
 
+layout(set = 0, binding = FILM_BINDING) uniform utexture2D g_film;
+
+// A thin film, and the reflectances below it: those of the surface are above it, as they are seen.
+struct Film {
+    ArealightThinFilm film;
+    vec3 f0;
+    float f90;
+};
+
+Film load_film(ivec2 pixel) {
+    uvec4 texel = texelFetch(g_film, pixel, 0);
+    vec2 first = unpackHalf2x16(texel.r);
+    vec2 last = unpackUnorm2x16(texel.a);
+    return Film(ArealightThinFilm(first.x, first.y, uintBitsToFloat(texel.g)), vec3(unpackUnorm2x16(texel.b), last.x), last.y);
+}
+
+// What a facet below a film reflects.
+vec3 film_reflectance(Film film, float cosine) {
+    vec3 bare = film.f0 + (film.f90 - film.f0) * arealight_schlick_of(0.0, cosine);
+    return mix(bare, arealight_thin_film_fresnel(film.film, film.f0, cosine), film.film.weight);
+}
+
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
     vec3 position;
@@ -107,6 +131,7 @@ struct Lobes {
     float glossy_probability; // of drawing from it, where not from the coat's
     CoatLobe coat;
     SheenLobe sheen;
+    Film film;
 };
 
 // `base`: about what the lobes below the coat reflect.
@@ -180,7 +205,7 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
-Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
+Lobes load_lobes(ArealightSurface surface, vec3 ray_origin, Film film) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
@@ -190,7 +215,7 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origin) {
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
                  surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, axis, alpha,
-                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen));
+                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), film);
 }
 
 // A direction of the surface's frame in the frame of its GGX lobe, and back.
@@ -204,11 +229,23 @@ vec3 from_axis(Lobes lobes, vec3 direction) {
 // f cos, all lobes.
 vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
-    if (COUPLED != 0u) {
-        vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
-        diffuse *= 1.0 - mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
+    vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
+    bool has_film = lobes.film.film.weight > 0.0 && lobes.film.film.thickness > 0.0;
+    vec3 f0 = lobes.f0;
+    float f90 = lobes.f90;
+    float above_diffuse = mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
+    vec3 fresnel = vec3(1.0);
+    if (has_film) {
+        fresnel = film_reflectance(lobes.film, clamp(dot(lobes.view, half_vector), 0.0, 1.0));
+        above_diffuse = min(arealight_max_component(fresnel), 1.0);
+        f0 = vec3(1.0);
+        f90 = 1.0;
     }
-    vec3 base = diffuse + arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha, lobes.f0, lobes.f90);
+    if (COUPLED != 0u) {
+        diffuse *= 1.0 - above_diffuse;
+    }
+    vec3 glossy = fresnel * arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha, f0, f90);
+    vec3 base = diffuse + glossy;
     if (lobes.sheen.color != vec3(0.0)) {
         vec3 view = vec3(lobes.view.xy, max(lobes.view.z, AREALIGHT_FORMULA_MIN_COS_VIEW));
         base = base * lobes.sheen.base + lobes.sheen.color * sheen_evaluate(view, light, lobes.sheen.roughness);
@@ -416,7 +453,7 @@ void main() {
         return;
     }
     ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera);
-    Lobes lobes = load_lobes(surface, load_ray_origin(surface, uint(position.w) - 1u));
+    Lobes lobes = load_lobes(surface, load_ray_origin(surface, uint(position.w) - 1u), load_film(pixel));
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

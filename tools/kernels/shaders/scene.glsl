@@ -5,7 +5,7 @@
 // test compares the offsets. The including kernel defines SCENE_BINDING, the first of five.
 
 #define BVH_NODES_BINDING SCENE_BINDING
-#include "arealight/surface.glsl"
+#include "arealight/thin_film.glsl"
 #include "bvh.glsl"
 #include "octahedron.glsl"
 #include "srgb.glsl"
@@ -61,6 +61,14 @@ struct ArealightGpuMaterial {
     uint anisotropy_texture;
     float anisotropy_strength;
     vec2 anisotropy_direction;
+    float film_weight;
+    float film_ior;
+    float film_least_thickness;
+    float film_thickness;
+    uint film_texture;
+    uint film_thickness_texture;
+    uint reserved0;
+    uint reserved1;
 };
 
 struct ArealightGpuTexture {
@@ -107,6 +115,7 @@ struct ScenePoint {
     ArealightCoat coat; // its normal is unit
     ArealightSheen sheen;
     ArealightAnisotropy anisotropy; // its roughness is 0 where there is none
+    ArealightThinFilm film;
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -239,6 +248,10 @@ ScenePoint scene_point(BvhHit hit) {
     point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);
     point.dielectric_f0 = material.dielectric_f0;
     point.dielectric_f90 = material.dielectric_f90;
+    point.film.weight = material.film_weight * sample_texture(material.film_texture, uv).r;
+    point.film.ior = material.film_ior;
+    point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
+                               sample_texture(material.film_thickness_texture, uv).g);
     point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
     return point;
 }

@@ -90,6 +90,14 @@ pub struct GpuCase {
     pub tangent: [f32; 3],
     /// Perceptual roughness along it.
     pub tangent_roughness: f32,
+    /// How much of the surface a thin film covers; 0 for none.
+    pub film_weight: f32,
+    /// The film's index of refraction.
+    pub film_ior: f32,
+    /// Its thickness in nanometres.
+    pub film_thickness: f32,
+    /// Zero.
+    pub reserved1: f32,
 }
 
 /// Push constants of the eval kernel, and of its twin for shapes.
@@ -209,6 +217,20 @@ pub struct GpuMaterial {
     pub anisotropy_strength: f32,
     /// Unit direction in tangent space that the texture's is rotated by.
     pub anisotropy_direction: [f32; 2],
+    /// How much a thin film covers; 0 for none.
+    pub film_weight: f32,
+    /// Its index of refraction.
+    pub film_ior: f32,
+    /// Its thickness in nanometres where the texture's green is 0.
+    pub film_least_thickness: f32,
+    /// And where it is 1, or there is no texture.
+    pub film_thickness: f32,
+    /// Linear texture: red times `film_weight`.
+    pub film_texture: u32,
+    /// Linear texture whose green says how thick the film is.
+    pub film_thickness_texture: u32,
+    /// Zero.
+    pub reserved: [u32; 2],
 }
 
 impl VisibilityConstants {

@@ -103,6 +103,12 @@ pub static REFERENCE: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        read(
+            "g_film",
+            BindingKind::SampledImage,
+            "thin films: weight and index of refraction in r as packHalf2x16 has them, bits of the thickness in nanometres in g, F0 below the \
+             film and F90 in ba as packUnorm2x16 has them (rgba32ui)",
+        ),
         SCENE[0],
         SCENE[1],
         SCENE[2],
@@ -142,6 +148,12 @@ pub static VISIBILITY: Kernel = Kernel {
         write("out_coat", BindingKind::StorageImage, Access::Write, "g_coat, with normals (rgba32f)"),
         write("out_sheen", BindingKind::StorageImage, Access::Write, "g_sheen (rgba32f)"),
         write("out_anisotropy", BindingKind::StorageImage, Access::Write, "g_anisotropy (rgba32f)"),
+        write(
+            "out_film",
+            BindingKind::StorageImage,
+            Access::Write,
+            "g_film of the reference kernel (rgba32ui)",
+        ),
     ],
     constants: &[],
 };

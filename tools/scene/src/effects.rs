@@ -77,14 +77,14 @@ fn has_diffuse_lobe(material: &SceneMaterial) -> bool {
 fn has_glossy_lobe(material: &SceneMaterial) -> bool {
     let reflects = material.material.dielectric_f0 != Vec3::ZERO || material.material.dielectric_f90 > 0.0;
     // A metal's reflectance at grazing incidence is one, whatever its colour
-    material.material.metalness > 0.0 || reflects
+    material.material.metalness > 0.0 || reflects || material.material.film.is_some()
 }
 
 fn has_specular_input(material: &SceneMaterial) -> bool {
     // 1e-6: an index of 1.5, computed in f32, must count as 0.04
     let usual = (material.material.dielectric_f0 - Vec3::splat(0.04)).abs().max_element() < 1e-6
         && material.material.dielectric_f90 == 1.0;
-    is_dielectric_somewhere(material) && !usual
+    is_dielectric_somewhere(material) && (!usual || material.material.film.is_some())
 }
 
 fn has_coat(material: &SceneMaterial) -> bool {
@@ -101,8 +101,8 @@ fn has_anisotropy(material: &SceneMaterial) -> bool {
 
 /// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.
 fn is_coupled(material: &SceneMaterial) -> bool {
-    let Material { dielectric_f0, dielectric_f90, .. } = material.material;
-    has_diffuse_lobe(material) && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0)
+    let Material { dielectric_f0, dielectric_f90, film, .. } = material.material;
+    has_diffuse_lobe(material) && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0 || film.is_some())
 }
 
 /// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.

@@ -3,6 +3,7 @@
 use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
 use arealight::gpu::GpuBvhNode;
 use arealight::{BlockerError, Blockers};
+use arealight_oracle::thin_film::ThinFilm;
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture, GpuTriangle, VisibilityConstants};
 use glam::{DVec3, Vec3};
 
@@ -126,6 +127,8 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
             ("sheen_color_texture", material.sheen_color_texture),
             ("sheen_roughness_texture", material.sheen_roughness_texture),
             ("anisotropy_texture", material.anisotropy_texture),
+            ("film_texture", material.film_texture),
+            ("film_thickness_texture", material.film_thickness_texture),
         ];
         for (name, texture) in textures {
             let Some(texture) = texture else { continue };
@@ -189,6 +192,7 @@ fn pack_direction(direction: Vec3) -> u32 {
 fn pack_material(material: &SceneMaterial) -> GpuMaterial {
     let texture = |index: Option<u32>| index.unwrap_or(GpuMaterial::NO_TEXTURE);
     let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+    let film = material.material.film.unwrap_or(ThinFilm { weight: 0.0, ior: 1.0, thickness: 0.0 });
     GpuMaterial {
         base_color: material.material.base_color.to_array(),
         metalness: material.material.metalness,
@@ -218,6 +222,13 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         anisotropy_texture: texture(material.anisotropy_texture),
         anisotropy_strength: material.anisotropy_strength,
         anisotropy_direction: [material.anisotropy_rotation.cos(), material.anisotropy_rotation.sin()],
+        film_weight: film.weight as f32,
+        film_ior: film.ior as f32,
+        film_least_thickness: material.film_least_thickness,
+        film_thickness: film.thickness as f32,
+        film_texture: texture(material.film_texture),
+        film_thickness_texture: texture(material.film_thickness_texture),
+        reserved: [0; 2],
     }
 }
 

@@ -5,6 +5,7 @@ use crate::meshes::Primitive;
 use crate::uv_mapping::Mappings;
 use crate::{SceneError, SceneMaterial, images};
 use arealight_oracle::material::Material;
+use arealight_oracle::thin_film::ThinFilm;
 use glam::Vec3;
 use gltf::json;
 use gltf::json::material::AlphaMode;
@@ -37,6 +38,8 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.sheen_color_texture,
         material.sheen_roughness_texture,
         material.anisotropy_texture,
+        material.film_texture,
+        material.film_thickness_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = format!("has no TEXCOORD_{}: its textures are read at (0, 0)", primitive.uv_set);
@@ -71,6 +74,7 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let sheen = reader.sheen(&source)?;
     let sheen_color = reader.fractions("sheenColorFactor", sheen.color_factor);
     let [sheen_roughness] = reader.fractions("sheenRoughnessFactor", [sheen.roughness_factor]);
+    let iridescence = reader.iridescence(&source)?;
     let material = Material {
         base_color: Vec3::new(r, g, b),
         metalness,
@@ -81,6 +85,7 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         coat_roughness,
         sheen_color: Vec3::from_array(sheen_color),
         sheen_roughness,
+        film: iridescence.film(),
     };
     let anisotropy = reader.anisotropy(&source)?;
     let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
@@ -97,6 +102,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let sheen_color_texture = reader.texture(sheen.color_texture.as_ref(), true)?;
     let sheen_roughness_texture = reader.texture(sheen.roughness_texture.as_ref(), false)?;
     let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), false)?;
+    let film_texture = reader.texture(iridescence.texture.as_ref(), false)?;
+    let film_thickness_texture = reader.texture(iridescence.thickness_texture.as_ref(), false)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -125,6 +132,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         anisotropy_strength,
         anisotropy_rotation: anisotropy.rotation,
         anisotropy_texture,
+        film_texture,
+        film_thickness_texture,
+        film_least_thickness: iridescence.least_thickness,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -205,6 +215,32 @@ impl Reader<'_> {
         Ok(if anisotropy.strength == 0.0 { Anisotropy::default() } else { anisotropy })
     }
 
+    /// The thin film; nothing of it where its factor is zero, or it has no thickness anywhere.
+    fn iridescence(&mut self, source: &json::Material) -> Result<Iridescence, SceneError> {
+        let mut film: Iridescence = self.extension(source, IRIDESCENCE)?;
+        if film.factor == 0.0 {
+            return Ok(Iridescence::default());
+        }
+        [film.factor] = self.fractions("iridescenceFactor", [film.factor]);
+        if !(1.0..=MAX_FILM_IOR).contains(&film.ior) {
+            self.warn(format!("iridescenceIor {} is not in 1 to {MAX_FILM_IOR}: 1.3 is used", film.ior));
+            film.ior = 1.3;
+        }
+        for (name, thickness) in [
+            ("iridescenceThicknessMinimum", &mut film.least_thickness),
+            ("iridescenceThicknessMaximum", &mut film.thickness),
+        ] {
+            if !thickness.is_finite() || *thickness < 0.0 {
+                self.warn(format!("{name} {thickness} is no thickness: 0 is used"));
+                *thickness = 0.0;
+            }
+        }
+        // Without a texture, the film is as thick as it gets
+        let is_thick =
+            film.thickness > 0.0 || (film.thickness_texture.is_some() && film.least_thickness > 0.0);
+        Ok(if is_thick { film } else { Iridescence::default() })
+    }
+
     /// emissiveFactor times `KHR_materials_emissive_strength`.
     fn emission(&mut self, source: &json::Material) -> Vec3 {
         let factor = Vec3::from_array(self.fractions("emissiveFactor", source.emissive_factor.0));
@@ -244,7 +280,7 @@ impl Reader<'_> {
             .extensions
             .iter()
             .flat_map(|e| e.others.keys())
-            .filter(|name| ![ANISOTROPY, CLEARCOAT, SHEEN].contains(&name.as_str()));
+            .filter(|name| ![ANISOTROPY, CLEARCOAT, IRIDESCENCE, SHEEN].contains(&name.as_str()));
         for extension in unknown {
             self.warn(format!("{extension} is not supported: ignored"));
         }
@@ -260,7 +296,49 @@ pub(crate) fn has_tangents(material: &json::Material) -> bool {
 
 const ANISOTROPY: &str = "KHR_materials_anisotropy";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
+const IRIDESCENCE: &str = "KHR_materials_iridescence";
 const SHEEN: &str = "KHR_materials_sheen";
+
+/// Above it, the library takes a film's index of refraction for this.
+const MAX_FILM_IOR: f32 = 100.0;
+
+/// `KHR_materials_iridescence`; thicknesses in nanometres.
+#[derive(Deserialize)]
+#[serde(default)]
+struct Iridescence {
+    #[serde(rename = "iridescenceFactor")]
+    factor: f32,
+    #[serde(rename = "iridescenceTexture")]
+    texture: Option<json::texture::Info>,
+    #[serde(rename = "iridescenceIor")]
+    ior: f32,
+    #[serde(rename = "iridescenceThicknessMinimum")]
+    least_thickness: f32,
+    #[serde(rename = "iridescenceThicknessMaximum")]
+    thickness: f32,
+    #[serde(rename = "iridescenceThicknessTexture")]
+    thickness_texture: Option<json::texture::Info>,
+}
+
+impl Default for Iridescence {
+    fn default() -> Self {
+        Self {
+            factor: 0.0,
+            texture: None,
+            ior: 1.3,
+            least_thickness: 100.0,
+            thickness: 400.0,
+            thickness_texture: None,
+        }
+    }
+}
+
+impl Iridescence {
+    fn film(&self) -> Option<ThinFilm> {
+        let [weight, ior, thickness] = [self.factor, self.ior, self.thickness].map(f64::from);
+        (weight > 0.0).then_some(ThinFilm { weight, ior, thickness })
+    }
+}
 
 /// `KHR_materials_anisotropy`.
 #[derive(Default, Deserialize)]

@@ -97,6 +97,12 @@ pub struct SceneMaterial {
     pub anisotropy_rotation: f32,
     /// Of a linear texture: a direction in tangent space in red and green, blue times the strength.
     pub anisotropy_texture: Option<u32>,
+    /// Of a linear texture: red times the film's weight.
+    pub film_texture: Option<u32>,
+    /// Of a linear texture whose green says how thick the film is: from the least thickness to the film's own.
+    pub film_thickness_texture: Option<u32>,
+    /// The film's thickness where that texture is 0, in nanometres.
+    pub film_least_thickness: f32,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

@@ -103,7 +103,12 @@ fn textures(material: &json::Material) -> Vec<(String, UvMapping)> {
     .into_iter()
     .flatten()
     .collect();
-    for extension in ["KHR_materials_clearcoat", "KHR_materials_sheen", "KHR_materials_anisotropy"] {
+    for extension in [
+        "KHR_materials_clearcoat",
+        "KHR_materials_sheen",
+        "KHR_materials_anisotropy",
+        "KHR_materials_iridescence",
+    ] {
         let said =
             material.extensions.as_ref().and_then(|e| e.others.get(extension)).and_then(Value::as_object);
         for (name, info) in said.into_iter().flatten().filter(|(name, _)| name.ends_with("Texture")) {

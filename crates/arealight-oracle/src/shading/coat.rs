@@ -28,7 +28,8 @@ pub(super) fn layered<E>(
     let own_view = SurfaceFrame::new(own_normal, view);
     // What the coat's lobe counts, and what it takes from those below
     let (f0, weight, share) = if coat.by_albedo {
-        let albedo = hemisphere_albedo(Ggx { alpha: coat.alpha }, Coat::F0, 1.0, own_view.view(), settings);
+        let fresnel = |cosine: f64| Coat::F0 + (1.0 - Coat::F0) * (1.0 - cosine).powi(5);
+        let albedo = hemisphere_albedo(Ggx { alpha: coat.alpha }, own_view.view(), settings, fresnel);
         (Coat::F0, coat.weight, coat.weight * albedo)
     } else {
         let share = coat.share(own_view.cos_view());

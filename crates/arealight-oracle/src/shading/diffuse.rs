@@ -12,22 +12,31 @@ use std::f64::consts::PI;
 
 /// What the interface leaves of a diffuse lobe's light, from a direction of the surface frame: 1 without one. `by_albedo` is
 /// what [`albedo_part`] says.
-pub(super) fn part(interface: Option<Interface>, by_albedo: f64, view: DVec3, direction: DVec3) -> f64 {
-    match interface {
+pub(super) fn part(surface: &Surface, by_albedo: f64, view: DVec3, direction: DVec3) -> f64 {
+    match surface.interface {
         None => 1.0,
         Some(Interface { by_albedo: true, .. }) => by_albedo,
-        Some(Interface { f0, f90, .. }) => 1.0 - f0 - (f90 - f0) * Ggx::schlick_weight(view, direction),
+        Some(interface) => 1.0 - reflected(surface, interface, Ggx::half_cosine(view, direction)),
+    }
+}
+
+/// What an interface reflects of light that comes in at a cosine, its largest channel below a film.
+fn reflected(surface: &Surface, Interface { f0, f90, .. }: Interface, cosine: f64) -> f64 {
+    match &surface.film {
+        None => f0 + (f90 - f0) * (1.0 - cosine).powi(5),
+        Some(film) => film.reflectance(DVec3::splat(f0), f90, cosine).max_element().min(1.0),
     }
 }
 
 /// What the true albedo of the surface's GGX lobe at a view leaves, where that is asked for; else 1.
 pub(super) fn albedo_part(surface: &Surface, frame: &SurfaceFrame, settings: &Settings) -> f64 {
     match surface.interface {
-        Some(Interface { f0, f90, by_albedo: true }) => {
+        Some(interface) if interface.by_albedo => {
             let (view, isotropic) = (frame.view(), Ggx { alpha: surface.alpha });
+            let fresnel = |cosine| reflected(surface, interface, cosine);
             1.0 - match AnisotropicGgx::of(surface, frame) {
-                None => hemisphere_albedo(isotropic, f0, f90, view, settings),
-                Some(lobe) => hemisphere_albedo(lobe, f0, f90, view, settings),
+                None => hemisphere_albedo(isotropic, view, settings, fresnel),
+                Some(lobe) => hemisphere_albedo(lobe, view, settings, fresnel),
             }
         }
         _ => 1.0,

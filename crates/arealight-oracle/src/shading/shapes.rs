@@ -31,6 +31,7 @@ pub fn shape_ltc_on(
     light: &Light,
 ) -> Option<DVec3> {
     let frame = SurfaceFrame::new(normal, view);
+    let surface = &surface.without_film(frame.cos_view());
     let seen = LocalShape::new(light, &frame)?;
     let both_horizons = quality.horizon == Horizon::Both;
     // Integrate the transformed cosine

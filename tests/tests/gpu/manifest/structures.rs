@@ -141,7 +141,14 @@ fn structures_of_scenes_have_the_same_offsets() {
                 sheen_roughness,
                 anisotropy_texture,
                 anisotropy_strength,
-                anisotropy_direction
+                anisotropy_direction,
+                film_weight,
+                film_ior,
+                film_least_thickness,
+                film_thickness,
+                film_texture,
+                film_thickness_texture,
+                reserved as "reserved0"
             ),
         ),
         (

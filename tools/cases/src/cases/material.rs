@@ -6,6 +6,7 @@ use super::{CaseError, Unsupported};
 use arealight::MIN_ALPHA;
 use arealight_oracle::material::{Anisotropy, Interface, Sheen, Surface};
 use arealight_oracle::sheen::MIN_ROUGHNESS;
+use arealight_oracle::thin_film::ThinFilm;
 use glam::{DVec2, DVec3};
 
 /// What the surface of a case is made of.
@@ -32,6 +33,8 @@ pub enum CaseMaterial {
         coat: Option<CaseCoat>,
         /// What lies above both, below the coat.
         sheen: Option<Sheen>,
+        /// What replaces the Fresnel term.
+        film: Option<ThinFilm>,
     },
     /// Sheen above nothing.
     Sheen(Sheen),
@@ -73,7 +76,8 @@ impl CaseMaterial {
                 };
                 let coat = if bsdf == "coat" { Some(CaseCoat::read(fields)?) } else { None };
                 let sheen = if bsdf == "sheen_over" { Some(read_sheen(fields)?) } else { None };
-                Ok(Self::Ggx { alpha, f0, albedo, coupled, coat, sheen })
+                let film = if fields.has("film_thickness") { Some(read_film(fields)?) } else { None };
+                Ok(Self::Ggx { alpha, f0, albedo, coupled, coat, sheen, film })
             }
             other => {
                 let known = "\"ggx\", \"coat\", \"sheen\", \"sheen_over\", \"diffuse\" and \"eon\" are";
@@ -103,7 +107,7 @@ impl CaseMaterial {
             Self::Ggx { alpha, .. } if alpha.x != alpha.y && tangent.is_none() => {
                 unsupported("alpha_x and alpha_y differ, and there is no tangent".into())
             }
-            Self::Ggx { alpha, f0, albedo, coat, sheen, coupled } => Ok(Surface {
+            Self::Ggx { alpha, f0, albedo, coat, sheen, coupled, film } => Ok(Surface {
                 diffuse_albedo: albedo.unwrap_or(DVec3::ZERO),
                 f0: f0.unwrap_or(DVec3::ONE),
                 f90: 1.0,
@@ -113,6 +117,7 @@ impl CaseMaterial {
                 interface: coupled.then(|| interface(f0.unwrap_or(DVec3::ONE))),
                 coat: coat.as_ref().map(CaseCoat::supported).transpose()?,
                 sheen: *sheen,
+                film: *film,
                 anisotropy: tangent
                     .filter(|_| alpha.x != alpha.y)
                     .map(|tangent| Anisotropy { tangent, alpha: alpha.x }),
@@ -123,6 +128,15 @@ impl CaseMaterial {
 
 fn read_sheen(fields: &Fields) -> Result<Sheen, CaseError> {
     Ok(Sheen { color: fields.color("sheen_color", 1.0)?, roughness: fields.alpha("sheen_roughness")? })
+}
+
+fn read_film(fields: &Fields) -> Result<ThinFilm, CaseError> {
+    let weight = fields.optional("film_weight", Fields::share)?.unwrap_or(1.0);
+    let ior = fields.length("film_ior")?;
+    if ior < 1.0 {
+        return Err(fields.error("film_ior", &format!("{ior} must be at least 1")));
+    }
+    Ok(ThinFilm { weight, ior, thickness: fields.length("film_thickness")? })
 }
 
 /// The interface of a surface whose Lambert lobe is coupled as glTF has it.

@@ -1,4 +1,4 @@
-//! A ball of each material that is supported, in three rows: what every surface has, layers, and lobes of two roughnesses.
+//! A ball of each material that is supported, in four rows: what every surface has, layers, lobes of two roughnesses, and thin films.
 
 use crate::screen::texture;
 use crate::shapes::{floor, panel, sphere};
@@ -22,10 +22,11 @@ fn ball(name: &'static str, color: [f32; 3], metalness: f32, roughness: f32, ext
 }
 
 /// The rows from the camera on. `spin` is a texture of directions about a ball's poles.
-pub fn rows(spin: usize) -> [[Ball; 4]; 3] {
+pub fn rows(spin: usize) -> [[Ball; 4]; 4] {
     let coat = |roughness: f32| json!({ "clearcoatFactor": 1.0, "clearcoatRoughnessFactor": roughness });
     let sheen = json!({ "sheenColorFactor": [0.6, 0.6, 0.9], "sheenRoughnessFactor": 0.5 });
     let anisotropy = |strength: f64, rotation: f64| json!({ "anisotropyStrength": strength, "anisotropyRotation": rotation });
+    let film = |ior: f64, thickness: f64| json!({ "iridescenceFactor": 1.0, "iridescenceIor": ior, "iridescenceThicknessMaximum": thickness });
     let spun = json!({ "anisotropyStrength": 0.8, "anisotropyTexture": { "index": spin } });
     let (gold, steel) = ([0.95, 0.7, 0.3], [0.6, 0.6, 0.62]);
     [
@@ -77,12 +78,39 @@ pub fn rows(spin: usize) -> [[Ball; 4]; 3] {
                 json!({ "KHR_materials_anisotropy": anisotropy(0.7, 0.6) }),
             ),
         ],
+        [
+            ball(
+                "oil",
+                [0.02, 0.02, 0.02],
+                0.0,
+                0.15,
+                json!({ "KHR_materials_iridescence": film(1.5, 480.0) }),
+            ),
+            ball("titanium", steel, 1.0, 0.3, json!({ "KHR_materials_iridescence": film(2.2, 210.0) })),
+            ball(
+                "nacre",
+                [0.7, 0.66, 0.62],
+                0.0,
+                0.45,
+                json!({ "KHR_materials_iridescence": film(1.6, 550.0) }),
+            ),
+            ball(
+                "beetle",
+                [0.1, 0.3, 0.15],
+                1.0,
+                0.5,
+                json!({
+                    "KHR_materials_iridescence": film(1.7, 320.0),
+                    "KHR_materials_clearcoat": coat(0.1),
+                }),
+            ),
+        ],
     ]
 }
 
 pub fn glb() -> Vec<u8> {
     let mut writer = Writer::new();
-    for extension in ["anisotropy", "clearcoat", "sheen"] {
+    for extension in ["anisotropy", "clearcoat", "iridescence", "sheen"] {
         writer.use_extension(&format!("KHR_materials_{extension}"));
     }
     let ground = writer.surface("floor", [0.2, 0.2, 0.2], 0.0, 0.6);
@@ -95,7 +123,7 @@ pub fn glb() -> Vec<u8> {
             let material = writer.surface(name, color, metalness, roughness);
             writer.root["materials"][material]["extensions"] = extensions;
             let mesh = writer.mesh(name, &shape, material);
-            let (x, z) = (2.1 * (column as f64 - 1.5), 2.6 * (1.0 - row as f64));
+            let (x, z) = (2.1 * (column as f64 - 1.5), 2.6 * (1.5 - row as f64));
             writer.node(json!({ "name": name, "mesh": mesh, "translation": [x, 0.9, z] }));
         }
     }
@@ -110,7 +138,7 @@ pub fn glb() -> Vec<u8> {
         turn_around(&mut node);
         writer.object(name, &panel(size[0], size[1]), lamp, node);
     }
-    writer.camera("front", [0.0, 9.0, 10.5], [0.0, 0.6, -0.1], 0.46, 16.0 / 9.0);
+    writer.camera("front", [0.0, 9.8, 11.4], [0.0, 0.6, 0.1], 0.5, 16.0 / 9.0);
     writer.glb()
 }
 

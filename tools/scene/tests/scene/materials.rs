@@ -5,6 +5,7 @@ use crate::writer::Writer;
 use crate::{error, load, panel_with, warnings};
 use arealight::Effects;
 use arealight_oracle::material::Material;
+use arealight_oracle::thin_film::ThinFilm;
 use arealight_scene::{Scene, SceneBuffers, Wrap, required_effects};
 use arealight_tool_kernels::gpu::{GpuMaterial, GpuTexture};
 use glam::{DVec3, Vec3};
@@ -72,8 +73,8 @@ fn what_is_out_of_range_or_unknown_is_said() {
         ),
         (json!({ "alphaMode": "BLEND" }), "alphaMode BLEND is not supported: treated as opaque"),
         (
-            json!({ "extensions": { "KHR_materials_iridescence": { "iridescenceFactor": 1 } } }),
-            "KHR_materials_iridescence is not supported: ignored",
+            json!({ "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
+            "KHR_materials_transmission is not supported: ignored",
         ),
         (
             json!({ "extensions": { "KHR_materials_clearcoat": { "clearcoatFactor": 1.5 } } }),
@@ -233,6 +234,58 @@ fn what_is_wrong_with_sheen_is_named() {
         &json!({ "sheenColorFactor": [1, 1, 1], "sheenColorTexture": { "index": 7 } }),
     )));
     assert!(missing.contains("textures[7]"), "{missing}");
+}
+
+fn with_film(values: &Value) -> Value {
+    json!({ "extensions": { "KHR_materials_iridescence": values } })
+}
+
+#[test]
+fn thin_films_are_read_with_their_textures() {
+    let scene = load(textured(with_film(&json!({
+        "iridescenceFactor": 0.5, "iridescenceTexture": { "index": 0 }, "iridescenceIor": 1.5,
+        "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 600,
+        "iridescenceThicknessTexture": { "index": 0 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    assert_eq!(read.material.film, Some(ThinFilm { weight: 0.5, ior: 1.5, thickness: 600.0 }));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    let film = [gpu.film_weight, gpu.film_ior, gpu.film_least_thickness, gpu.film_thickness];
+    assert_eq!(film, [0.5, 1.5, 200.0, 600.0]);
+    assert_eq!(
+        [gpu.film_texture, gpu.film_thickness_texture].map(|index| scene.textures[index as usize].srgb),
+        [false; 2]
+    );
+    // A metal's film is in its base colour, a dielectric's in its reflectance: no other effect is needed
+    let effects = |metalness: f32| {
+        let mut material = with_film(&json!({ "iridescenceFactor": 1 }));
+        material["pbrMetallicRoughness"] = json!({ "metallicFactor": metalness });
+        load(textured(material)).effects()
+    };
+    assert_eq!(effects(1.0), Effects::GLOSSY);
+    assert_eq!(effects(0.0), Effects::GLOSSY | Effects::DIFFUSE | Effects::COUPLED | Effects::SPECULAR_INPUT);
+    // The extension's defaults; no film without it, without a factor, and without a thickness
+    let film = |values: Value| load(textured(values)).materials[0].material.film;
+    let usual = ThinFilm { weight: 1.0, ior: f64::from(1.3_f32), thickness: 400.0 };
+    assert_eq!(film(with_film(&json!({ "iridescenceFactor": 1 }))), Some(usual));
+    let without = json!({ "iridescenceFactor": 1, "iridescenceThicknessMaximum": 0 });
+    for none in [json!({}), with_film(&json!({})), with_film(&without)] {
+        assert_eq!(film(none), None);
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_thin_film_is_said() {
+    for (field, value, said) in [
+        ("iridescenceIor", 0.5, "iridescenceIor 0.5 is not in 1 to 100: 1.3 is used"),
+        ("iridescenceThicknessMaximum", -3.0, "iridescenceThicknessMaximum -3 is no thickness: 0 is used"),
+        ("iridescenceFactor", 2.0, "iridescenceFactor [2.0] is not in [0, 1]: clamped"),
+    ] {
+        let mut film = json!({ "iridescenceFactor": 1 });
+        film[field] = value.into();
+        let scene = load(textured(with_film(&film)));
+        assert_eq!(warnings(&scene), [format!("material '#0': {said}")]);
+    }
 }
 
 #[test]

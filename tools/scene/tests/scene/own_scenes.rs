@@ -95,8 +95,10 @@ fn there_is_a_ball_of_every_material() {
     }
     let spun = scene.materials.iter().find(|material| material.name == "spun").unwrap();
     assert!(spun.anisotropy_texture.is_some());
+    assert!(scene.materials.iter().filter(|material| material.material.film.is_some()).count() == 4);
     let layers = Effects::COAT | Effects::SHEEN | Effects::ANISOTROPY;
-    assert_eq!(scene.effects(), LOBES | layers);
+    // Films are reflectances
+    assert_eq!(scene.effects(), LOBES | layers | Effects::SPECULAR_INPUT);
 }
 
 /// Whether an outline turns both ways.
