@@ -91,6 +91,8 @@ run_second_driver() {
         constants:: surfaces:: output:: resize:: frame:: probe:: \
         --skip probe::frames_are_orthonormal_whatever_comes_in --skip probe::ggx_is_that_of_the_oracle \
         --skip probe::unit_vectors_and_scales_are_what_they_say || return 1
+    VK_ICD_FILENAMES="$manifest" AREALIGHT_REQUIRE_GPU=1 \
+        cargo test -p arealight-cli --test compile_budget --locked --quiet -- --nocapture || return 1
     ran="$(grep '^ran ' "$scratch/second-driver" | sort -u | wc -l)"
     echo "$ran tests had the second driver (required: $second_driver_floor)"
     [[ "$ran" -ge "$second_driver_floor" ]]

@@ -36,6 +36,7 @@ pub mod compiled;
 pub mod cost;
 pub mod figures;
 pub mod footprints;
+pub mod furnace;
 pub mod kernel;
 pub mod ladder;
 pub mod materials;

@@ -5,10 +5,11 @@ use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightTable, Quality, SpecularLobes};
 use arealight_engine::host::{Host, Usage};
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer};
-use arealight_scene::{Scene, SceneBuffers};
+use arealight_scene::{Scene, SceneBuffers, SceneMaterial};
 use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 /// What to run.
@@ -137,14 +138,22 @@ fn render(
         (triangle.flags & arealight_tool_kernels::gpu::GpuTriangle::LAMP == 0)
             .then_some(triangle.material as usize)
     };
-    let materials = positions.iter().map(material).collect();
-    // Ours, and the truth
-    let surfaces = scene.effects() & Effects::SURFACES;
+    let materials: Vec<Option<usize>> = positions.iter().map(material).collect();
+    // Ours, each pixel by a pass of what its material needs: one of everything would have one specular lobe below two layers
     let mut ours = |specular_lobes| -> Result<_, EngineError> {
         let quality = Quality { specular_lobes, ..Quality::default() };
-        pictures.begin()?;
-        pictures.renderer.shade_as(ShadeOptions { surfaces, quality, ..ShadeOptions::default() })?;
-        pictures.radiance()
+        let mut found = vec![DVec3::ZERO; materials.len()];
+        let needed: BTreeSet<u32> = scene.materials.iter().map(|material| needs(material).bits()).collect();
+        for surfaces in needed.into_iter().map(Effects::from_bits_retain) {
+            pictures.begin()?;
+            pictures.renderer.shade_as(ShadeOptions { surfaces, quality, ..ShadeOptions::default() })?;
+            for ((found, radiance), material) in found.iter_mut().zip(pictures.radiance()?).zip(&materials) {
+                if material.is_some_and(|material| needs(&scene.materials[material]) == surfaces) {
+                    *found = radiance;
+                }
+            }
+        }
+        Ok(found)
     };
     let ours = [ours(SpecularLobes::One)?, ours(SpecularLobes::Two)?];
     let mut truth = |seed| {
@@ -158,6 +167,11 @@ fn render(
         pictures.radiance()
     };
     Ok(Pixels { ours, truths: [truth(1)?, truth(2)?], materials })
+}
+
+/// What shading a material needs of surfaces.
+fn needs(material: &SceneMaterial) -> Effects {
+    material.effects() & Effects::SURFACES
 }
 
 impl Pixels {

@@ -28,6 +28,12 @@ impl Markers {
         end: "<!-- end: arealight bench materials -->",
     };
 
+    /// Of [`crate::furnace`].
+    pub const FURNACE: Self = Self {
+        begin: "<!-- begin: arealight bench furnace -->",
+        end: "<!-- end: arealight bench furnace -->",
+    };
+
     /// Of [`crate::shadow_motion`].
     pub const SHADOWS_IN_MOTION: Self = Self {
         begin: "<!-- begin: arealight bench shadows --motion -->",

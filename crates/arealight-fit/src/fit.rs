@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::aim::Aim;
+use crate::albedos;
 use crate::brdf::{Brdf, Magnitude};
 use crate::error::FitError;
 use crate::lobe::Lobe;
@@ -218,15 +219,34 @@ fn into_table(
         let (roughness, cos_view) =
             LightTable::node(settings.size, i as u32 % settings.size, i as u32 / settings.size);
         let dip = description.dip(roughness, cos_view);
-        [(m.albedo + dip[0]) as f32, (m.schlick + dip[1]) as f32]
+        [m.albedo + dip[0], m.schlick + dip[1]]
     };
-    let magnitude = magnitude.iter().enumerate().map(stored).collect();
+    let mut stored: Vec<[f64; 2]> = magnitude.iter().enumerate().map(stored).collect();
+    balance(brdf, &description, settings.size, &mut stored);
+    let magnitude = stored.into_iter().map(|[albedo, schlick]| [albedo as f32, schlick as f32]).collect();
     let mut layers = layers.into_iter();
     let table = LightTable::new(description, settings.size, layers.next().unwrap_or_default(), magnitude)?;
     Ok(match layers.next() {
         Some(schlick) => table.with_schlick_matrix(schlick)?,
         None => table,
     })
+}
+
+/// Balances the last rows of a table's albedos, where nothing but interpolation errs.
+fn balance(brdf: &dyn Brdf, description: &TableDescription, size: u32, stored: &mut [[f64; 2]]) {
+    let side = size as usize;
+    let columns: Vec<_> = (0..side)
+        .into_par_iter()
+        .map(|x| {
+            let column: Vec<[f64; 2]> = (0..side).map(|y| stored[y * side + x]).collect();
+            albedos::balanced(brdf, description, LightTable::node(size, x as u32, 0).0, &column)
+        })
+        .collect();
+    for (x, last) in columns.into_iter().enumerate() {
+        for (row, node) in last.into_iter().flatten().enumerate() {
+            stored[(side - albedos::ROWS + row) * side + x] = node;
+        }
+    }
 }
 
 impl Settings {

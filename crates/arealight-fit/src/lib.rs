@@ -41,6 +41,7 @@
 #![forbid(unsafe_code)]
 
 mod aim;
+mod albedos;
 pub mod brdf;
 mod error;
 mod fit;

@@ -17,6 +17,7 @@ mod cpp_host;
 mod effects;
 mod footprints;
 mod frame;
+mod furnace;
 mod g_buffer;
 mod guard;
 mod host_mistakes;

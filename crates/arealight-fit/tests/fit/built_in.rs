@@ -50,8 +50,9 @@ fn its_albedos_are_true_at_its_nodes() {
         let truth = lobe_integrals(lobe, view_direction(cos_view), &region, &settings).value;
         let texel = albedos[(y * size + x) as usize].map(f64::from);
         for i in 0..2 {
-            // Both integrals' errors, and float32
-            assert!((texel[i] - truth[i]).abs() < 1e-5, "({x}, {y}): {texel:?} {truth:?}");
+            // Both integrals' errors, and float32; the last three rows are balanced between their nodes
+            let most = if y + 3 < size { 1e-5 } else { 1e-3 };
+            assert!((texel[i] - truth[i]).abs() < most, "({x}, {y}): {texel:?} {truth:?}");
         }
     }
 }
@@ -80,9 +81,10 @@ fn largest_albedo_errors(table: &LightTable) -> [f64; 2] {
 #[test]
 fn its_albedos_are_near_between_nodes() {
     let table = ggx();
-    // What the dip's coefficients were chosen for: 1.43e-3 and 1.91e-3
+    // What the dip's coefficients and the last rows were chosen for; to 89.9 degrees the first is 1.0e-3
     let errors = largest_albedo_errors(&table);
-    assert!(errors[0] < 1.5e-3 && errors[1] < 2e-3, "{errors:?}");
+    println!("{errors:?}");
+    assert!(errors[0] < 1.45e-3 && errors[1] < 1.65e-3, "{errors:?}");
     // Rounding to float16 adds up to 5e-4 to numbers up to 1, where it matters least
     let errors = largest_albedo_errors(&rounded(&table, Precision::Half).unwrap());
     assert!(errors[0] < 2e-3 && errors[1] < 2.2e-3, "{errors:?}");

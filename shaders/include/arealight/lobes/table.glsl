@@ -39,28 +39,28 @@ vec4 arealight_table_bilinear(int layer, vec2 coordinate, int size) {
 
 // What fills the dips of GGX's two albedos (albedo, schlick) at grazing views, so that a table can interpolate them: its
 // magnitudes hold it at each node, and the lookup takes that of its own place away. For a roughness in [0.01, 1] and the
-// cosine of a view in [0, 1]: within [0, 0.23] and [-0.71, 0]. Error against the float64 twin, ggx_grazing_dip: 4e-7.
+// cosine of a view in [0, 1]: within [0, 0.21] and [-0.53, 0.02]. Error against the float64 twin, ggx_grazing_dip: 4e-7.
 // Source: docs/fit.md.
 vec2 arealight_ggx_grazing_dip(float roughness, float cos_view) {
     float alpha = roughness * roughness;
     float x = cos_view / alpha;
-    float below = 1.0 / (1.0 + x * (0.5545 + x * (0.1566 + x * 0.2887)));
-    float dip = 0.2173 * x;
+    float below = 1.0 / (1.0 + x * (0.7153 + x * (0.0637 + x * 0.3232)));
+    float dip = 0.2272 * x;
     // How much of its weight a lobe that lies on the surface has lost to its width
-    float width = alpha / (alpha + 0.2298 * roughness + 0.01559);
-    float halted = width * (0.6346 + x * (0.1751 * x - 0.2419));
+    float width = alpha / (alpha + 0.2316 * roughness + 0.01454);
+    float halted = width * (0.5502 + x * (0.1084 * x - 0.1966));
     float from_normal = 1.0 - cos_view;
     float schlick_weight = from_normal * (from_normal * from_normal) * (from_normal * from_normal);
-    return vec2(dip * below + 0.1222 * alpha * (cos_view / (cos_view + 0.02746)),
-                ((dip + halted) * below - 0.7329) * schlick_weight);
+    return vec2(dip * below + 0.0866 * alpha * (cos_view / (cos_view + 0.01997)),
+                ((dip + halted) * below - 0.5365) * schlick_weight);
 }
 
 // The table at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01), of one lobe or of two. Source: Heitz et
 // al. 2016, section 4. Error against the float64 twin, LightTable::lookup: 4e-7 of the largest entry, and what
 // moving both axes by 3 x 2^-24 changes; together 1.3e-6 for the matrices. Albedos follow the view's cosine within alpha of
 // the horizon, where an error of it counts 0.3 / alpha times.
-// Against the truth, GGX's albedo is within 1.5e-3 and that of Schlick's weight within 2e-3, with 64 nodes a side, at every
-// roughness and view.
+// Against the truth, GGX's albedo is within 1.0e-3 to 89.9 degrees, 1.4e-3 beyond, and that of Schlick's weight within 1.6e-3, with 64 nodes a
+// side, at every roughness.
 ArealightTableSample arealight_table_lookup(ArealightFrame frame, float roughness, bool has_two_lobes) {
     roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
 

@@ -2,6 +2,7 @@
 
 mod compare;
 mod compiled;
+mod furnace;
 mod ladder;
 mod materials;
 mod page;
@@ -36,6 +37,7 @@ pub struct Arguments {
 enum Bench {
     Compare(compare::Arguments),
     Compiled(compiled::Arguments),
+    Furnace(furnace::Arguments),
     Materials(materials::Arguments),
     Pictures(pictures::Arguments),
     Shadows(shadows::Arguments),
@@ -48,6 +50,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => ladder::run(&arguments.ladder),
         Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
+        Some(Bench::Furnace(arguments)) => furnace::run(arguments),
         Some(Bench::Materials(arguments)) => materials::run(arguments),
         Some(Bench::Pictures(arguments)) => pictures::run(arguments),
         Some(Bench::Shadows(arguments)) => shadows::run(arguments),

@@ -1,0 +1,73 @@
+//! What it takes a driver to compile the pipelines of a scene: the whole command, as a user runs it, on a picture of next to no pixels. The
+//! driver is the one that the loader finds, so that a second one is held to the same by `VK_ICD_FILENAMES`.
+
+#![cfg(target_os = "linux")]
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// Of a kind of light, with its shadows: processor time, in seconds.
+const SECONDS: f64 = 10.0;
+/// Of the process at its largest, in MB. About 170 of them are a driver without any pipeline.
+const MEGABYTES: f64 = 500.0;
+
+/// What a process has used.
+#[derive(Debug, Clone, Copy, Default)]
+struct Used {
+    seconds: f64,
+    megabytes: f64,
+}
+
+/// What a process that runs has used so far; `None` where it does not.
+fn used(process: u32) -> Option<Used> {
+    // After the name in parentheses: user and system time are the 12th and the 13th field, in hundredths of a second
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |field: usize| fields.get(field)?.parse::<f64>().ok();
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kilobytes: f64 = most.split_whitespace().next()?.parse().ok()?;
+    Some(Used { seconds: (ticks(11)? + ticks(12)?) / 100.0, megabytes: kilobytes / 1e3 })
+}
+
+/// Renders a few pixels of a scene, and says what that took.
+fn render(scene: &str) -> Used {
+    let scene = format!("{}/../../scenes/{scene}", env!("CARGO_MANIFEST_DIR"));
+    let picture = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compile-budget.png");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_arealight"))
+        .args(["render", &scene, "--size", "16x16", "--supersample", "1", "-o"])
+        .arg(picture)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the command runs");
+    let mut last = Used::default();
+    loop {
+        last = used(child.id()).unwrap_or(last);
+        if let Some(status) = child.try_wait().expect("the command is ours") {
+            assert!(status.success(), "{scene}: {status}");
+            return last;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn pipelines_of_every_kind_of_light_compile_within_a_budget() {
+    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
+        return;
+    }
+    for (scene, kinds) in [
+        ("sweep.glb", 1.0),     // quads
+        ("room.glb", 1.0),      // concave polygons and polygons of many corners
+        ("screen.glb", 1.0),    // images
+        ("shapes.glb", 3.0),    // disks, spheres and tubes
+        ("materials.glb", 1.0), // coats, sheen, two roughnesses
+    ] {
+        let Used { seconds, megabytes } = render(scene);
+        println!("{scene}: {seconds:.1} s, {megabytes:.0} MB");
+        assert!(seconds > 0.0 && seconds < kinds * SECONDS, "{scene}: {seconds} s of processor time");
+        assert!(megabytes > 0.0 && megabytes < MEGABYTES, "{scene}: {megabytes} MB");
+    }
+}
