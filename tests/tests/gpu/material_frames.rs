@@ -83,27 +83,35 @@ fn every_material_looks_like_the_reference() {
     let balls = scene("materials.glb");
     let found = errors(&engine, &balls);
     println!("{}", found.to_text());
-    assert_eq!(found.materials.len(), 13);
+    assert_eq!(found.materials.len(), 17);
     for material in &found.materials {
         // As docs/materials.md has them at a larger size, and a half more: lobes of two roughnesses are crescents, which no matrix is near to;
         // sheen and rough lobes err most where they graze
         let bound = match material.name.as_str() {
             "brushed along" | "brushed across" => 0.45,
             "spun" => 0.25,
+            // A film whose reflectance turns with the angle, on rough metal
+            "beetle" => 0.25,
             "velvet" => 0.18,
+            "titanium" => 0.14,
             _ => 0.13,
         };
         assert!(material.error < bound, "{}: {}", material.name, material.error);
-        assert!((material.ratio - 1.0).abs() < 0.1, "{}: {}", material.name, material.ratio);
+        // The crescent of what is brushed across lies where no lamp is: .91 at a larger size
+        let of_mean = if material.name == "brushed across" { 0.12 } else { 0.1 };
+        assert!((material.ratio - 1.0).abs() < of_mean, "{}: {}", material.name, material.ratio);
     }
     // The twin: without an effect that it needs, a material looks unlike it
     let mut other = balls.clone();
     for material in &mut other.materials {
         material.anisotropy_rotation += 1.5;
+        material.material.film = None;
     }
-    let turned = |found: &MaterialErrors| {
-        let brushed = found.materials.iter().find(|material| material.name == "brushed along");
-        brushed.map(|material| material.ratio)
+    let reflected = |found: &MaterialErrors, name: &str| {
+        found.materials.iter().find(|material| material.name == name).map(|material| material.ratio)
     };
-    assert_ne!(turned(&found), turned(&errors(&engine, &other)));
+    let changed = errors(&engine, &other);
+    for name in ["brushed along", "titanium"] {
+        assert_ne!(reflected(&found, name), reflected(&changed, name));
+    }
 }
