@@ -6,9 +6,7 @@ use crate::sweep::turn_around;
 use crate::writer::{Shape, Writer, look_at};
 use image::{Rgb, RgbImage};
 use serde_json::json;
-
-/// Radians, rounded so that every machine writes the same file.
-const QUARTER_TURN: f64 = 1.570796;
+use std::f64::consts::FRAC_PI_2;
 
 pub fn glb() -> Vec<u8> {
     let mut writer = Writer::new();
@@ -62,7 +60,7 @@ fn bottle(writer: &mut Writer) {
 fn tin(writer: &mut Writer) {
     let steel = writer.surface("brushed steel", [0.62, 0.62, 0.64], 1.0, 0.32);
     writer.root["materials"][steel]["extensions"] = json!({ "KHR_materials_anisotropy": {
-        "anisotropyStrength": 0.7, "anisotropyRotation": QUARTER_TURN } });
+        "anisotropyStrength": 0.7, "anisotropyRotation": FRAC_PI_2 } });
     let outline = [
         [0.0, 0.0],
         [0.15, 0.0],

@@ -5,11 +5,18 @@ use crate::sweep::turn_around;
 use crate::writer::{Writer, look_at};
 use serde_json::json;
 
-/// The softboxes: their names, places, sizes and radiance. They face the middle of what is shown.
-pub const SOFTBOXES: [(&str, [f64; 3], [f64; 2], [f32; 3]); 3] = [
-    ("key", [-2.6, 2.9, 2.4], [1.4, 1.8], [9.0, 8.4, 7.6]),
-    ("fill", [3.6, 1.9, 2.2], [2.2, 2.2], [1.1, 1.3, 1.6]),
-    ("rim", [1.9, 2.9, -1.5], [0.5, 1.9], [11.0, 11.6, 12.4]),
+/// A panel of light that faces the middle of what is shown.
+pub struct Softbox {
+    pub name: &'static str,
+    at: [f64; 3],
+    size: [f64; 2],
+    radiance: [f32; 3],
+}
+
+pub const SOFTBOXES: [Softbox; 3] = [
+    Softbox { name: "key", at: [-2.6, 2.9, 2.4], size: [1.4, 1.8], radiance: [9.0, 8.4, 7.6] },
+    Softbox { name: "fill", at: [3.6, 1.9, 2.2], size: [2.2, 2.2], radiance: [1.1, 1.3, 1.6] },
+    Softbox { name: "rim", at: [1.9, 2.9, -1.5], size: [0.5, 1.9], radiance: [11.0, 11.6, 12.4] },
 ];
 
 pub fn glb() -> Vec<u8> {
@@ -29,7 +36,7 @@ pub fn glb() -> Vec<u8> {
     writer.object("knot", &knot, copper, json!({ "translation": [0, 1.02, 0] }));
     let glaze = writer.surface("blue glaze", [0.03, 0.1, 0.28], 0.0, 0.18);
     writer.object("vase", &vase(), glaze, json!({ "translation": [1.25, 0.5, 0] }));
-    for (name, at, size, radiance) in SOFTBOXES {
+    for Softbox { name, at, size, radiance } in SOFTBOXES {
         let softbox = writer.emitter(name, radiance, false);
         let mut node = look_at(at, [0.0, 0.8, 0.0]);
         turn_around(&mut node);

@@ -274,7 +274,7 @@ fn the_lamps_are_of_every_shape() {
 fn the_studio_has_its_softboxes() {
     let scene = load("studio.glb");
     let names: Vec<_> = scene.lights.iter().map(|light| light.name.as_str()).collect();
-    assert_eq!(names, studio::SOFTBOXES.map(|(name, ..)| name));
+    assert_eq!(names, studio::SOFTBOXES.map(|softbox| softbox.name));
     assert_eq!(scene.effects(), LOBES);
     // They face what is shown
     for light in &scene.lights {
