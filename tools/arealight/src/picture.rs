@@ -32,15 +32,15 @@ pub enum Format {
 pub enum Exposure {
     /// Radiance is multiplied by 2^stops; within [`MAX_STOPS`].
     Stops(f32),
-    /// By so many stops that [`AUTO_PART`] of the samples that are not black have a luminance of at most [`AUTO_LUMINANCE`].
+    /// By so many stops that [`AUTO_PART`] of the samples that are lit and show no lamp have a luminance of at most [`AUTO_LUMINANCE`].
     Auto,
 }
 
 /// The most stops, up or down: within what float32 radiance bears.
 pub const MAX_STOPS: f32 = 64.0;
 
-/// The part of the samples that is not brighter than [`AUTO_LUMINANCE`] in a picture that is exposed by itself: lamps and highlights,
-/// which are few, may be.
+/// The part of the samples that is not brighter than [`AUTO_LUMINANCE`] in a picture that is exposed by itself: highlights, which are few,
+/// may be.
 pub const AUTO_PART: f64 = 0.9;
 
 /// Where the tone map begins to roll off, nearly: most of the picture keeps its contrast.
@@ -64,13 +64,12 @@ fn luminance(color: Vec3) -> f32 {
 }
 
 impl Picture {
-    /// The stops that an exposure is for this picture; 0 where it is black.
-    pub fn stops(&self, exposure: Exposure) -> f32 {
-        if let Exposure::Stops(stops) = exposure {
-            return stops;
-        }
-        let all = self.pixels.iter().map(|pixel| luminance(*pixel));
-        let mut lit: Vec<f32> = all.filter(|luminance| *luminance > 0.0 && luminance.is_finite()).collect();
+    /// The stops of [`Exposure::Auto`]; 0 where nothing is lit. `emission` is what each sample has of lamps that the camera sees: those
+    /// samples do not count.
+    pub fn auto_stops(&self, emission: &[Vec3]) -> f32 {
+        let reflected = self.pixels.iter().zip(emission).filter(|(_, emission)| **emission == Vec3::ZERO);
+        let luminances = reflected.map(|(radiance, _)| luminance(*radiance));
+        let mut lit: Vec<f32> = luminances.filter(|y| *y > 0.0 && y.is_finite()).collect();
         if lit.is_empty() {
             return 0.0;
         }
@@ -212,26 +211,26 @@ mod tests {
 
     #[test]
     fn a_picture_exposes_itself() {
-        // Black, a hundred greys up to 8, and a lamp a thousand times as bright
-        let mut pixels: Vec<Vec3> = (0..=100).map(|i| Vec3::splat(i as f32 * 0.08)).collect();
-        pixels.push(Vec3::splat(8000.0));
-        let stops = |pixels: Vec<Vec3>, exposure| {
-            Picture { width: pixels.len() as u32, height: 1, pixels }.stops(exposure)
+        // Black, a hundred greys up to 8, and as many samples of a lamp a thousand times as bright
+        let greys: Vec<Vec3> = (0..=100).map(|i| Vec3::splat(i as f32 * 0.08)).collect();
+        let lamp = [Vec3::splat(8000.0); 100];
+        let stops = |pixels: Vec<Vec3>, emission: &[Vec3]| {
+            Picture { width: pixels.len() as u32, height: 1, pixels }.auto_stops(emission)
         };
-        let auto = stops(pixels.clone(), Exposure::Auto);
-        let brightest_kept = pixels[91].x * auto.exp2();
+        let both = || [&greys[..], &lamp].concat();
+        let emission = [&[Vec3::ZERO; 101][..], &lamp].concat();
+        let auto = stops(both(), &emission);
+        let brightest_kept = greys[91].x * auto.exp2();
         assert!((brightest_kept - AUTO_LUMINANCE).abs() < 0.02, "{brightest_kept}");
-        // The lamp's brightness does not matter, what it lights does
-        *pixels.last_mut().unwrap() *= 100.0;
-        assert_eq!(stops(pixels.clone(), Exposure::Auto), auto);
-        for pixel in &mut pixels {
-            *pixel *= 4.0;
-        }
-        assert!((stops(pixels.clone(), Exposure::Auto) - (auto - 2.0)).abs() < 1e-5);
-        // The twin: stated stops are kept; and no picture is beyond the limits
-        assert_eq!(stops(pixels, Exposure::Stops(1.5)), 1.5);
-        assert_eq!(stops(vec![Vec3::ZERO, Vec3::NAN], Exposure::Auto), 0.0);
-        assert_eq!(stops(vec![Vec3::splat(1e-30)], Exposure::Auto), MAX_STOPS);
+        // The lamp does not matter, what it lights does
+        assert_eq!(stops(greys.clone(), &emission[..101]), auto);
+        let brighter = both().into_iter().map(|pixel| pixel * 4.0).collect();
+        assert!((stops(brighter, &emission) - (auto - 2.0)).abs() < 1e-5);
+        // The twin: as a surface, it would
+        assert!(stops(both(), &[Vec3::ZERO; 201]) < auto - 9.0);
+        // Nothing lit, and nearly nothing
+        assert_eq!(stops(vec![Vec3::ZERO, Vec3::NAN], &[Vec3::ZERO; 2]), 0.0);
+        assert_eq!(stops(vec![Vec3::splat(1e-30)], &[Vec3::ZERO]), MAX_STOPS);
     }
 
     #[test]

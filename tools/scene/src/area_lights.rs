@@ -6,6 +6,7 @@ use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
 use serde::Deserialize;
+use serde_json::Value;
 
 /// Luminous efficacy of 555 nm light, lm/W: `EXT_lights_area` gives luminance in cd/m², and radiance is that
 /// divided by this. A light of 683 nits has a radiance of 1.
@@ -30,6 +31,8 @@ struct AreaLight {
     size: f64,
     #[serde(default)]
     rect: Rectangle,
+    #[serde(default)]
+    extras: Value,
 }
 
 #[derive(Deserialize, Clone)]
@@ -152,13 +155,15 @@ fn polygon(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     Ok(LightShape::Polygon(vertices))
 }
 
-/// The light's disk in the world, or why there is none.
+/// The light's disk in the world, an ellipse where the file says so, or why there is none.
 fn disk(light: &AreaLight, node: &PlacedNode) -> Result<LightShape, String> {
     let Placing { scale, right, front, .. } = Placing::new(node)?;
-    let radius = scale * light.size * 0.5;
-    if !(radius > 0.0 && radius.is_finite()) {
-        return Err(format!("a disk of the diameter {}", 2.0 * radius));
+    // The extension has no ellipses: a file of ours says the width over the height
+    let aspect = light.extras["arealight"]["aspect"].as_f64().unwrap_or(1.0);
+    let [half_width, half_height] = [scale * light.size * aspect, scale * light.size].map(|s| s * 0.5);
+    if ![half_width, half_height].iter().all(|half| *half > 0.0 && half.is_finite()) {
+        return Err(format!("a disk of the diameters {} and {}", 2.0 * half_width, 2.0 * half_height));
     }
-    let (axis_u, axis_v) = (right * radius, front.cross(right) * radius);
+    let (axis_u, axis_v) = (right * half_width, front.cross(right) * half_height);
     Ok(LightShape::Disk { center: node.world.translation, axis_u, axis_v })
 }

@@ -44,7 +44,7 @@ pub struct Arguments {
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
-    /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is not black have a luminance of at
+    /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit, lamps apart, have a luminance of at
     /// most 0.7
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
     exposure: Exposure,
@@ -217,7 +217,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut outcome = render(&engine, &scene, &camera, samples, (surfaces, quality), arguments)
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picked = picked;
-    outcome.stops = outcome.picture.stops(arguments.exposure);
     outcome.picture.save(&output, arguments.supersample, outcome.stops)?;
     let device = engine.host().device_name();
     let summary = Summary {
@@ -245,6 +244,11 @@ fn render(
     let constants = buffers.constants(camera, size, Vec3::ZERO);
     let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
     let visibility = renderer.visibility()?;
+    // So far there is what lamps show of themselves
+    let emission = match arguments.exposure {
+        Exposure::Auto => renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect(),
+        Exposure::Stops(_) => Vec::new(),
+    };
     let mut tiles = None;
     let shading = match (arguments.reference, arguments.tiles) {
         (None, None) => {
@@ -270,7 +274,11 @@ fn render(
     };
     let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
     let picture = Picture { width: size[0], height: size[1], pixels };
-    Ok(Outcome { visibility, shading, picked: None, tiles, picture, stops: 0.0 })
+    let stops = match arguments.exposure {
+        Exposure::Auto => picture.auto_stops(&emission),
+        Exposure::Stops(stops) => stops,
+    };
+    Ok(Outcome { visibility, shading, picked: None, tiles, picture, stops })
 }
 
 /// Shades a view with shadows or without.

@@ -2,10 +2,13 @@
 
 use crate::hundred_lamps::Surface;
 use crate::shadows::Floor;
-use crate::{clock, coats, demo, hundred_lamps, lamps, material_balls, room, screen, shadows, sheen, sweep};
+use crate::{
+    clock, coats, demo, hundred_lamps, interior, lamps, material_balls, neon, product, room, screen, shadows,
+    sheen, shop, studio, sweep,
+};
 
 /// Each file's name and bytes.
-pub fn files() -> [(&'static str, Vec<u8>); 13] {
+pub fn files() -> [(&'static str, Vec<u8>); 18] {
     [
         ("sweep.glb", sweep::glb()),
         ("room.glb", room::glb()),
@@ -20,5 +23,10 @@ pub fn files() -> [(&'static str, Vec<u8>); 13] {
         ("shadows-glossy.glb", shadows::glb(Floor::Glossy)),
         ("hundred-lamps.glb", hundred_lamps::glb(Surface::Satin)),
         ("hundred-lamps-metal.glb", hundred_lamps::glb(Surface::Metal)),
+        ("studio.glb", studio::glb()),
+        ("interior.glb", interior::glb()),
+        ("neon.glb", neon::glb()),
+        ("shop.glb", shop::glb()),
+        ("product.glb", product::glb()),
     ]
 }

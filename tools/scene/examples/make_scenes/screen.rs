@@ -87,9 +87,7 @@ fn lamp(writer: &mut Writer) {
 
 /// A texture that does not repeat.
 pub fn texture(writer: &mut Writer, name: &str, image: &RgbImage) -> usize {
-    let mut png = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
-    let texture = writer.texture(name, png.get_ref());
+    let texture = writer.tiles(name, image);
     let sampler = writer.push("samplers", json!({ "wrapS": 33071, "wrapT": 33071 }));
     writer.root["textures"][texture]["sampler"] = json!(sampler);
     texture

@@ -245,3 +245,36 @@ pub fn rounded_box(size: [f64; 3], rounding: f64, steps: u32) -> Shape {
     }
     shape
 }
+
+/// A surface of revolution about +Y through (radius, height) points from the bottom to the top outside, smooth but where a point is there
+/// twice.
+pub fn turned(outline: &[[f64; 2]], segments: u32) -> Shape {
+    let point = |i: usize| DVec2::from(outline[i]);
+    let along = |i: usize| {
+        let before = point(i) - point(i.saturating_sub(1));
+        let after = point((i + 1).min(outline.len() - 1)) - point(i);
+        (before.normalize_or_zero() + after.normalize_or_zero()).normalize_or(DVec2::Y)
+    };
+    let profile: Vec<_> = (0..outline.len()).map(|i| (point(i), -along(i).perp())).collect();
+    lathe(&profile, segments)
+}
+
+/// A floor of the width and depth that bends up at its back, with a radius, into a wall of the height: no edge behind what stands on it.
+pub fn backdrop([width, depth, height]: [f64; 3], bend: f64) -> Shape {
+    const STEPS: u32 = 16;
+    let mut shape = Shape::default();
+    let back = -0.5 * depth;
+    let mut row = |y: f64, z: f64, normal: DVec3| {
+        for x in [-0.5, 0.5] {
+            shape.vertex(DVec3::new(x * width, y, z), normal, DVec2::new(x + 0.5, y));
+        }
+    };
+    row(0.0, 0.5 * depth, DVec3::Y);
+    for i in 0..=STEPS {
+        let (sin, cos) = (f64::from(i) / f64::from(STEPS) * PI * 0.5).sin_cos();
+        row(bend * (1.0 - cos), back + bend * (1.0 - sin), DVec3::new(0.0, cos, sin));
+    }
+    row(height, back, DVec3::Z);
+    shape.grid(0, 2, STEPS + 3);
+    shape
+}

@@ -184,6 +184,13 @@ impl Writer {
         self.push("textures", json!({ "source": source }))
     }
 
+    /// A texture of an image, which repeats.
+    pub fn tiles(&mut self, name: &str, image: &image::RgbImage) -> usize {
+        let mut png = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
+        self.texture(name, png.get_ref())
+    }
+
     /// The finished file.
     pub fn glb(mut self) -> Vec<u8> {
         while !self.buffer.len().is_multiple_of(4) {

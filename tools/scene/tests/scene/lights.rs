@@ -187,9 +187,24 @@ fn area_lights_turn_with_their_node() {
 }
 
 #[test]
+fn a_disk_is_an_ellipse_where_the_extras_say_so() {
+    let axes = |extras: Value| {
+        let scene = area_light(&json!({ "type": "disk", "size": 2, "extras": extras }), &json!({}));
+        let LightShape::Disk { axis_u, axis_v, .. } = scene.lights[0].shape else { panic!("no disk") };
+        assert!(scene.lights[0].shape.area_vector().z < 0.0);
+        [axis_u.length(), axis_v.length()]
+    };
+    assert_eq!(axes(json!({ "arealight": { "aspect": 1.5 } })), [1.5, 1.0]);
+    // Extras are whatever a file likes
+    for extras in [json!({}), json!(null), json!("round"), json!({ "arealight": "sphere" })] {
+        assert_eq!(axes(extras), [1.0, 1.0]);
+    }
+}
+
+#[test]
 fn area_lights_that_cannot_be_are_left_out() {
     for (light, node, text) in [
-        (json!({ "type": "disk", "size": -1 }), json!({}), "a disk of the diameter -1: left out"),
+        (json!({ "type": "disk", "size": -1 }), json!({}), "a disk of the diameters -1 and -1: left out"),
         (json!({ "type": "disk" }), json!({ "scale": [1, 1, 0] }), "its node's scale is zero: left out"),
         (json!({ "type": "blob" }), json!({}), "type 'blob' is not known: left out"),
         (json!({ "size": 0 }), json!({}), "a rectangle of 0 by 0: left out"),

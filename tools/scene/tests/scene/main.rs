@@ -25,10 +25,16 @@ mod demo;
 mod files;
 #[path = "../../examples/make_scenes/hundred_lamps.rs"]
 mod hundred_lamps;
+#[path = "../../examples/make_scenes/interior.rs"]
+mod interior;
 #[path = "../../examples/make_scenes/lamps.rs"]
 mod lamps;
 #[path = "../../examples/make_scenes/material_balls.rs"]
 mod material_balls;
+#[path = "../../examples/make_scenes/neon.rs"]
+mod neon;
+#[path = "../../examples/make_scenes/product.rs"]
+mod product;
 #[path = "../../examples/make_scenes/room.rs"]
 mod room;
 #[path = "../../examples/make_scenes/screen.rs"]
@@ -39,6 +45,10 @@ mod shadows;
 mod shapes;
 #[path = "../../examples/make_scenes/sheen.rs"]
 mod sheen;
+#[path = "../../examples/make_scenes/shop.rs"]
+mod shop;
+#[path = "../../examples/make_scenes/studio.rs"]
+mod studio;
 #[path = "../../examples/make_scenes/sweep.rs"]
 mod sweep;
 #[path = "../../examples/make_scenes/test_card.rs"]

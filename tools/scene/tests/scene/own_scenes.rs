@@ -2,7 +2,8 @@
 
 use crate::hundred_lamps::Surface;
 use crate::{
-    clock, coats, files, hundred_lamps, lamps, material_balls, room, screen, shadows, sheen, sweep, test_card,
+    clock, coats, files, hundred_lamps, lamps, material_balls, neon, room, screen, shadows, sheen, shop,
+    studio, sweep, test_card,
 };
 use arealight::Effects;
 use arealight_scene::{Scene, SceneBuffers};
@@ -267,4 +268,50 @@ fn the_lamps_are_of_every_shape() {
             scene.materials.iter().any(|m| f64::from(m.material.roughness) == f64::from(roughness as f32))
         );
     }
+}
+
+#[test]
+fn the_studio_has_its_softboxes() {
+    let scene = load("studio.glb");
+    let names: Vec<_> = scene.lights.iter().map(|light| light.name.as_str()).collect();
+    assert_eq!(names, studio::SOFTBOXES.map(|softbox| softbox.name));
+    assert_eq!(scene.effects(), LOBES);
+    // They face what is shown
+    for light in &scene.lights {
+        let to_middle = DVec3::new(0.0, 0.8, 0.0) - light.shape.center();
+        assert!(to_middle.dot(light.shape.area_vector()) > 0.0, "{}", light.name);
+    }
+}
+
+#[test]
+fn the_interior_has_lamps_of_three_shapes_and_cloth() {
+    let scene = load("interior.glb");
+    assert_eq!(scene.effects(), LOBES | Effects::SHEEN | Effects::SPHERE | Effects::TUBE);
+    assert_eq!(scene.lights.iter().filter(|light| light.shape.is_polygonal()).count(), 3);
+    assert_eq!(scene.lights.len(), 5);
+}
+
+#[test]
+fn the_neon_is_of_tubes_alone() {
+    let scene = load("neon.glb");
+    assert_eq!(scene.lights.len(), neon::STROKES.len() + neon::ARROW.len());
+    let is_tube = |light: &arealight::Light| matches!(light.shape, arealight::LightShape::Tube { .. });
+    assert!(scene.lights.iter().all(is_tube));
+    assert_eq!(scene.effects(), LOBES | Effects::TUBE);
+}
+
+#[test]
+fn the_shop_has_sixty_panels() {
+    let scene = load("shop.glb");
+    assert_eq!((scene.lights.len() as u32, shop::PANELS), (60, [6, 10]));
+    assert!(scene.lights.iter().all(|light| light.shape.is_convex_quad() && !light.two_sided));
+    assert_eq!(scene.effects(), LOBES);
+}
+
+#[test]
+fn the_product_is_coated_and_brushed_under_a_softbox_that_fades() {
+    let scene = load("product.glb");
+    assert_eq!(scene.effects(), LOBES | Effects::COAT | Effects::ANISOTROPY | Effects::TEXTURED);
+    let textured = scene.lights.iter().filter(|light| light.texture.is_some());
+    assert_eq!(textured.map(|light| light.name.as_str()).collect::<Vec<_>>(), ["softbox"]);
 }
