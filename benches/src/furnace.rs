@@ -156,7 +156,8 @@ pub fn run(
 fn row(level: &str, places: &[Place], excess: &[f64]) -> Row {
     let most_lost = places.iter().zip(excess).min_by(|a, b| a.1.total_cmp(b.1));
     let at = most_lost.map_or([0.0; 2], |([roughness, cos_view], _)| {
-        [*roughness, cos_view.clamp(-1.0, 1.0).acos().to_degrees()]
+        let sin_view = (1.0 - cos_view * cos_view).max(0.0).sqrt();
+        [*roughness, sin_view.atan2(*cos_view).to_degrees()]
     });
     Row {
         level: level.to_owned(),
