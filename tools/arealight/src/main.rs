@@ -14,10 +14,13 @@ mod visible;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Analytic area lights for Vulkan engines: a polygon, a material and a view go in; radiance comes out.
+/// Render, measure and export analytic area lights: a polygon, a material and a view go in; radiance comes out.
 #[derive(Parser)]
-#[command(name = "arealight", version, about, max_term_width = 100, after_help = AFTER_HELP, arg_required_else_help = true)]
+#[command(name = "arealight", version, max_term_width = 100, after_help = AFTER_HELP, arg_required_else_help = true)]
 struct CommandLine {
+    /// Say nothing of progress.
+    #[arg(short, long, global = true)]
+    quiet: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -52,7 +55,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match CommandLine::parse().command {
+    let CommandLine { quiet, command } = CommandLine::parse();
+    if quiet {
+        progress::be_quiet();
+    }
+    let result = match command {
         Command::Render(arguments) => commands::render::run(&arguments),
         Command::Eval(arguments) => commands::eval::run(&arguments),
         Command::Effects(arguments) => commands::effects::run(&arguments),

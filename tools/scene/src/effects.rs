@@ -10,7 +10,7 @@ use glam::Vec3;
 pub struct RequiredEffect {
     /// One effect.
     pub effect: Effects,
-    /// The first light or material that needs it, such as "light 'sign'".
+    /// The first light or material that needs it, and how many more do, such as "light 'sign' and 2 more".
     pub reason: String,
 }
 
@@ -41,14 +41,21 @@ pub fn required_effects(scene: &Scene) -> Vec<RequiredEffect> {
     let reason = |effect| {
         // Only materials that something has been made of are in a scene
         if let Some((_, needs)) = OF_MATERIALS.into_iter().find(|(of_materials, _)| *of_materials == effect) {
-            let first = scene.materials.iter().find(|material| needs(material))?;
-            return Some(format!("material '{}'", first.name));
+            return names("material", scene.materials.iter().filter(|m| needs(m)).map(|m| &*m.name));
         }
-        let first = scene.lights.iter().find(|light| light.effects().contains(effect))?;
-        Some(format!("light '{}'", first.name))
+        names("light", scene.lights.iter().filter(|l| l.effects().contains(effect)).map(|l| &*l.name))
     };
     let effects = Effects::all().iter();
     effects.filter_map(|effect| Some(RequiredEffect { effect, reason: reason(effect)? })).collect()
+}
+
+/// The first of those that need an effect, and how many more do; `None` without any.
+fn names<'a>(kind: &str, mut needing: impl Iterator<Item = &'a str>) -> Option<String> {
+    let first = needing.next()?;
+    Some(match needing.count() {
+        0 => format!("{kind} '{first}'"),
+        more => format!("{kind} '{first}' and {more} more"),
+    })
 }
 
 impl SceneMaterial {

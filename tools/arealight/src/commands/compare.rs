@@ -102,6 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     if let Some(path) = output {
         map(&a, &b, scale * found.mean).save_png(path)?;
+        eprintln!("wrote {}", path.display());
     }
     let Difference { error, ratio, largest: (largest, [x, y]), mean } = found;
     let text = if *json {

@@ -8,7 +8,7 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// What a scene needs, and why.
+/// Say which effects a scene needs, and why.
 ///
 /// Shaders are made for these effects alone; docs/effects.md says what that saves, docs/gpu.md what each costs a GPU.
 #[derive(clap::Args)]

@@ -99,7 +99,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Write before measuring, so that no answer is lost
     let text = write_answers(&answers);
     match &arguments.output {
-        Some(path) => output::write(path, text.as_bytes())?,
+        Some(path) => {
+            output::write(path, text.as_bytes())?;
+            eprintln!("wrote {}", path.display());
+        }
         None if known.is_none() => return print(&text),
         None => {}
     }

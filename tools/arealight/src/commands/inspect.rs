@@ -89,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
             None => lobes::draw(&table, arguments.material()),
         };
         picture.save_png(path)?;
+        eprintln!("wrote {}", path.display());
     }
     let summary = Summary {
         name: &name,
@@ -105,6 +106,7 @@ fn run_pyramid(path: &Path, arguments: &Arguments) -> Result<ExitCode, Failure> 
     let pyramid = pyramid::make(path, arguments.layer, arguments.device.as_deref())?;
     if let Some(output) = &arguments.output {
         pyramid_picture::draw(&pyramid).save_png(output)?;
+        eprintln!("wrote {}", output.display());
     }
     print(&if arguments.json { pyramid.to_json() } else { pyramid.to_text() })
 }

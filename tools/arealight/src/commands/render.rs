@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-/// Renders a glTF scene: what emits is a light.
+/// Render a glTF scene: what emits is a light.
 ///
 /// Visibility by traversal of a bounding volume hierarchy, shading by linearly transformed cosines, both on
 /// the GPU, with shadows by rays that are drawn from the lobes.

@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Light tables from one file format to another.
+/// Convert light tables from one file format to another.
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(subcommand)]

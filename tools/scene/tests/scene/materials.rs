@@ -370,7 +370,7 @@ fn effects_are_what_the_scene_needs() {
     let mut writer = panel_with(black);
     let sign = writer.emitter("sign", [1.0; 3], true);
     writer.object("sign", &panel(1.0, 1.0), sign, json!({}));
-    assert_eq!(required(&load(writer)), ["glossy: material 'black'", "two_sided: light 'sign'"]);
+    assert_eq!(required(&load(writer)), ["glossy: material 'black' and 1 more", "two_sided: light 'sign'"]);
 }
 
 #[test]

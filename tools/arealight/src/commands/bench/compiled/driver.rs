@@ -8,7 +8,7 @@ use arealight_engine::host::HostError;
 use arealight_engine::host::null_hardware::{Compiler, set_environment};
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
-use std::io::{BufRead as _, BufReader, IsTerminal as _, Read as _};
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Mutex;
@@ -55,7 +55,7 @@ pub fn compile(
     rows: &[Row],
     driver: &Path,
 ) -> Result<Compiled, Failure> {
-    let progress = Progress::new(families.len() * rows.len());
+    let progress = progress::bar((families.len() * rows.len()) as u64, "rows");
     let mut found: Vec<Option<Result<Family, Failure>>> = families.iter().map(|_| None).collect();
     let left = Mutex::new(families.iter().zip(&mut found));
     let work = || {
@@ -70,7 +70,7 @@ pub fn compile(
             scope.spawn(work);
         }
     });
-    progress.bar.finish_and_clear();
+    progress.finish_and_clear();
     Ok(Compiled { families: found.into_iter().flatten().collect::<Result<_, _>>()? })
 }
 
@@ -79,7 +79,7 @@ fn compile_family(
     which: &[&str],
     count: usize,
     driver: &Path,
-    progress: &Progress,
+    progress: &ProgressBar,
 ) -> Result<Family, Failure> {
     let failed = |message: String| Failure::Device(format!("{family}: {message}"));
     let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
@@ -97,7 +97,7 @@ fn compile_family(
             Line::Driver(driver) => name = driver,
             Line::Row(row) => {
                 rows.push(*row);
-                progress.step(family, rows.last(), rows.len(), count);
+                progress.inc(1);
             }
         }
     }
@@ -116,24 +116,4 @@ fn compile_family(
         return Err(failed(format!("after {} of {count} rows: {status}: {}", rows.len(), said.trim())));
     }
     Ok(Family::new(family.to_owned(), name, rows))
-}
-
-/// A bar where the error stream is a terminal, else a line a row.
-struct Progress {
-    bar: ProgressBar,
-    is_terminal: bool,
-}
-
-impl Progress {
-    fn new(length: usize) -> Self {
-        Self { bar: progress::bar(length as u64, "rows"), is_terminal: std::io::stderr().is_terminal() }
-    }
-
-    fn step(&self, family: &str, row: Option<&Measured>, done: usize, count: usize) {
-        self.bar.inc(1);
-        if let Some(row) = row.filter(|_| !self.is_terminal) {
-            let seconds = row.seconds.map_or(String::new(), |seconds| format!(", {seconds:.1} s"));
-            eprintln!("{family}: {done} of {count}: {}{seconds}", row.name());
-        }
-    }
 }
