@@ -307,6 +307,7 @@ impl<'a> CLibrary<'a> {
             tile_lists: ArealightBuffer::default(),
             viewport: ArealightViewport::default(),
             offset: [0; 2],
+            rows: [0; 2],
         };
         let (set, _pool) = self.set(&set_layout(pass));
         // SAFETY: the set is new, and what it points to lives until the submission was waited for.

@@ -568,6 +568,9 @@ typedef struct ArealightFrame {
     struct ArealightViewport viewport;
     // With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
     uint32_t offset[2];
+    // The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
+    // watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
+    uint32_t rows[2];
 } ArealightFrame;
 
 // Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
@@ -1115,7 +1118,7 @@ AREALIGHT_ASSERT(offsetof(ArealightViewport, width) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, height) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, min_depth) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, max_depth) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 104);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 112);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
@@ -1125,6 +1128,7 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, position_from_clip) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, viewport) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, offset) == 96);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, rows) == 104);
 AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);

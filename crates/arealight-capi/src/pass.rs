@@ -367,6 +367,7 @@ pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Fa
         tile_lists: (frame.tile_lists.buffer != 0).then(|| buffer(frame.tile_lists)),
         seed: frame.seed,
         offset: frame.offset,
+        rows: (frame.rows != [0, 0]).then_some(frame.rows),
         viewport: (frame.viewport != ArealightViewport::default()).then(|| viewport(frame.viewport)),
     })
 }

@@ -338,6 +338,9 @@ pub struct ArealightFrame {
     pub viewport: ArealightViewport,
     /// With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
     pub offset: [u32; 2],
+    /// The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
+    /// watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
+    pub rows: [u32; 2],
 }
 
 /// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host

@@ -7,6 +7,7 @@ use crate::module::check_module;
 use crate::prune::prune;
 use arealight::kernels::{BindingKind, Kernel};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
@@ -238,6 +239,30 @@ impl ComputePass {
         }
     }
 
+    /// As [`ComputePass::record_checked`], of the workgroups in `rows` alone: of y from the first on to before the last.
+    ///
+    /// # Safety
+    /// As [`ComputePass::record`]; rows are among those of `groups`.
+    pub(crate) unsafe fn record_rows(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        sets: &[vk::DescriptorSet],
+        constants: &[u8],
+        (groups, rows): ([u32; 3], Range<u32>),
+    ) {
+        let count = rows.end - rows.start;
+        // SAFETY: the same contract; the pipeline was made for any first workgroup.
+        unsafe {
+            self.bind(command_buffer, sets, constants);
+            let device = &self.layouts.context().device;
+            device.cmd_dispatch_base(command_buffer, 0, rows.start, 0, groups[0], count, groups[2]);
+            if rows.start > 0 {
+                // Lavapipe's indirect dispatches begin where the last direct one did: one of nothing begins at 0
+                device.cmd_dispatch(command_buffer, 0, 0, 0);
+            }
+        }
+    }
+
     /// As [`ComputePass::record_checked`], with the groups that are found in a buffer when the commands run.
     ///
     /// # Safety
@@ -308,7 +333,10 @@ fn make_pipeline(
         .module(module)
         .name(c"main")
         .specialization_info(&specialization);
-    let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layouts.pipeline_layout());
+    let info = vk::ComputePipelineCreateInfo::default()
+        .flags(vk::PipelineCreateFlags::DISPATCH_BASE) // ComputePass::record_rows
+        .stage(stage)
+        .layout(layouts.pipeline_layout());
     // SAFETY: module and layout are live; the cache is the host's, unused elsewhere by contract.
     let made = unsafe { device.create_compute_pipelines(layouts.context().pipeline_cache, &[info], None) };
     // SAFETY: a module may go as soon as pipelines were made from it.

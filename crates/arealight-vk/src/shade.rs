@@ -20,6 +20,7 @@ use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
 use resources::{LOBE_HORIZONS, TILE_LISTS, needed};
+use std::ops::Range;
 
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -46,7 +47,31 @@ pub struct ShadeFrame {
     pub tile_lists: Option<Resource>,
     /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each frame. Else ignored.
     pub seed: u32,
+    /// The rows of pixels that this record shades, from the first to before the second, of those that `size` says; None: all. Both are multiples of
+    /// 8, or the second is the last row's end. A frame of more work than a driver's watchdog allows is recorded and submitted by
+    /// [`ShadeFrame::parts`]. The picture is the same to the bit.
+    pub rows: Option<[u32; 2]>,
 }
+
+impl ShadeFrame {
+    /// The frame in parts of whole rows of workgroups, none with more than `most` pairs of a pixel and a light, but for one that is a single row
+    /// of workgroups (8 rows of pixels), which is the least. What a light costs a pixel is in docs/gpu.md; 2^24 pairs take less than
+    /// two seconds on a device that does ten million a second. Tiles leave out pairs that are counted here.
+    pub fn parts(&self, most: u64) -> impl Iterator<Item = Self> + use<> {
+        let frame = *self;
+        let [first, end] = frame.rows.unwrap_or([0, frame.size[1]]);
+        let lights = u64::from(frame.lights.light_count) + u64::from(frame.lights.shape_count);
+        let pairs_of_group_row = u64::from(GROUP_SIDE) * u64::from(frame.size[0]) * lights.max(1);
+        let group_rows = (most / pairs_of_group_row.max(1)).clamp(1, u64::from(u32::MAX / GROUP_SIDE));
+        let step = group_rows as u32 * GROUP_SIDE;
+        (first..end)
+            .step_by(step as usize)
+            .map(move |row| Self { rows: Some([row, row.saturating_add(step).min(end)]), ..frame })
+    }
+}
+
+/// Rows of pixels of a workgroup, of the kernels shade and classify alike.
+const GROUP_SIDE: u32 = arealight::tiles::SIDE;
 
 /// The shade kernel, specialised for a host's surfaces and a quality, for every kind of light.
 ///
@@ -295,13 +320,14 @@ impl ShadePass {
             };
         }
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
+        let rows = group_rows(frame)?;
         self.pipelines.check(set, bytemuck::bytes_of(&constants), groups)?;
         self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |pass| {
             // SAFETY: the same contract.
             unsafe {
                 let _label = names.label(command_buffer, c"arealight shade");
                 let sets: Vec<_> = std::iter::once(set).chain(host_set).collect();
-                pass.record_checked(command_buffer, &sets, bytemuck::bytes_of(&constants), groups);
+                pass.record_rows(command_buffer, &sets, bytemuck::bytes_of(&constants), (groups, rows));
             }
         })
     }
@@ -313,7 +339,7 @@ impl ShadePass {
         constants: ShadeConstants,
     ) -> Result<Option<(&Tiles, TiledFrame)>, Error> {
         let Some(tiles) = &self.tiles else { return Ok(None) };
-        let frame = tiles.checked(frame, constants)?;
+        let frame = tiles.checked(frame, constants, group_rows(frame)?)?;
         Ok(frame.map(|frame| (tiles, frame)))
     }
 
@@ -321,6 +347,7 @@ impl ShadePass {
     fn constants(&self, frame: &ShadeFrame) -> Result<ShadeConstants, Error> {
         let view = view_of(self.options, frame)?;
         check_lights(frame.lights)?;
+        group_rows(frame)?;
         Ok(ShadeConstants {
             position_from_clip: view.position_from_clip.to_cols_array_2d(),
             camera: view.camera,
@@ -333,6 +360,20 @@ impl ShadePass {
             ..ShadeConstants::default()
         })
     }
+}
+
+/// The rows of workgroups that a record shades.
+fn group_rows(frame: &ShadeFrame) -> Result<Range<u32>, Error> {
+    let end_of_frame = frame.size[1];
+    let Some([first, end]) = frame.rows else { return Ok(0..end_of_frame.div_ceil(GROUP_SIDE)) };
+    let wrong = |message: String| Err(Error::InvalidArgument { field: "rows", message });
+    if first >= end || end > end_of_frame {
+        return wrong(format!("{first} to {end} are no rows of the frame's {end_of_frame}"));
+    }
+    if first % GROUP_SIDE != 0 || (end % GROUP_SIDE != 0 && end != end_of_frame) {
+        return wrong(format!("{first} to {end} cut workgroups, which are {GROUP_SIDE} rows each"));
+    }
+    Ok(first / GROUP_SIDE..end.div_ceil(GROUP_SIDE))
 }
 
 /// Refuses options that no pass can be made with.

@@ -347,6 +347,10 @@ impl ShadowPass {
     ) -> Result<ReadyFrame, Error> {
         self.rays.layouts().check_host_set(frame.host_set)?;
         let view = view_of(self.options, frame.shade)?;
+        if frame.shade.rows.is_some() {
+            let message = "are a part of the frame, but shadows are of all of it: record its parts by the shade pass alone";
+            return Err(Error::InvalidArgument { field: "rows", message: message.into() });
+        }
         let head = self.history_head(resources, frame, &view)?;
         let ShadeFrame { seed, size, lights, .. } = *frame.shade;
         let position_from_clip = view.position_from_clip.to_cols_array_2d();

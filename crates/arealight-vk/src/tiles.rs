@@ -11,6 +11,7 @@ use arealight::kernels::CLASSIFY;
 use arealight::plan::{self, ShadeOptions, TileOptions};
 use arealight::tiles::{self, TileClass, tile_counts};
 use ash::vk;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// The buffer of tile lists: [`crate::ShadeResources::tile_lists`].
@@ -34,6 +35,8 @@ pub(crate) struct Tiles {
 pub(crate) struct TiledFrame {
     constants: ShadeConstants,
     lights: LightSummary,
+    /// The rows of tiles that are classified and shaded.
+    rows: Range<u32>,
     /// The buffer of the tile lists, and where in it they begin.
     lists: (vk::Buffer, vk::DeviceSize),
 }
@@ -80,6 +83,7 @@ impl Tiles {
         &self,
         frame: &ShadeFrame,
         constants: ShadeConstants,
+        rows: Range<u32>,
     ) -> Result<Option<TiledFrame>, Error> {
         let wrong = |message: &str| Error::InvalidArgument { field: "tile_lists", message: message.into() };
         let lists = match frame.tile_lists {
@@ -98,7 +102,7 @@ impl Tiles {
             cull_threshold: self.options.cull_threshold,
             ..constants
         };
-        Ok(Some(TiledFrame { constants, lights: frame.lights, lists }))
+        Ok(Some(TiledFrame { constants, lights: frame.lights, rows, lists }))
     }
 
     /// Makes the pipelines of a frame that are not made yet; those that shade among `shade`.
@@ -150,7 +154,7 @@ impl Tiles {
                 (compute, read | write),
             );
             self.classify.with(self.classify_constants(options, frame), |pass| {
-                pass.record_checked(command_buffer, &[set], bytes, groups);
+                pass.record_rows(command_buffer, &[set], bytes, (groups, frame.rows.clone()));
             })?;
             context.record_barrier(
                 command_buffer,

@@ -254,6 +254,7 @@ fn dark_frame(width: u32) -> ArealightFrame {
         tile_lists: ArealightBuffer::default(),
         viewport: ArealightViewport::default(),
         offset: [0; 2],
+        rows: [0; 2],
     }
 }
 
@@ -294,6 +295,8 @@ fn calls_out_of_order_are_refused() {
         let lights = ArealightLightSummary { effects: 1 << 30, ..ArealightLightSummary::default() };
         let unknown = ArealightFrame { lights, ..dark_frame(8) };
         refused(record(commands, 8, &unknown), ErrorArgument, "frame.lights.effects: 0x40000000");
+        let cut = ArealightFrame { rows: [0, 4], ..dark_frame(8) };
+        refused(record(commands, 8, &cut), ErrorArgument, "rows: 0 to 4 cut workgroups");
         // A pipeline ahead
         refused(arealight_pass_prepare(pass, &raw const blind), ErrorArgument, "camera");
         let right = dark_frame(8);

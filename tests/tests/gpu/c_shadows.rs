@@ -157,6 +157,7 @@ impl<'a> CPasses<'a> {
             tile_lists: ArealightBuffer::default(),
             viewport: ArealightViewport::default(),
             offset: [0; 2],
+            rows: [0; 2],
         };
         let shadow_frame = ArealightShadowFrame {
             frame: &raw const frame,
@@ -180,11 +181,15 @@ impl<'a> CPasses<'a> {
             refused(write(&without), ArealightResult::ErrorArgument, "blockers");
             good(write(&of_shadows));
             good(arealight_shadow_pass_prepare(self.shadow, &raw const frame));
-            host.submit(|commands| {
-                let commands = commands.as_raw() as *mut c_void;
-                good(arealight_pass_record(self.shade, commands, shade_set, &raw const frame));
-            })
-            .unwrap();
+            // In parts the picture is the same
+            for rows in [[0, 24], [24, SIDE]] {
+                let part = ArealightFrame { rows, ..frame };
+                host.submit(|commands| {
+                    let commands = commands.as_raw() as *mut c_void;
+                    good(arealight_pass_record(self.shade, commands, shade_set, &raw const part));
+                })
+                .unwrap();
+            }
             host.submit(|commands| {
                 let record = |commands, frame| {
                     let resources = &raw const of_shadows;

@@ -29,6 +29,7 @@ mod material_frames;
 mod meshes;
 mod modules;
 mod output;
+mod parts;
 mod paths;
 mod polygon_sampling;
 mod probe;

@@ -39,6 +39,11 @@ impl Default for Reference {
     }
 }
 
+/// Pairs of a pixel and a light that one submission shades at most, but for single rows of workgroups: a driver may reset a device whose
+/// submission takes over two seconds, in which one that does ten million pairs a second is done. That is a tenth of what integrated
+/// GPUs do.
+const PAIRS_PER_SUBMISSION: u64 = 1 << 24;
+
 /// A scene on the device, with the images of one view of it.
 ///
 /// Call [`SceneRenderer::visibility`] first; then [`SceneRenderer::shade`] or [`SceneRenderer::reference`] adds
@@ -54,6 +59,7 @@ pub struct SceneRenderer<'a> {
     vertex_buffer: Buffer,
     shape_buffer: Buffer,
     sampling: LightSampling,
+    most_pairs: u64,
     shown: bool,
 }
 
@@ -90,6 +96,7 @@ impl<'a> SceneRenderer<'a> {
             vertex_buffer: engine.storage("light vertices", &packed.vertices)?,
             shape_buffer: engine.storage("shapes", &packed.shapes)?,
             sampling: LightSampling::new(lights, &packed),
+            most_pairs: PAIRS_PER_SUBMISSION,
             shown: false,
         })
     }
@@ -142,14 +149,30 @@ impl<'a> SceneRenderer<'a> {
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
         // SAFETY: The set is new, and the resources live until the submission was waited for.
         unsafe { pass.write_set(set, &self.shade_resources()) }?;
-        let frame = self.shade_frame();
-        self.engine.host().try_submit_timed(|commands| {
+        // doc: parts
+        let parts = self.shade_frame().parts(self.most_pairs); // 2^24 pairs
+        self.submit_parts(parts, |commands, part| {
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // SAFETY: The commands are being recorded outside a render pass; the set was written with images
             // of the frame's size.
-            unsafe { pass.record(commands, set, &frame) }?;
+            unsafe { pass.record(commands, set, part) }?;
             Ok(())
         })
+        // doc end
+    }
+
+    /// Submits the parts of a frame one after the other. The sum of their GPU times, where the queue has timestamps.
+    fn submit_parts(
+        &self,
+        parts: impl Iterator<Item = ShadeFrame>,
+        record: impl Fn(vk::CommandBuffer, &ShadeFrame) -> Result<(), EngineError>,
+    ) -> Result<Option<Duration>, EngineError> {
+        let mut total = Some(Duration::ZERO);
+        for part in parts {
+            let took = self.engine.host().try_submit_timed(|commands| record(commands, &part))?;
+            total = total.zip(took).map(|(total, took)| total + took);
+        }
+        Ok(total)
     }
 
     /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one to compare
@@ -288,6 +311,11 @@ impl<'a> SceneRenderer<'a> {
     pub fn look(&mut self, camera: VisibilityConstants) {
         self.camera = camera;
         self.shown = false;
+    }
+
+    /// Shades in submissions of at most so many pairs of a pixel and a light, but for single rows of workgroups, instead of 2^24.
+    pub fn split(&mut self, most_pairs: u64) {
+        self.most_pairs = most_pairs;
     }
 
     /// Other lights of the same kinds, at most as many, relative to `origin`.

@@ -309,7 +309,7 @@ impl<'a> Made<'a> {
             .name(c"main")
             .specialization_info(&specialization);
         let info = vk::ComputePipelineCreateInfo::default()
-            .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
+            .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR | vk::PipelineCreateFlags::DISPATCH_BASE)
             .stage(stage)
             .layout(self.layout);
         // SAFETY: Module and layout are of this device and alive, and the infos outlive the call.

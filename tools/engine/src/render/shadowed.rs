@@ -199,11 +199,17 @@ impl SceneRenderer<'_> {
         seed: u32,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let shade = self.shadowed_frame(seed);
-        let frame = ShadowFrame { shade: &shade, host_set: None, origin_shift: Vec3::ZERO };
+        let whole = self.shadowed_frame(seed);
+        let frame = ShadowFrame { shade: &whole, host_set: None, origin_shift: Vec3::ZERO };
         let resources = self.shadow_resources(view);
-        self.engine.host().try_submit_timed(|commands| {
-            view.begin(commands);
+        self.submit_parts(whole.parts(self.most_pairs), |commands, &shade| {
+            if is_first(&shade) {
+                view.begin(commands);
+            }
+            // SAFETY: As below.
+            if !is_last(&shade) {
+                return Ok(unsafe { view.shade.record(commands, view.sets[0], &shade) }?);
+            }
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // doc: record
             // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
@@ -225,11 +231,12 @@ impl SceneRenderer<'_> {
     /// [`EngineError`] where the device fails.
     pub fn shade_picking(&mut self, view: &ShadowedView, seed: u32) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let frame = self.shadowed_frame(seed);
-        self.engine.host().try_submit_timed(|commands| {
-            view.begin(commands);
+        self.submit_parts(self.shadowed_frame(seed).parts(self.most_pairs), |commands, part| {
+            if is_first(part) {
+                view.begin(commands);
+            }
             // SAFETY: As in `shade_shadowed`.
-            unsafe { view.shade.record(commands, view.sets[0], &frame)? };
+            unsafe { view.shade.record(commands, view.sets[0], part)? };
             Ok(())
         })
     }
@@ -287,6 +294,16 @@ impl SceneRenderer<'_> {
             pass.record(commands, &constants, items)
         })
     }
+}
+
+/// Whether a part of a frame begins with its first row.
+fn is_first(part: &ShadeFrame) -> bool {
+    part.rows.is_none_or(|[first, _]| first == 0)
+}
+
+/// Whether a part of a frame ends with its last row.
+fn is_last(part: &ShadeFrame) -> bool {
+    part.rows.is_none_or(|[_, end]| end == part.size[1])
 }
 
 impl Engine {

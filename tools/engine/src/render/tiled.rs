@@ -8,6 +8,7 @@ use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{TileClass, tiles};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory};
 use ash::vk;
+use std::cell::RefCell;
 use std::time::Duration;
 
 /// The pipelines, buffers and descriptor set of shading a view by tiles, for any number of runs.
@@ -20,6 +21,8 @@ pub struct TiledView {
     _pool: DescriptorPool,
     tiles: TileOptions,
     size: [u32; 2],
+    /// The tiles of each class that the parts of the last run found, but for the last part.
+    found_before: RefCell<[Vec<u32>; TileClass::ALL.len()]>,
 }
 
 /// What was found of a view's tiles.
@@ -47,6 +50,8 @@ impl TileCounts {
 /// The lists of tiles, as the classification wrote them.
 pub struct TileLists {
     words: Vec<u32>,
+    /// The tiles of each class.
+    classes: [Vec<u32>; TileClass::ALL.len()],
     capacity: u32,
     size: [u32; 2],
 }
@@ -56,17 +61,24 @@ impl TileLists {
         tiles::tile_counts(self.size).map(|count| count as usize).iter().product()
     }
 
+    /// Adds the tiles that the classification put in the lists of classes.
+    fn add_classified(&mut self) {
+        let tile_count = self.tile_count();
+        for (class, tiles_of) in self.classes.iter_mut().enumerate() {
+            let count = self.words[(class + 1) * tiles::CLASS_WORDS - 1] as usize;
+            let first = tiles::FIRST_LIST as usize + class * tile_count;
+            tiles_of.extend(&self.words[first..][..count]);
+        }
+    }
+
     /// How many tiles each class has.
     pub fn classes(&self) -> Vec<(TileClass, u32)> {
-        let classes = self.words.chunks_exact(tiles::CLASS_WORDS);
-        TileClass::ALL.into_iter().zip(classes.map(|class| class[tiles::CLASS_WORDS - 1])).collect()
+        TileClass::ALL.into_iter().zip(self.classes.iter().map(|tiles_of| tiles_of.len() as u32)).collect()
     }
 
     /// The column and row of each tile of a class.
     pub fn tiles_of(&self, class: TileClass) -> impl Iterator<Item = [u32; 2]> {
-        let first = tiles::FIRST_LIST as usize + class as usize * self.tile_count();
-        let count = self.classes()[class as usize].1 as usize;
-        self.words[first..][..count].iter().map(|tile| tiles::unpack(*tile))
+        self.classes[class as usize].iter().map(|tile| tiles::unpack(*tile))
     }
 
     /// The indices of a tile's polygons, and of its shapes; none where it is shaded by all lights.
@@ -90,8 +102,11 @@ impl TiledView {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn lists(&self) -> Result<TileLists, EngineError> {
+        let classes = self.found_before.borrow().clone();
         let words = self.tile_lists.download()?;
-        Ok(TileLists { words, capacity: self.tiles.capacity, size: self.size })
+        let mut lists = TileLists { words, classes, capacity: self.tiles.capacity, size: self.size };
+        lists.add_classified();
+        Ok(lists)
     }
 
     /// What the last run found, of a frame of so many lights of all kinds.
@@ -129,7 +144,8 @@ impl SceneRenderer<'_> {
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
-        let view = TiledView { pass, set, lobe_horizons, tile_lists, _pool: pool, tiles, size: self.size };
+        let (size, found_before) = (self.size, RefCell::default());
+        let view = TiledView { pass, set, lobe_horizons, tile_lists, _pool: pool, tiles, size, found_before };
         let (resources, frame) = self.tiled_run(&view);
         // SAFETY: The set is new, and the resources live until submissions were waited for.
         unsafe { view.pass.write_set(view.set, &resources) }?;
@@ -144,13 +160,26 @@ impl SceneRenderer<'_> {
     pub fn shade_tiled(&mut self, view: &TiledView) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let (_, frame) = self.tiled_run(view);
-        self.engine.host().try_submit_timed(|commands| {
-            self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-            // SAFETY: The commands are being recorded outside a render pass; the set was written with images of
-            // the frame's size, and submissions are waited for.
-            unsafe { view.pass.record(commands, view.set, &frame) }?;
-            Ok(())
-        })
+        view.found_before.take();
+        // A tile shades at most the lights of its list, but for those that have more
+        let lights = u64::from(frame.lights.light_count + frame.lights.shape_count).max(1);
+        let most = self.most_pairs.saturating_mul(lights) / lights.min(view.tiles.capacity.max(1).into());
+        let mut total = Some(Duration::ZERO);
+        for (index, part) in frame.parts(most).enumerate() {
+            // Each part's classes take the place of those before
+            if index > 0 {
+                view.found_before.replace(view.lists()?.classes);
+            }
+            let took = self.engine.host().try_submit_timed(|commands| {
+                self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
+                // SAFETY: The commands are being recorded outside a render pass; the set was written with images of
+                // the frame's size, and submissions are waited for.
+                unsafe { view.pass.record(commands, view.set, &part) }?;
+                Ok::<_, EngineError>(())
+            })?;
+            total = total.zip(took).map(|(total, took)| total + took);
+        }
+        Ok(total)
     }
 
     /// What the pass of a view takes for a run.
