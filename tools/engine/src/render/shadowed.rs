@@ -206,8 +206,8 @@ impl SceneRenderer<'_> {
             if is_first(&shade) {
                 view.begin(commands);
             }
-            // SAFETY: As below.
             if !is_last(&shade) {
+                // SAFETY: As below.
                 return Ok(unsafe { view.shade.record(commands, view.sets[0], &shade) }?);
             }
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
