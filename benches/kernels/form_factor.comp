@@ -83,7 +83,7 @@ vec3 outline_vector(uint count) {
 }
 
 vec3 outline_difference_vector(uint count, float extent) {
-    ArealightAnchor anchor = arealight_anchor(polygon_anchor, extent, AREALIGHT_HORIZON_WIDTH);
+    ArealightAnchor anchor = arealight_anchor(polygon_anchor, extent, AREALIGHT_HORIZON_WIDTH, 0.0);
     ArealightDifferenceOutline outline = arealight_difference_begin();
     for (uint index = 0u; index < count; index++) {
         arealight_difference_to(outline, anchor, arealight_vertex(anchor, polygon_offset(index)));
@@ -97,7 +97,7 @@ float library_form_factor(uint count, float extent, float sizes) {
     if (METHOD == METHOD_QUAD) {
         vector = quad_vector(count);
     } else if (METHOD == METHOD_QUAD_DIFFERENCE) {
-        vector = arealight_difference_quad(polygon_anchor, polygon_quad(count), AREALIGHT_HORIZON_WIDTH);
+        vector = arealight_difference_quad(polygon_anchor, polygon_quad(count), AREALIGHT_HORIZON_WIDTH, 0.0);
     } else if (METHOD == METHOD_OUTLINE) {
         vector = outline_vector(count);
     } else {

@@ -59,7 +59,7 @@ vec3 crossing(ArealightQuad quad, int above) {
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
     arcs += arealight_arc(last, exit);
-    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z);
+    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, 1.0);
 }
 
 // z of the arc between unit vectors at an acute angle with the cosine x, weighted as arealight_horizon_arc weights it.

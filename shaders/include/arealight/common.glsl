@@ -79,9 +79,12 @@ float arealight_luminance(vec3 color) {
 // The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided light, else 0. A point
 // in the light's plane is on neither side, so that a light in the plane of a surface does not light it by the last bit. `offset`
 // goes from the point to the light's center; `normal` is that of the front, unit. 0 where a component of `offset` is not finite.
+//
+// What rounding makes of a height is in proportion to the coordinates that it is made of. Along those to which the normal is perpendicular
+// nothing is added, and nothing rounded: a level ceiling has a side at any height, however large it is.
 float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided) {
     float height = -dot(offset, normal);
-    float width = AREALIGHT_PLANE_WIDTH * (abs(offset.x) + abs(offset.y) + abs(offset.z));
+    float width = AREALIGHT_PLANE_WIDTH * dot(abs(offset), clamp(1e9 * abs(normal), 0.0, 1.0));
     return height > width ? 1.0 : two_sided && -height > width ? -1.0 : 0.0;
 }
 

@@ -22,6 +22,7 @@ mod g_buffer;
 mod guard;
 mod host_mistakes;
 mod host_shadows;
+mod huge_lights;
 mod light_textures;
 mod lobe_horizons;
 mod manifest;

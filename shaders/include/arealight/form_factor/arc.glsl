@@ -43,19 +43,20 @@ vec3 arealight_arc(vec3 a, vec3 b) {
 const float AREALIGHT_HALF_TURN = 2.4e-7;
 
 // The arc along the horizon from a to b, unit vectors on it: z is the angle, in [-pi, pi]. An obtuse angle is pi less the acute one, for
-// which the weight is within 7e-8 of G: here rounding of y would turn the arc, not move its end. Of a half turn rounding alone tells the
-// side; it is the one that `half_turn` has the sign of.
+// which the weight is within 7e-8 of G: here rounding of y would turn the arc, not move its end.
 //
-// Where this closes the sum of an outline's other arcs, -z of that sum is the sign to give: a half turn has the point in the light's
-// plane, before the light or behind it. The smaller of the two sums is the form factor of one of them; the larger one, where rounding put
-// the other arcs on the other side, of neither.
-vec3 arealight_horizon_arc(vec2 a, vec2 b, float half_turn) {
+// It closes the sum of an outline's other arcs. `front`: 1 where the outline is known to be seen from its front, -1 from its back: an
+// obtuse arc then runs the way that closes such an outline, whatever rounding has done to the ends, as it does where the point is almost in the
+// plane of a light far larger than its height over it. 0 where it is not known: then s tells, and of a half turn, where rounding alone tells the
+// side, it is the one that `half_turn` has the sign of. -z of the sum of the other arcs is the sign to give: the smaller of the two sums is
+// the form factor of one of the sides; the larger one, where rounding put the other arcs on the other side, of neither.
+vec3 arealight_horizon_arc(vec2 a, vec2 b, float half_turn, float front) {
     float cosine = dot(a, b);
     float s = a.x * b.y - a.y * b.x;
     float x = abs(cosine);
     float acute = s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
                 / (1.0 + x * (1.3370004 + x * 0.38739931));
-    float side = abs(s) > AREALIGHT_HALF_TURN ? s : half_turn;
+    float side = front != 0.0 ? -front : abs(s) > AREALIGHT_HALF_TURN ? s : half_turn;
     return vec3(0.0, 0.0, cosine < 0.0 ? (side < 0.0 ? -AREALIGHT_PI : AREALIGHT_PI) - acute : acute);
 }
 

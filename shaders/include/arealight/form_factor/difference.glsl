@@ -1,6 +1,7 @@
 #ifndef AREALIGHT_DIFFERENCE_GLSL
 #define AREALIGHT_DIFFERENCE_GLSL
 
+#include "arealight/form_factor/outline.glsl"
 #include "arealight/form_factor/quad.glsl"
 
 // The difference form: form factors of small and distant polygons with relative precision. It keeps the promises of
@@ -27,6 +28,7 @@ struct ArealightAnchor {
     float reciprocal; // of the distance
     bool distant;     // the polygon lies within half its distance of it: chords are from its direction
     float horizon;    // sine of the elevation below which a vertex counts as on the horizon
+    float front;      // as in arealight_quad_vector
 };
 
 // The origin of vertices' offsets: the anchor, or where that is not distant the shading point, so that no vertex near to that
@@ -35,12 +37,13 @@ vec3 arealight_base(ArealightAnchor anchor) {
     return anchor.distant ? anchor.position : vec3(0.0);
 }
 
-// The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space.
-ArealightAnchor arealight_anchor(vec3 position, float extent, float horizon) {
+// The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space; `front` as in arealight_quad_vector. Of a polygon that is not distant a
+// vertex is above the horizon or below by its own height: of a ceiling far larger than its height over the point, none is on it.
+ArealightAnchor arealight_anchor(vec3 position, float extent, float horizon, float front) {
     float square = dot(position, position);
     float reciprocal = inversesqrt(max(square, AREALIGHT_LEAST_SQUARE));
     bool distant = 4.0 * extent * extent <= square;
-    return ArealightAnchor(position, square * reciprocal, reciprocal, distant, horizon);
+    return ArealightAnchor(position, square * reciprocal, reciprocal, distant, distant ? horizon : 0.0, front);
 }
 
 // The vertex at `offset` from the anchor. Its direction's distance from the anchor's direction keeps the relative precision of
@@ -80,12 +83,6 @@ vec3 arealight_difference_arc(ArealightVertex a, ArealightVertex b) {
     return cross(a.chord, chord) + arealight_arc_excess(cross(a.unit, middle), y, dot(chord, chord));
 }
 
-// The arc along the horizon. Seen from a distance no angle is obtuse; else chords are the directions themselves.
-vec3 arealight_difference_horizon_arc(ArealightAnchor anchor, ArealightVertex a, ArealightVertex b) {
-    float sine = a.unit.x * b.unit.y - a.unit.y * b.unit.x;
-    return anchor.distant ? arealight_difference_arc(a, b) : arealight_horizon_arc(a.unit.xy, b.unit.xy, sine);
-}
-
 // The vertex at `place` on the horizon, from the anchor's base.
 ArealightVertex arealight_horizon_vertex(ArealightAnchor anchor, vec2 place) {
     anchor.position = arealight_base(anchor);
@@ -114,6 +111,7 @@ struct ArealightDifferenceOutline {
     ArealightVertex last;
     ArealightVertex exit;  // where the outline last went down
     ArealightVertex entry; // where it came up before it ever went down
+    vec2 turn;             // as in ArealightOutline, where the anchor is not distant
     bool begun;
     bool exited;
     bool entered;
@@ -121,7 +119,7 @@ struct ArealightDifferenceOutline {
 
 ArealightDifferenceOutline arealight_difference_begin() {
     ArealightVertex nowhere = ArealightVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return ArealightDifferenceOutline(vec3(0.0), 0.0, nowhere, nowhere, nowhere, nowhere, false, false, false);
+    return ArealightDifferenceOutline(vec3(0.0), 0.0, nowhere, nowhere, nowhere, nowhere, vec2(1.0, 0.0), false, false, false);
 }
 
 // Adds the edge from a to b, and what closes the outline along the horizon where it comes up again.
@@ -135,6 +133,7 @@ void arealight_difference_edge(inout ArealightDifferenceOutline outline, Arealig
         return;
     }
     ArealightVertex crossing = arealight_difference_crossing(anchor, a, b);
+    outline.turn = arealight_turned_by(outline.turn, crossing.unit.xy, a_above);
     if (a_above) {
         outline.arcs += arealight_difference_arc(a, crossing);
         outline.exit = crossing;
@@ -142,7 +141,7 @@ void arealight_difference_edge(inout ArealightDifferenceOutline outline, Arealig
     } else {
         outline.arcs += arealight_difference_arc(crossing, b);
         if (outline.exited) {
-            outline.arcs += arealight_difference_horizon_arc(anchor, outline.exit, crossing);
+            outline.arcs += anchor.distant ? arealight_difference_arc(outline.exit, crossing) : vec3(0.0);
         } else {
             outline.entry = crossing;
             outline.entered = true;
@@ -167,18 +166,21 @@ vec3 arealight_difference_vector(ArealightDifferenceOutline outline, ArealightAn
         return vec3(0.0);
     }
     arealight_difference_edge(outline, anchor, outline.last, outline.first);
-    if (outline.exited && outline.entered) {
-        outline.arcs += arealight_difference_horizon_arc(anchor, outline.exit, outline.entry);
+    // Seen from a distance no angle along the horizon is obtuse; else chords are the directions themselves
+    if (!anchor.distant) {
+        outline.arcs += arealight_closing_arc(outline.turn, -outline.arcs.z, anchor.front);
+    } else if (outline.exited && outline.entered) {
+        outline.arcs += arealight_difference_arc(outline.exit, outline.entry);
     }
     return arealight_is_finite(outline.squares) ? AREALIGHT_PER_ARC * outline.arcs : vec3(0.0);
 }
 
 // The vector form factor of a convex quad whose vertices are offsets from `center`, clipped at the horizon z = 0; `horizon` is the
-// sine of the elevation below which a vertex counts as on it.
-vec3 arealight_difference_quad(vec3 center, ArealightQuad offsets, float horizon) {
+// sine of the elevation below which a vertex counts as on it, `front` as in arealight_quad_vector.
+vec3 arealight_difference_quad(vec3 center, ArealightQuad offsets, float horizon, float front) {
     float extent = max(max(dot(offsets.a, offsets.a), dot(offsets.b, offsets.b)),
                        max(dot(offsets.c, offsets.c), dot(offsets.d, offsets.d)));
-    ArealightAnchor anchor = arealight_anchor(center, sqrt(extent), horizon);
+    ArealightAnchor anchor = arealight_anchor(center, sqrt(extent), horizon, front);
     ArealightDifferenceOutline outline = arealight_difference_begin();
     arealight_difference_to(outline, anchor, arealight_vertex(anchor, offsets.a));
     arealight_difference_to(outline, anchor, arealight_vertex(anchor, offsets.b));

@@ -21,13 +21,19 @@ ArealightOutline arealight_outline_begin() {
     return ArealightOutline(vec3(0.0), vec2(1.0, 0.0));
 }
 
-// Closes the outline along the horizon at a crossing, a unit vector; `exits`: there the outline goes down.
+// How far an outline has to turn along the horizon to be closed, after a crossing more, a unit vector; `exits`: there the outline goes down.
 //
 // The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that line, add up to
 // less than pi: so it is enough to know their sum's direction, as a product of complex numbers.
-void arealight_outline_close(inout ArealightOutline outline, vec2 crossing, bool exits) {
-    vec2 turn = vec2(crossing.x, exits ? -crossing.y : crossing.y);
-    outline.turn = vec2(outline.turn.x * turn.x - outline.turn.y * turn.y, outline.turn.x * turn.y + outline.turn.y * turn.x);
+vec2 arealight_turned_by(vec2 turn, vec2 crossing, bool exits) {
+    float y = exits ? -crossing.y : crossing.y;
+    return vec2(turn.x * crossing.x - turn.y * y, turn.x * y + turn.y * crossing.x);
+}
+
+// The arc along the horizon that closes an outline, from how far it has to turn; `half_turn` and `front` as in arealight_horizon_arc.
+vec3 arealight_closing_arc(vec2 turn, float half_turn, float front) {
+    vec2 unit = turn * inversesqrt(dot(turn, turn) + AREALIGHT_LEAST_SQUARE);
+    return arealight_horizon_arc(vec2(1.0, 0.0), unit, half_turn, front);
 }
 
 // Adds the edge between two directions, unit vectors, as far as it is above the horizon.
@@ -37,7 +43,7 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
     if (from_above || to_above) {
         if (from_above != to_above) {
             vec2 crossing = (from_above ? 1.0 : -1.0) * arealight_crossing(from, to);
-            arealight_outline_close(outline, crossing, from_above);
+            outline.turn = arealight_turned_by(outline.turn, crossing, from_above);
             from.xy = from_above ? from.xy : crossing;
             to.xy = to_above ? to.xy : crossing;
         }
@@ -48,10 +54,14 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
     }
 }
 
-// The vector form factor of all edges. Seen from the front z is positive.
+// The vector form factor of all edges. Seen from the front z is positive; `front` as in arealight_quad_vector.
+vec3 arealight_outline_vector(ArealightOutline outline, float front) {
+    return AREALIGHT_PER_ARC * (outline.arcs + arealight_closing_arc(outline.turn, -outline.arcs.z, front));
+}
+
+// The same where the side is not known.
 vec3 arealight_outline_vector(ArealightOutline outline) {
-    vec2 turn = outline.turn * inversesqrt(dot(outline.turn, outline.turn) + AREALIGHT_LEAST_SQUARE);
-    return AREALIGHT_PER_ARC * (outline.arcs + arealight_horizon_arc(vec2(1.0, 0.0), turn, -outline.arcs.z));
+    return arealight_outline_vector(outline, 0.0);
 }
 
 // A polygon clipped at the surface's horizon first, vertex by vertex: they come in the shading frame, whose horizon is the
@@ -94,13 +104,13 @@ void arealight_clipped_vertex(inout ArealightClippedOutline clipped, mat3 space,
     clipped.previous = vertex;
 }
 
-// Its vector form factor, when all vertices have come.
-vec3 arealight_clipped_vector(ArealightClippedOutline clipped) {
+// Its vector form factor, when all vertices have come; `front` as in arealight_quad_vector.
+vec3 arealight_clipped_vector(ArealightClippedOutline clipped, float front) {
     if (!clipped.begun) {
         return vec3(0.0);
     }
     arealight_outline_edge(clipped.outline, clipped.last, clipped.first);
-    return arealight_outline_vector(clipped.outline);
+    return arealight_outline_vector(clipped.outline, front);
 }
 
 #endif

@@ -73,7 +73,7 @@ ArealightCutQuad arealight_cut_at_horizon(ArealightQuad quad) {
 
 // The arcs around what is above the horizon of a quad that crosses it: from where the outline comes up to a, on to b and c as
 // far as they are above, to where it goes down, and back along the horizon.
-vec3 arealight_quad_crossing(ArealightQuad quad) {
+vec3 arealight_quad_crossing(ArealightQuad quad, float front) {
     ArealightQuad turned = arealight_turned(quad);
     vec3 last = arealight_unit(turned.a);
     vec3 next = turned.b;
@@ -93,21 +93,27 @@ vec3 arealight_quad_crossing(ArealightQuad quad) {
     }
     vec3 exit = vec3(arealight_crossing(last, next), 0.0);
     arcs += arealight_arc(last, exit);
-    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z);
+    return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, front);
 }
 
-// The vector form factor of a convex quad. Seen from its front z is positive.
-vec3 arealight_quad_vector(ArealightQuad quad) {
+// The vector form factor of a convex quad. Seen from its front z is positive. `front`: 1 where it is known to be seen from there, -1 from its
+// back, 0 where that is not known (arealight_horizon_arc).
+vec3 arealight_quad_vector(ArealightQuad quad, float front) {
     vec3 arcs = vec3(0.0);
     if (arealight_highest(quad) > 0.0) {
         if (arealight_lowest(quad) > 0.0) {
             vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
             arcs = arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
         } else {
-            arcs = arealight_quad_crossing(quad);
+            arcs = arealight_quad_crossing(quad, front);
         }
     }
     return AREALIGHT_PER_ARC * arcs;
+}
+
+// The same where the side is not known.
+vec3 arealight_quad_vector(ArealightQuad quad) {
+    return arealight_quad_vector(quad, 0.0);
 }
 
 #endif

@@ -134,12 +134,12 @@ void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, 
     vec2 end = arc.end;
     if (!first_above || dip) {
         vec2 rise = vec2(top.x * cosine + top.y * sine, top.y * cosine - top.x * sine);
-        arealight_outline_close(outline, arealight_cone_crossing(cone, rise), !(way > 0.0));
+        outline.turn = arealight_turned_by(outline.turn, arealight_cone_crossing(cone, rise), !(way > 0.0));
         begin = first_above ? begin : rise;
     }
     if (!last_above || dip) {
         vec2 fall = vec2(top.x * cosine - top.y * sine, top.y * cosine + top.x * sine);
-        arealight_outline_close(outline, arealight_cone_crossing(cone, fall), way > 0.0);
+        outline.turn = arealight_turned_by(outline.turn, arealight_cone_crossing(cone, fall), way > 0.0);
         end = last_above ? end : fall;
     }
     // What is left is more than half of the outline by its ends' turn. Where they meet it is none of it, or all where nearly all of

@@ -159,7 +159,7 @@ float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, ou
     // The anchor is the tube's center
     vec3 half_axis = transform * (tube.half_length * tube.axis);
     float extent = sqrt(dot(half_axis, half_axis));
-    ArealightAnchor anchor = arealight_anchor(transform * arealight_on_axis(tube, 0.5 * (tube.start + tube.end)), extent, horizon);
+    ArealightAnchor anchor = arealight_anchor(transform * arealight_on_axis(tube, 0.5 * (tube.start + tube.end)), extent, horizon, 0.0);
     // Both ends. A half sphere has its outline on a disk about its center
     ArealightSmallEnd ends[2];
     for (int i = 0; i < 2; i++) {

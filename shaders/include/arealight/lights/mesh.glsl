@@ -46,7 +46,7 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
         float side = arealight_lit_side(offset, face.xyz, local.two_sided);
         if (side != 0.0) {
             // Seen from the back an outline goes around the other way
-            sum += side * arealight_outline_form_factor(space, center, local.to_frame, first, end);
+            sum += side * arealight_outline_form_factor(space, center, local.to_frame, first, end, side);
         }
         row = end;
     }

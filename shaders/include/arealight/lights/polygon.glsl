@@ -54,7 +54,7 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
 }
 
 // The vector form factor of the outline of vertices `first` to `end` - 1, not empty, in a space, clipped at its horizon.
-vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint first, uint end) {
+vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     vec3 in_space = space * center;
     mat3 to_space = space * to_frame;
     ArealightOutline outline = arealight_outline_begin();
@@ -68,11 +68,11 @@ vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint fir
         from = to;
     }
     // Every coordinate is in some height
-    return arealight_is_finite(heights) ? arealight_outline_vector(outline) : vec3(0.0);
+    return arealight_is_finite(heights) ? arealight_outline_vector(outline, front) : vec3(0.0);
 }
 
 // The same, clipped at the surface's horizon first.
-vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end) {
+vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     ArealightClippedOutline clipped = arealight_clipped_begin(center + to_frame * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
@@ -80,18 +80,18 @@ vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uin
         arealight_clipped_vertex(clipped, space, vertex);
         heights += vertex.z;
     }
-    return arealight_is_finite(heights) ? arealight_clipped_vector(clipped) : vec3(0.0);
+    return arealight_is_finite(heights) ? arealight_clipped_vector(clipped, front) : vec3(0.0);
 }
 
 // The same as the two above in the difference form, with relative precision for small outlines.
-vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uint first, uint end) {
+vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     mat3 to_space = space * to_frame;
     float extent = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 offset = to_space * arealight_bridge_vertex(index);
         extent = max(extent, dot(offset, offset));
     }
-    ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space));
+    ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space), front);
     ArealightDifferenceOutline outline = arealight_difference_begin();
     vec3 previous = to_frame * arealight_bridge_vertex(end - 1u);
     for (uint index = first; index < end; index++) {
@@ -112,20 +112,20 @@ vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uin
     return arealight_difference_vector(outline, anchor);
 }
 
-// The vector form factor of an outline, as the options have it.
-vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint first, uint end) {
+// The vector form factor of an outline that is seen from its front (1) or its back (-1), as the options have it.
+vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     if (AREALIGHT_USES_DIFFERENCE) {
-        return arealight_outline_by_difference(space, center, to_frame, first, end);
+        return arealight_outline_by_difference(space, center, to_frame, first, end, front);
     }
     if (AREALIGHT_CLIPS_AT_SURFACE) {
-        return arealight_outline_above_surface(space, center, to_frame, first, end);
+        return arealight_outline_above_surface(space, center, to_frame, first, end, front);
     }
-    return arealight_outline_in_space(space, center, to_frame, first, end);
+    return arealight_outline_in_space(space, center, to_frame, first, end, front);
 }
 
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalPolygon local) {
-    vec3 vector = arealight_outline_form_factor(space, local.center, local.to_frame, local.first, local.end);
-    return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
+    float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
+    return front * arealight_outline_form_factor(space, local.center, local.to_frame, local.first, local.end, front);
 }
 
 #if AREALIGHT_LIGHT_TEXTURES
@@ -138,10 +138,10 @@ vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeI
         for (float x = 0.0; x < count; x += 1.0) {
             ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
             ArealightQuad quad_in_frame = arealight_quad_in_frame(local.to_frame, local.center, part.quad);
-            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false, local.center, 1.0);
+            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false, local.center, local.side);
             if (arealight_cut_local(in_frame, local.to_frame, part.quad)) {
                 vec3 vector = arealight_vector_form_factor(space, in_frame);
-                float form_factor = arealight_form_factor(abs(vector));
+                float form_factor = arealight_form_factor(vector);
                 sum += form_factor * vec4(arealight_part_color(image, part, vector), 1.0);
             }
         }
@@ -162,9 +162,10 @@ vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLob
         vec3 from = arealight_bridge_vertex(local.end - 1u);
         for (uint index = local.first; index < local.end; index++) {
             vec3 to = arealight_bridge_vertex(index);
-            ArealightQuad triangle = ArealightQuad(vec3(0.0), from, to, to);
+            bool against = dot(cross(from, to), local.normal) < 0.0;
+            ArealightQuad triangle = against ? ArealightQuad(vec3(0.0), to, to, from) : ArealightQuad(vec3(0.0), from, to, to);
             vec4 part = arealight_split_sum(space, local, image, triangle, 0.5 * AREALIGHT_PARTS);
-            sum += dot(cross(from, to), local.normal) < 0.0 ? -part : part;
+            sum += against ? -part : part;
             from = to;
         }
     }

@@ -81,18 +81,19 @@ bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out Area
 }
 
 // The vector form factor in a space with AREALIGHT_DIFFERENCE, of a quad whose vertices are from `center`.
-vec3 arealight_far_quad_vector(mat3 space, vec3 center, ArealightQuad quad) {
-    return arealight_difference_quad(space * center, arealight_transformed(space, quad), arealight_horizon_width(space));
+vec3 arealight_far_quad_vector(mat3 space, vec3 center, ArealightQuad quad, float front) {
+    return arealight_difference_quad(space * center, arealight_transformed(space, quad), arealight_horizon_width(space), front);
 }
 
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
-    vec3 vector = AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.quad)
-                                            : arealight_quad_vector(arealight_transformed(space, local.quad));
+    float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
+    vec3 vector = AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.quad, front)
+                                            : arealight_quad_vector(arealight_transformed(space, local.quad), front);
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
-        vector += AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.triangle)
-                                            : arealight_quad_vector(arealight_transformed(space, local.triangle));
+        vector += AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.triangle, front)
+                                            : arealight_quad_vector(arealight_transformed(space, local.triangle), front);
     }
-    return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
+    return front * vector;
 }
 
 vec3 arealight_image_average(mat3 space, ArealightLocalQuad local, vec3 vector) {
