@@ -5,6 +5,7 @@ use crate::{Image, SceneError, Texture, Wrap};
 use glam::{DVec2, DVec3};
 use gltf::json;
 use gltf::json::texture::WrappingMode;
+use image::{DynamicImage, ImageDecoder as _};
 use std::io::Cursor;
 
 /// The widest and highest image that is decoded.
@@ -67,17 +68,21 @@ fn decoded(loader: &mut Loader, index: usize) -> Result<u32, SceneError> {
     limits.max_image_height = Some(MAX_SIDE);
     limits.max_alloc = Some(MAX_TEXELS * 8);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(failed)?.into_rgba8();
+    let decoder = reader.into_decoder().map_err(failed)?;
+    // Refuse more than a scene may have by what the header says, before memory is taken
+    let (width, height) = decoder.dimensions();
+    let others: u64 = loader.scene.images.iter().map(|image| image.texels.len() as u64).sum();
+    let total = others + u64::from(width) * u64::from(height);
+    if total > MAX_TEXELS {
+        return Err(document.too_large("texels of all images", total, MAX_TEXELS));
+    }
+    let pixels = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
     let image = Image {
         name: entry.name.clone().unwrap_or(field),
         width: pixels.width(),
         height: pixels.height(),
         texels: pixels.pixels().map(|p| u32::from_le_bytes(p.0)).collect(),
     };
-    let total = loader.scene.images.iter().chain([&image]).map(|i| i.texels.len() as u64).sum();
-    if total > MAX_TEXELS {
-        return Err(document.too_large("texels of all images", total, MAX_TEXELS));
-    }
     let known = loader.scene.images.len() as u32;
     loader.scene.images.push(image);
     loader.images[index] = Some(known);

@@ -279,3 +279,40 @@ fn what_lies_outside_of_the_scene_s_folder_is_not_read() {
         load(uri).unwrap();
     }
 }
+
+/// The checksum of a PNG's chunk.
+fn checksum(bytes: &[u8]) -> u32 {
+    let step = |rest: u32, _| if rest & 1 == 0 { rest >> 1 } else { rest >> 1 ^ 0xedb8_8320 };
+    !bytes.iter().fold(u32::MAX, |rest, byte| (0..8).fold(rest ^ u32::from(*byte), step))
+}
+
+/// The file of a small PNG whose header says that it has 16384 x 16384 texels.
+fn promised(png: &[u8]) -> Vec<u8> {
+    let mut png = png.to_vec();
+    png[16..24].copy_from_slice(&[16384_u32.to_be_bytes(); 2].concat());
+    let checksum = checksum(&png[12..29]);
+    png[29..33].copy_from_slice(&checksum.to_be_bytes());
+    png
+}
+
+#[test]
+fn images_that_are_too_many_texels_together_are_refused_by_their_headers() {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::RgbImage::new(4, 4).write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let with = |images: &[&[u8]]| {
+        let mut writer = lamp();
+        for image in images {
+            writer.texture("image", image);
+        }
+        // In the order in which they are read
+        writer.root["materials"][0]["emissiveTexture"] = json!({ "index": 0 });
+        writer.root["materials"][0]["normalTexture"] = json!({ "index": images.len() - 1 });
+        error(writer)
+    };
+    let promised = promised(png.get_ref());
+    let together = with(&[png.get_ref(), &promised]);
+    assert!(together.contains("texels of all images: 268435472, at most 268435456"), "{together}");
+    // The twin: alone it is not too large, and its texels are missing
+    let alone = with(&[&promised]);
+    assert!(alone.contains("images[0]: ") && !alone.contains("texels of all images"), "{alone}");
+}
