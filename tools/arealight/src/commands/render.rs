@@ -1,21 +1,21 @@
 //! `arealight render`: a picture of a glTF scene, lit by its polygon lights.
 
+mod bands;
+mod shading;
+
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
 use crate::output::{self, print, say_what_is_not_shown};
 use crate::picture::{Exposure, Picture};
-use crate::progress;
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
-use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
-use arealight_benches::budget::{FrameLoad, ProfileLevel};
+use arealight_benches::budget::FrameLoad;
 use arealight_benches::ladder::LevelNames;
-use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, TileCounts};
-use arealight_scene::{Camera, Scene, SceneBuffers};
-use glam::Vec3;
+use arealight_scene::{Camera, Scene};
 use serde_json::json;
+use shading::{Outcome, render};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -172,17 +172,6 @@ fn warn_of_dearer_lights(effects: Effects, path: &Path) {
     }
 }
 
-/// What a render took, for the summary.
-struct Outcome {
-    visibility: Option<Duration>,
-    shading: Option<Duration>,
-    picked: Option<ProfileLevel>,
-    tiles: Option<TileCounts>,
-    picture: Picture,
-    /// The exposure that the picture has.
-    stops: f32,
-}
-
 /// The most texels a side that a light's texture gets.
 const TEXTURE_SIZE: u32 = 1024;
 
@@ -229,69 +218,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         output: &output,
     };
     print(&if arguments.json { summary.to_json() } else { summary.to_text() })
-}
-
-fn render(
-    engine: &Engine,
-    scene: &Scene,
-    camera: &Camera,
-    size: [u32; 2],
-    (surfaces, quality): (Effects, Quality),
-    arguments: &Arguments,
-) -> Result<Outcome, EngineError> {
-    // Everything on the GPU is relative to the camera
-    let buffers = SceneBuffers::new(scene, camera.position)?;
-    let constants = buffers.constants(camera, size, Vec3::ZERO);
-    let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, size)?;
-    let visibility = renderer.visibility()?;
-    // So far there is what lamps show of themselves
-    let emission = match arguments.exposure {
-        Exposure::Auto => renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect(),
-        Exposure::Stops(_) => Vec::new(),
-    };
-    let mut tiles = None;
-    let shading = match (arguments.reference, arguments.tiles) {
-        (None, None) => {
-            shade(&mut renderer, &buffers, (surfaces, quality), arguments.shadows.unwrap_or_default())?
-        }
-        (None, Some(cull_threshold)) => {
-            let options = ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() };
-            let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;
-            let took = renderer.shade_tiled(&view)?;
-            tiles = Some(view.counts(scene.lights.len())?);
-            took
-        }
-        (Some(samples), _) => {
-            let samples = arguments.samples_a_subpixel(samples);
-            let bar = progress::bar(u64::from(samples), "samples a subpixel");
-            let shadows = arguments.shadows.unwrap_or_default() != Shadows::Off;
-            let coupled = surfaces.contains(Effects::COUPLED);
-            let reference = Reference { samples, shadows, coupled, ..Reference::default() };
-            let took = renderer.reference(reference, |done| bar.set_position(u64::from(done)))?;
-            bar.finish_and_clear();
-            took
-        }
-    };
-    let pixels = renderer.radiance()?.into_iter().map(glam::Vec4::truncate).collect();
-    let picture = Picture { width: size[0], height: size[1], pixels };
-    let stops = match arguments.exposure {
-        Exposure::Auto => picture.auto_stops(&emission),
-        Exposure::Stops(stops) => stops,
-    };
-    Ok(Outcome { visibility, shading, picked: None, tiles, picture, stops })
-}
-
-/// Shades a view with shadows or without.
-fn shade(
-    renderer: &mut SceneRenderer<'_>,
-    scene: &SceneBuffers,
-    (surfaces, quality): (Effects, Quality),
-    shadows: Shadows,
-) -> Result<Option<Duration>, EngineError> {
-    let Shadows::Rays(shadow_rays, filter) = shadows else { return renderer.shade(surfaces, quality) };
-    let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
-    let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
-    renderer.shade_shadowed(&view, 0)
 }
 
 /// A part of a pixel.

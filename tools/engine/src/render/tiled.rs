@@ -9,6 +9,7 @@ use arealight::{TileClass, tiles};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory};
 use ash::vk;
 use std::cell::RefCell;
+use std::ops::Add;
 use std::time::Duration;
 
 /// The pipelines, buffers and descriptor set of shading a view by tiles, for any number of runs.
@@ -32,6 +33,17 @@ pub struct TileCounts {
     pub classes: Vec<(TileClass, u32)>,
     /// How many lights of all kinds the tiles' lists held in all; a tile that was shaded by all of the frame's counts those.
     pub lights: u64,
+}
+
+impl Add for TileCounts {
+    type Output = Self;
+
+    /// Those of two parts of a picture.
+    fn add(self, other: Self) -> Self {
+        let classes = self.classes.into_iter().zip(other.classes);
+        let classes = classes.map(|((class, count), (_, more))| (class, count + more)).collect();
+        Self { classes, lights: self.lights + other.lights }
+    }
 }
 
 impl TileCounts {
