@@ -1,0 +1,21 @@
+//! Any text as a file of shading points: what is supported is answered by a number that is not negative.
+#![no_main]
+
+use arealight_cases::cases::read_cases;
+use arealight_oracle::shading::ltc;
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+static TABLE: LazyLock<arealight::LightTable> = LazyLock::new(arealight_table::ggx);
+
+fuzz_target!(|text: &str| {
+    let Ok(cases) = read_cases(text) else { return };
+    for case in &cases {
+        let no_image = |_: &str| Err("there are no files".to_owned());
+        if let Ok(case) = case.supported(no_image) {
+            let answer = ltc(&TABLE, &case.surface, case.normal, case.view, &case.light);
+            assert!(answer.min_element() >= 0.0 || !case.light.radiance.is_finite(), "{case:?}: {answer}");
+        }
+        let _ = case.supported_shape(no_image);
+    }
+});
