@@ -125,6 +125,7 @@ step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
 step "C header is fresh" cargo run --locked --quiet -p xtask -- header --check
 step "C library is found by pkg-config and CMake" tools/test-capi.sh
 step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
+step "WGSL in a browser answers as the oracle" tools/test-web.sh
 step "Blender add-on, without Blender" python3 -B tools/blender/test_lamps.py
 step "packages" cargo run --locked --quiet -p xtask -- packages
 
