@@ -86,6 +86,7 @@ if [[ "$mode" == test ]]; then
     need pkg-config "finds the C library" has_program pkg-config
     need cmake "finds it too" has_program cmake
     need make "builds what CMake says" has_program make
+    need chromium "runs the exported WGSL" has_program chromium
     need python3 "tests what of the Blender add-on needs no Blender" has_program python3
 fi
 

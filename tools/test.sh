@@ -125,6 +125,12 @@ step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
 step "C header is fresh" cargo run --locked --quiet -p xtask -- header --check
 step "C library is found by pkg-config and CMake" tools/test-capi.sh
 step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
+step "WGSL in a browser answers as the oracle" tools/test-web.sh
+# A workspace of its own, which takes minutes to build the first time
+wgpu_example=(--manifest-path examples/wgpu/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/wgpu")
+step "format of the example on wgpu" cargo fmt --manifest-path examples/wgpu/Cargo.toml --check
+step "lints of the example on wgpu" cargo clippy "${wgpu_example[@]}" --all-targets -- -D warnings
+step "a host on wgpu draws what the Rust example does" cargo test "${wgpu_example[@]}"
 step "Blender add-on, without Blender" python3 -B tools/blender/test_lamps.py
 step "packages" cargo run --locked --quiet -p xtask -- packages
 

@@ -1,8 +1,22 @@
 #ifndef LIGHT_TEXTURES_GLSL
 #define LIGHT_TEXTURES_GLSL
 
-// The lights' textures for the library. The including kernel defines LIGHT_TEXTURES_BINDING, and AREALIGHT_LIGHT_TEXTURES as 1.
+// The lights' textures for the library. The including kernel defines LIGHT_TEXTURES_BINDING, and AREALIGHT_LIGHT_TEXTURES as 1; also
+// LIGHT_SAMPLER_BINDING where the image and its sampler are bound apart.
 
+#ifdef LIGHT_SAMPLER_BINDING
+layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform texture2DArray light_images;
+layout(set = 0, binding = LIGHT_SAMPLER_BINDING) uniform sampler light_sampler;
+
+vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
+    return textureLod(sampler2DArray(light_images, light_sampler), vec3(coordinate, float(layer)), level).rgb;
+}
+
+ivec2 arealight_bridge_light_texture_size() {
+    return textureSize(light_images, 0).xy;
+}
+
+#else
 layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform sampler2DArray light_textures;
 
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
@@ -12,5 +26,6 @@ vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level) {
 ivec2 arealight_bridge_light_texture_size() {
     return textureSize(light_textures, 0).xy;
 }
+#endif
 
 #endif

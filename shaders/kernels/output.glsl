@@ -1,13 +1,21 @@
 #ifndef OUTPUT_GLSL
 #define OUTPUT_GLSL
 
-// The images that radiance goes to. The including kernel defines RADIANCE_BINDING, GLOSSY_BINDING and the constant OUTPUT.
+// The images that radiance goes to. The including kernel defines RADIANCE_BINDING, GLOSSY_BINDING and the constant OUTPUT; and
+// RADIANCE_ACCESS as writeonly where images of floats cannot be read and written: without OUTPUT_ADD, then.
 
 #include "arealight/light_kind.glsl"
 #include "output_texel.glsl"
 
-layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform image2D radiance_image;
-layout(set = 0, binding = GLOSSY_BINDING, rgba32f) uniform image2D glossy_image;
+#ifdef RADIANCE_ACCESS
+#define RADIANCE_IS_READ 0
+#else
+#define RADIANCE_ACCESS
+#define RADIANCE_IS_READ 1
+#endif
+
+layout(set = 0, binding = RADIANCE_BINDING, rgba32f) RADIANCE_ACCESS uniform image2D radiance_image;
+layout(set = 0, binding = GLOSSY_BINDING, rgba32f) RADIANCE_ACCESS uniform image2D glossy_image;
 
 // What a pixel reflects so far.
 struct PixelRadiance {
@@ -27,6 +35,7 @@ void add_light(inout PixelRadiance sum, vec3 radiance, ArealightReflected reflec
 
 // Stores what a pixel reflects; `hit`: it has a surface.
 void store_radiance(ivec2 pixel, bool hit, PixelRadiance sum) {
+#if RADIANCE_IS_READ
     if ((OUTPUT & OUTPUT_ADD) != 0) {
         if (!hit) {
             return;
@@ -36,6 +45,7 @@ void store_radiance(ivec2 pixel, bool hit, PixelRadiance sum) {
             sum.glossy = imageLoad(glossy_image, pixel).rgb + sum.glossy;
         }
     }
+#endif
     imageStore(radiance_image, pixel, output_texel(sum.radiance, hit));
     if ((OUTPUT & OUTPUT_APART) != 0) {
         imageStore(glossy_image, pixel, output_texel(sum.glossy, hit));

@@ -1,7 +1,7 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// Shades a pixel with a list of lights. The including kernel, shade.comp, has a struct LightList with quad_count, light_count and
+// Shades a pixel with a list of lights. The including kernel, shade.comp or shade_portable.comp, has a struct LightList with quad_count, light_count and
 // shape_count, and
 // - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are convex quads without an image;
 // - uint shape_at(LightList list, uint index): a disk, sphere or tube of the list;

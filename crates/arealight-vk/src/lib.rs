@@ -68,7 +68,7 @@ pub use formats::ShadeFormats;
 pub use layouts::filtered_image_sampler;
 pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
-pub use prune::prune;
+pub use prune::{freeze, prune};
 pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
 pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
 pub use table_image::{TableFormat, TableImage};

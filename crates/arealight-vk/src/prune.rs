@@ -4,7 +4,7 @@
 //! before it looks at a condition. What a scene does not need then costs nothing to shade, and much to compile
 //! (docs/decisions/0009-pruned-modules.md).
 
-use constants::{Known, Value};
+use constants::{Known, Value, specialization_id};
 use flow::{Callees, Flow};
 use rspirv::binary::Assemble;
 use rspirv::dr::{Function, Instruction, Module, Operand, load_words};
@@ -13,7 +13,10 @@ use std::collections::{HashMap, HashSet};
 
 mod constants;
 mod flow;
+mod freeze;
 mod pointers;
+
+pub use freeze::freeze;
 
 /// The module without the branches that are never taken where specialisation constants have these values (pairs of id and value; the
 /// others have their defaults), without the functions that then nobody calls, and without the bindings that then nothing uses. It has the

@@ -2,10 +2,13 @@
 
 mod common;
 
+use arealight::gpu::{GpuLight, GpuShape, ShadeConstants};
 use common::run;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
+use std::mem::offset_of;
 use std::path::Path;
+use std::process::Command;
 
 /// Exports to `DIR` in `folder`, and returns what is printed.
 fn export(folder: &Path, arguments: &[&str]) -> String {
@@ -149,4 +152,99 @@ fn a_folder_that_is_somebody_elses_is_left_alone() {
     std::fs::remove_dir_all(folder.join("DIR")).unwrap();
     std::fs::write(folder.join("DIR"), "").unwrap();
     refuse(folder, "DIR");
+}
+
+/// Exports in every language, and returns the manifest.
+fn export_translated(folder: &Path, effects: &str) -> Value {
+    export(folder, &["--target", "webgpu,hlsl,msl", "--effects", effects]);
+    manifest(folder)
+}
+
+#[test]
+fn a_target_says_what_its_kernel_binds_and_how_that_is_laid_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let manifest = export_translated(folder.path(), "diffuse,glossy,polygon,textured,sphere");
+    let target = &manifest["targets"]["webgpu"];
+    let text =
+        std::fs::read_to_string(folder.path().join("DIR").join(target["file"].as_str().unwrap())).unwrap();
+    // Bindings are those of the text
+    let bindings = target["bindings"].as_array().unwrap();
+    for binding in bindings {
+        let said = format!("@group({}) @binding({})", binding["group"], binding["binding"]);
+        assert!(text.contains(&said), "{said}");
+    }
+    assert_eq!(text.matches("@binding(").count(), bindings.len());
+    let names: Vec<&str> = bindings.iter().filter_map(|binding| binding["name"].as_str()).collect();
+    assert!(names.contains(&"light_sampler") && names.contains(&"shapes"), "{names:?}");
+
+    // Offsets are those that the packed lights and a frame's constants have in Rust
+    let offset = |layout: &str, field: &str| {
+        let fields = target["structs"][layout]["fields"].as_array().unwrap();
+        let field = fields.iter().find(|one| one["name"] == field).unwrap_or_else(|| panic!("{field}"));
+        field["offset"].as_u64().unwrap() as usize
+    };
+    assert_eq!(offset("ShadeConstants", "camera"), offset_of!(ShadeConstants, camera));
+    assert_eq!(offset("ShadeConstants", "size"), offset_of!(ShadeConstants, size));
+    assert_eq!(offset("ShadeConstants", "offset"), offset_of!(ShadeConstants, offset));
+    assert_eq!(offset("ArealightGpuLight", "flags"), offset_of!(GpuLight, flags));
+    assert_eq!(offset("ArealightGpuShape", "axis_v"), offset_of!(GpuShape, axis_v));
+    assert_ne!(
+        offset("ArealightGpuLight", "center"),
+        offset_of!(GpuLight, radiance),
+        "the comparison can fail"
+    );
+    assert_eq!(target["structs"]["ArealightGpuLight"]["size"], size_of::<GpuLight>());
+
+    // Metal has tables of its own
+    let slots = manifest["targets"]["msl"]["bindings"].as_array().unwrap();
+    assert!(
+        slots.iter().all(|slot| ["buffer", "texture", "sampler"].iter().any(|table| slot[table].is_u64()))
+    );
+}
+
+#[test]
+fn hlsl_is_what_another_compiler_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    // Without sheen and anisotropy: glslang's HLSL has no functions that return arrays, of which naga makes tables of constants
+    let manifest = export_translated(folder.path(), "diffuse,glossy,polygon,two_sided,coat");
+    let target = &manifest["targets"]["hlsl"];
+    let path = folder.path().join("DIR").join(target["file"].as_str().unwrap());
+    let compile = |path: &Path| {
+        let compiler = Command::new("glslangValidator")
+            .args([
+                "-D",
+                "-S",
+                "comp",
+                "--target-env",
+                "vulkan1.1",
+                "-V",
+                "-e",
+                target["entry_point"].as_str().unwrap(),
+            ])
+            .arg(path)
+            .arg("-o")
+            .arg(folder.path().join("shade.spv"))
+            .output();
+        compiler.expect("glslangValidator is installed: tools/setup.sh test").status.success()
+    };
+    assert!(compile(&path));
+    let text = std::fs::read_to_string(&path).unwrap().replacen("void main(", "void main(missing ", 1);
+    std::fs::write(&path, text).unwrap();
+    assert!(!compile(&path), "the compiler can fail");
+}
+
+#[test]
+fn a_target_needs_effects() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, words) in [
+        (vec!["--target", "webgpu"], "--effects"),
+        (vec!["--target", "webgpu", "--effects", "diffuse,shiny"], "there is no such effect"),
+        (vec!["--target", "webgpu", "--effects", "diffuse,mesh"], "mesh needs polygon"),
+    ] {
+        let output = run(folder.path(), &[vec!["export", "DIR"], arguments].concat());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(words), "{said}");
+    }
+    assert!(!folder.path().join("DIR").exists(), "nothing was written");
 }

@@ -62,6 +62,10 @@ pub static EVAL_SHAPES: Kernel = Kernel {
     ],
 };
 
+/// [`arealight::kernels::SHADE`] for whole frames, which is translated to other shading languages: its bindings have the same numbers, the
+/// constants of a frame are a uniform block, images are apart from their sampler, and radiance is not read. No device runs it as it is.
+pub static SHADE_PORTABLE: &[u8] = include_bytes!("../spirv/shade_portable.spv");
+
 /// Id of a specialisation constant of [`REFERENCE`]: 1 where the triangles of the scene block light, else 0.
 pub const SHADOWS: u32 = 100;
 /// Id of a specialisation constant of [`REFERENCE`]: 1 where diffuse lobes get what the Fresnel term leaves, as in glTF, else 0.

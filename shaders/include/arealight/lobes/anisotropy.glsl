@@ -63,6 +63,11 @@ vec3 arealight_reflected_by_slopes(ArealightAxisView view, vec2 slopes, float sc
                 1.0 - weight * (along * along + view.cos_view * view.cos_view * across * across));
 }
 
+// a b^T: WGSL has no outerProduct.
+mat3 arealight_outer_product(vec3 a, vec3 b) {
+    return mat3(a * b.x, a * b.y, a * b.z);
+}
+
 // The map, in mirror frames, of directions that a surface of these alphas reflects to those of an isotropic one of alpha `reference`, at
 // the view stretched by their ratio. The identity exactly where that is what they are. `mean` is the geometric mean of the alphas.
 mat3 arealight_isotropic_map(ArealightAxisView view, ArealightAxisView reference_view, vec2 alpha, float reference, float mean) {
@@ -74,8 +79,8 @@ mat3 arealight_isotropic_map(ArealightAxisView view, ArealightAxisView reference
         vec2 slopes = arealight_visible_slopes(seen, AREALIGHT_VISIBLE_NORMALS[i]);
         vec3 given = arealight_reflected_by_slopes(view, alpha * slopes, scale);
         vec3 isotropic = arealight_reflected_by_slopes(reference_view, reference * slopes, scale);
-        both += outerProduct(given, isotropic);
-        rest += outerProduct(isotropic - given, isotropic);
+        both += arealight_outer_product(given, isotropic);
+        rest += arealight_outer_product(isotropic - given, isotropic);
     }
     // 1 + rest / both, by cofactors
     vec3 x = cross(both[1], both[2]);

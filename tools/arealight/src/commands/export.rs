@@ -2,7 +2,10 @@
 
 mod bridges;
 mod folder;
+mod interface;
 mod manifest;
+mod target;
+mod translate;
 
 use crate::failure::Failure;
 use crate::output::print;
@@ -14,6 +17,7 @@ use serde_json::json;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use target::TargetArguments;
 
 /// Write what a shader author needs into DIR: the GLSL library, the table as KTX2, DDS and EXR, our kernels as SPIR-V, an
 /// example, and manifest.json, which says what each file is and what your shader defines.
@@ -25,6 +29,8 @@ pub struct Arguments {
     /// Replace files that an export did not write, or that were changed since.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    target: TargetArguments,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -50,7 +56,9 @@ struct File {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let mut files = files(arguments)?;
-    let manifest = manifest::manifest(&files, LIBRARY);
+    let (translated, targets) = arguments.target.files()?;
+    files.extend(translated);
+    let manifest = manifest::manifest(&files, LIBRARY, &targets);
     let bytes = format!("{manifest:#}\n").into_bytes();
     files.push(File { path: manifest::NAME.into(), bytes, content: String::new() });
 

@@ -16,8 +16,8 @@ pub const NAME: &str = "manifest.json";
 /// What tells an export's manifest from another program's.
 const GENERATOR: &str = "arealight export";
 
-/// The manifest of `files`, of which `library` are the GLSL library and its examples.
-pub fn manifest(files: &[File], library: &[(&str, &str)]) -> Value {
+/// The manifest of `files`, of which `library` are the GLSL library and its examples; `targets` says what of them is in other languages.
+pub fn manifest(files: &[File], library: &[(&str, &str)], targets: &Map<String, Value>) -> Value {
     json!({
         "generator": GENERATOR,
         "version": env!("CARGO_PKG_VERSION"),
@@ -29,6 +29,7 @@ pub fn manifest(files: &[File], library: &[(&str, &str)]) -> Value {
         "effects": effects(),
         "memory": memory(),
         "kernels": kernels::ALL.iter().map(|kernel| (kernel.name.to_owned(), of_kernel(kernel))).collect::<Map<_, _>>(),
+        "targets": targets,
     })
 }
 
