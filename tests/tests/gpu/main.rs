@@ -40,6 +40,7 @@ mod reach;
 mod recorder;
 mod rescattered;
 mod resize;
+mod self_test;
 mod shading;
 mod shadow_history;
 mod shadow_levels;
