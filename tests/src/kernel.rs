@@ -47,6 +47,19 @@ pub static BRANCHES: Kernel = Kernel {
     constants: &[0, 1, 2],
 };
 
+/// The example of a host's shader that says whether its table is right.
+pub static SELF_TEST: Kernel = Kernel {
+    name: "self_test",
+    spirv: include_bytes!("../../benches/spirv/examples/self_test.spv"),
+    local_size: [1, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        arealight::kernels::TABLE,
+        Binding::storage_buffer("result", Access::Write, "uint: a bit for each point that is wrong"),
+    ],
+    constants: &[],
+};
+
 /// Directions drawn over polygons.
 pub static POLYGON_SAMPLING: Kernel = Kernel {
     name: "polygon_sampling",

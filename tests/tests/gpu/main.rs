@@ -42,6 +42,7 @@ mod reach;
 mod recorder;
 mod rescattered;
 mod resize;
+mod self_test;
 mod shading;
 mod shadow_history;
 mod shadow_levels;

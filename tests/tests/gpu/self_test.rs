@@ -1,0 +1,112 @@
+//! The self-test that hosts run: its answers are the oracle's, the right table passes it, and tables as hosts load them wrongly fail.
+
+use arealight::table::LAYERS;
+use arealight_engine::host::{ImageDescription, Usage};
+use arealight_oracle::material::Surface;
+use arealight_oracle::shading::{RelativeLight, ltc};
+use arealight_tests::kernel::SELF_TEST;
+use arealight_tests::{TestEngine, point};
+use arealight_vk::Resource;
+use ash::vk;
+use glam::DVec3;
+
+const SOURCE: &str = include_str!("../../../shaders/include/arealight/self_test.glsl");
+
+/// The numbers of an array of the file, `N` to an element.
+fn array<const N: usize>(name: &str) -> Vec<[f64; N]> {
+    let (_, rest) = SOURCE.split_once(&format!("AREALIGHT_SELF_TEST_{name}[10] = ")).expect("the array");
+    let (body, _) = rest.split_once(");\n").expect("its end");
+    let constructor = format!("vec{N}(");
+    let elements = body.split(&constructor).skip(1);
+    elements
+        .map(|element| {
+            let (inside, _) = element.split_once(')').unwrap_or((element, ""));
+            let numbers: Vec<f64> = inside.split(',').map(|number| number.trim().parse().unwrap()).collect();
+            numbers.try_into().unwrap()
+        })
+        .collect()
+}
+
+#[test]
+fn answers_are_those_of_float64() {
+    let table = arealight_table::ggx();
+    let views = array::<4>("VIEWS");
+    let [f0, centers, halves_u, halves_v, answers] = ["F0", "CENTERS", "HALVES_U", "HALVES_V", "ANSWERS"]
+        .map(|name| array::<3>(name).into_iter().map(DVec3::from_array).collect::<Vec<_>>());
+    assert_eq!([views.len(), f0.len(), answers.len()], [10; 3]);
+    let radiance = |index: usize, f0: DVec3| {
+        let [x, y, z, roughness] = views[index];
+        let (center, u, v) = (centers[index], halves_u[index], halves_v[index]);
+        let vertices = [-u - v, u - v, u + v, v - u].map(|offset| center + offset);
+        let surface = Surface { f0, f90: 1.0, alpha: roughness * roughness, ..Surface::default() };
+        let given = point(surface, DVec3::new(x, y, z), vertices.into(), false);
+        let light = RelativeLight::new(&given.light, given.position);
+        ltc(&table, &given.surface, given.normal, given.view, &light)
+    };
+    for index in 0..10 {
+        let apart = (radiance(index, f0[index]) - answers[index]).abs().max_element();
+        // Answers have nine decimals; the table's floats are 32 bits
+        assert!(apart <= 1e-8, "point {index}: {apart:e} apart");
+        // The twin: a surface that reflects a little more
+        let other = radiance(index, f0[index] + 0.01);
+        assert!((other - answers[index]).abs().max_element() > 1e-6, "point {index}");
+    }
+}
+
+/// Which points are wrong with a table.
+fn run(engine: &TestEngine, table: Resource) -> u32 {
+    // The buffer is longer than the one word that is written
+    engine.dispatch::<u32>(&SELF_TEST, &[], &[table], 1)[0]
+}
+
+/// Likewise, of a table of these texels.
+fn wrong_points(engine: &TestEngine, texels: &[[f32; 4]]) -> u32 {
+    let size = arealight_table::ggx().size();
+    let description = ImageDescription {
+        name: "table",
+        extent: [size, size],
+        layers: LAYERS,
+        format: vk::Format::R32G32B32A32_SFLOAT,
+        usage: vk::ImageUsageFlags::SAMPLED,
+    };
+    let image = engine.host().image(&description).unwrap();
+    image.upload(texels, Usage::COMPUTE_READ).unwrap();
+    let layout = vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL;
+    let resource = Resource::SampledImage { view: image.array_view(), layout };
+    run(engine, resource)
+}
+
+/// A value as it is read where a format is said to be sRGB.
+fn as_srgb(value: f32) -> f32 {
+    let linear = |x: f32| if x <= 0.04045 { x / 12.92 } else { ((x + 0.055) / 1.055).powf(2.4) };
+    linear(value.abs()).copysign(value)
+}
+
+#[test]
+fn the_right_table_passes_and_wrong_ones_fail() {
+    let Some(engine) = TestEngine::new() else { return };
+    let table = arealight_table::ggx();
+    let (texels, size) = (table.texels(), table.size() as usize);
+    let layer = size * size;
+    assert_eq!(wrong_points(&engine, &texels), 0);
+    assert_eq!(run(&engine, engine.table()), 0, "in half floats");
+
+    // What hosts do to a table: they copy the first layer alone, take rows for columns, or call its format sRGB
+    let first_layer: Vec<_> =
+        texels.iter().enumerate().map(|(at, texel)| if at < layer { *texel } else { [0.0; 4] }).collect();
+    let swapped: Vec<_> = (0..texels.len())
+        .map(|at| texels[at / layer * layer + at % size * size + at % layer / size])
+        .collect();
+    let srgb: Vec<_> = texels.iter().map(|texel| texel.map(as_srgb)).collect();
+    // Rows turned over, as by an image library that has y up
+    let turned: Vec<_> = (0..texels.len())
+        .map(|at| texels[at / layer * layer + (size - 1 - at % layer / size) * size + at % size])
+        .collect();
+    for (what, wrong) in
+        [("first layer", first_layer), ("swapped", swapped), ("sRGB", srgb), ("turned", turned)]
+    {
+        let found = wrong_points(&engine, &wrong);
+        println!("{what}: {} of 10 points are wrong", found.count_ones());
+        assert!(found.count_ones() >= 5, "{what}: {found:#012b}");
+    }
+}
