@@ -82,14 +82,14 @@ check_gpu_tests() {
 # Runs some of the GPU tests on a second driver, with the same bounds, and what it takes to compile pipelines: what passes on one driver alone is
 # tuned to it. Of the whole workspace, so that what was built before is what runs. Left out of
 # these modules are three tests that ask for more than Vulkan promises: denormal numbers, and sin and cos to the last place.
-second_driver_floor=16
+second_driver_floor=22
 run_second_driver() {
     local manifest ran
     manifest="$(tools/swiftshader.sh)" || return 1
     : >"$scratch/second-driver"
     VK_ICD_FILENAMES="$manifest" AREALIGHT_REQUIRE_GPU=1 AREALIGHT_GPU_TEST_LOG="$scratch/second-driver" \
         cargo test --workspace --test gpu --locked --quiet -- \
-        constants:: surfaces:: output:: resize:: frame:: probe:: \
+        constants:: surfaces:: output:: resize:: frame:: probe:: huge_lights:: parts::a_frame self_test:: \
         --skip probe::frames_are_orthonormal_whatever_comes_in --skip probe::ggx_is_that_of_the_oracle \
         --skip probe::unit_vectors_and_scales_are_what_they_say || return 1
     VK_ICD_FILENAMES="$manifest" AREALIGHT_REQUIRE_GPU=1 \
