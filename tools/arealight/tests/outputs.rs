@@ -103,3 +103,29 @@ fn a_name_that_is_no_format_is_refused() {
     }
     assert_eq!(names(folder.path()), [""; 0]);
 }
+
+#[cfg(unix)]
+#[test]
+fn what_is_interrupted_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("picture.exr");
+    std::fs::write(&path, "old").unwrap();
+    for signal in ["INT", "TERM"] {
+        // Minutes of work
+        let mut child = Command::new(env!("CARGO_BIN_EXE_arealight"))
+            .args(["bench", "stability", "--samples", "1000000", "--json", "picture.exr"])
+            .current_dir(folder.path())
+            .stdout(std::process::Stdio::null())
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        assert_eq!(child.try_wait().unwrap(), None, "it is at work still");
+        Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().unwrap();
+        let ended = child.wait().unwrap();
+        assert!(ended.signal().is_some() || ended.code().is_some_and(|code| code != 0), "{ended}");
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "old", "{signal}");
+        assert_eq!(names(folder.path()), ["picture.exr"], "{signal}");
+    }
+}
