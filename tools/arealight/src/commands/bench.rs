@@ -12,6 +12,7 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
+use crate::gpu;
 use crate::output::{self, print};
 use arealight_benches::sections::{Markers, replace_section};
 use arealight_engine::{Host, HostOptions};
@@ -62,9 +63,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 /// Where a benchmark runs, and where its tables go.
 #[derive(clap::Args)]
 struct Ends {
-    /// The device: a part of its name, or its number among those that `arealight devices` lists.
-    #[arg(long, value_name = "NAME|NUMBER")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: gpu::DeviceArgument,
     /// Write JSON; `-` prints it instead of the tables. Numbers that are not finite are null.
     #[arg(long, value_name = "FILE|-")]
     json: Option<PathBuf>,
@@ -78,7 +78,7 @@ impl Ends {
     fn host(&self) -> Result<Host, Failure> {
         let json = self.json.as_deref().filter(|path| *path != Path::new("-"));
         json.into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
-        let options = HostOptions { device: self.device.clone(), ..HostOptions::default() };
+        let options = HostOptions { device: self.device.device.clone(), ..HostOptions::default() };
         Host::new(options).map_err(|error| Failure::Device(error.to_string()))
     }
 

@@ -43,9 +43,8 @@ pub struct Arguments {
     /// one is larger, or none is answered, the worst case is named and the exit code is 1.
     #[arg(long, value_name = "T", requires = "against", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
-    /// The Vulkan device, by a part of its name.
-    #[arg(long)]
-    device: Option<String>,
+    #[command(flatten)]
+    device: gpu::DeviceArgument,
     #[command(flatten)]
     quality: QualityArguments,
     /// Print the summary as JSON.
@@ -73,7 +72,7 @@ pub fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    if arguments.device.is_some() && arguments.on != Method::Gpu {
+    if arguments.device.device.is_some() && arguments.on != Method::Gpu {
         let message = "only --on gpu uses a device".into();
         return Err(Failure::Argument { argument: "--device", message });
     }
@@ -211,7 +210,7 @@ fn answer_all(cases: &[Case], arguments: &Arguments) -> Result<Vec<Answer>, Fail
     let (of_polygons, of_shapes) = match arguments.on {
         Method::Gpu => {
             let table = arguments.quality.table()?;
-            let mut engine = gpu::LazyEngine::new(arguments.device.as_deref(), &table);
+            let mut engine = gpu::LazyEngine::new(arguments.device.device.as_deref(), &table);
             let polygons = gpu::eval::answer(&polygons, quality, &mut engine, &arguments.cases)?;
             (polygons, gpu::eval_shapes::answer(&shapes, quality, &mut engine, &arguments.cases)?)
         }

@@ -58,8 +58,8 @@ pub struct Arguments {
     /// Which of the scene's light textures --pyramid draws, from 0.
     #[arg(long, value_name = "INDEX", default_value_t = 0, requires = "pyramid")]
     layer: u32,
-    /// The Vulkan device that makes the pyramid, by a part of its name.
-    #[arg(long, value_name = "NAME", requires = "pyramid")]
+    /// The Vulkan device that makes the pyramid: a part of its name, or its number, as `arealight devices` lists them.
+    #[arg(long, value_name = "NAME|NUMBER", requires = "pyramid")]
     device: Option<String>,
     /// Print the summary as JSON.
     #[arg(long)]

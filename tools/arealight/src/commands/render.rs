@@ -38,9 +38,8 @@ pub struct Arguments {
     /// The file's camera of this name; its first one, or one that frames the scene, if absent
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
-    /// A Vulkan device, by index or by a part of its name
-    #[arg(long, value_name = "NAME")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: gpu::DeviceArgument,
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
@@ -195,7 +194,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
-    let mut engine = gpu::engine(arguments.device.as_deref(), &table)?;
+    let mut engine = gpu::engine(arguments.device.device.as_deref(), &table)?;
     engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
     let picked = arguments.budget.pick(arguments.load(&scene), &engine.host().device_name())?;
@@ -282,7 +281,7 @@ impl Summary<'_> {
             Some(samples) => format!("reference ({samples} samples a pixel)"),
         };
         lines.push(format!(
-            "GPU time visibility {}, {method} {}",
+            "time     visibility {}, {method} {}, by the device's clock",
             milliseconds(outcome.visibility),
             milliseconds(outcome.shading)
         ));

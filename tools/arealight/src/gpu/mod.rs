@@ -8,6 +8,14 @@ use arealight::LightTable;
 use arealight_engine::{Engine, EngineError, Host, HostOptions};
 use std::path::Path;
 
+/// Which device a command runs on.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub struct DeviceArgument {
+    /// The Vulkan device: a part of its name, or its number, as `arealight devices` lists them.
+    #[arg(long, value_name = "NAME|NUMBER")]
+    pub device: Option<String>,
+}
+
 /// An engine on the device of that name, or on the best one.
 pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failure> {
     let options = HostOptions { device: device.map(str::to_owned), ..HostOptions::default() };

@@ -5,6 +5,7 @@ mod strip;
 
 use crate::commands::render::parse_size;
 use crate::failure::Failure;
+use crate::gpu;
 use crate::{output, progress};
 use arealight_benches::ladder::{STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
 use arealight_engine::{Host, HostOptions};
@@ -41,9 +42,8 @@ pub struct Arguments {
     /// Degrees that lights swing to either side.
     #[arg(long, default_value_t = 40.0, value_parser = parse_swing)]
     swing: f64,
-    /// Part of the device's name, or its number.
-    #[arg(long, value_name = "NAME|NUMBER")]
-    device: Option<String>,
+    #[command(flatten)]
+    device: gpu::DeviceArgument,
 }
 
 fn parse_crop(text: &str) -> Result<[u32; 4], String> {
@@ -96,7 +96,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let crop = arguments.crop()?;
     let scene = Scene::load(&arguments.scene).map_err(|error| Failure::Scene(error.to_string()))?;
     output::check(&arguments.output)?;
-    let options = HostOptions { device: arguments.device.clone(), ..HostOptions::default() };
+    let options = HostOptions { device: arguments.device.device.clone(), ..HostOptions::default() };
     let host = Host::new(options).map_err(|error| Failure::Device(error.to_string()))?;
 
     let scenes = match format {
