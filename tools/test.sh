@@ -107,6 +107,7 @@ step "format" cargo fmt --all --check
 step "links of documents" cargo run --locked --quiet -p xtask -- links
 step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
 step "the product depends on no laboratory" cargo run --locked --quiet -p xtask -- dependencies
+step "licences of dependencies" cargo run --locked --quiet -p xtask -- licences
 step "the product has few public types" cargo run --locked --quiet -p xtask -- types
 # With the window of an example, which nothing below builds: tools/test-window.sh runs it
 step "lints" cargo clippy --workspace --features arealight-examples/window --all-targets --locked --quiet -- -D warnings

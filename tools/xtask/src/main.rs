@@ -23,6 +23,7 @@ mod dependencies;
 mod header;
 mod includes;
 mod library;
+mod licences;
 mod links;
 mod lint;
 mod manifest;
@@ -60,6 +61,8 @@ enum Task {
     Packages,
     /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines on those for fitting.
     Dependencies,
+    /// Check that what others made comes from the registry, under licences that allow what ours do
+    Licences,
     /// Check that the crate arealight has no more public types than a programmer cares to know.
     Types,
 }
@@ -105,6 +108,7 @@ fn main() -> ExitCode {
         Task::Links => links::run(&root),
         Task::Packages => packages::run(&root),
         Task::Dependencies => dependencies::run(&root),
+        Task::Licences => licences::run(&root),
         Task::Types => types::run(&root),
     };
     match outcome {
