@@ -2,8 +2,9 @@
 # Installs what is missing on this machine, and says what and why:
 #
 #   tools/setup.sh run     what the command line needs: a linker, the Vulkan loader, a Vulkan driver
-#   tools/setup.sh test    that, and what the tests need: validation layers, shader compilers
-#   tools/setup.sh window  what the test of an example's window needs: validation layers, X11's libraries, a screen that needs no monitor
+#   tools/setup.sh window  that, and what windows need: X11's libraries; and what the tests of windows do: validation layers, a screen
+#                          that needs no monitor
+#   tools/setup.sh test    that, and what the other tests need: shader compilers, a browser
 #
 # On Debian 12 as root it installs by apt-get. Anywhere else it says what to install. Running it again is free.
 set -euo pipefail
@@ -67,7 +68,7 @@ need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is
 if [[ "$mode" != run ]]; then
     need vulkan-validationlayers "finds wrong use of Vulkan in every GPU test" has_layer
 fi
-if [[ "$mode" == window ]]; then
+if [[ "$mode" == window || "$mode" == test ]]; then
     need libx11-xcb1 "the X11 library" has_shared_library libX11-xcb.so.1
     need libxcursor1 "its cursors" has_shared_library libXcursor.so.1
     need libxi6 "its input" has_shared_library libXi.so.6

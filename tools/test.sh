@@ -13,7 +13,7 @@ export PATH="$PATH:${HOME:-/root}/.cargo/bin"
 
 # So many tests must have had a device, where one is required. Raise it with every GPU test that is added: a test
 # that is lost, or returns before it asks for a device, then shows.
-gpu_test_floor=256
+gpu_test_floor=262
 
 tools/setup.sh test || exit 1
 SHADERC_LIB_DIR="$(tools/shaderc.sh)" || exit 1
@@ -23,6 +23,9 @@ scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 export AREALIGHT_GPU_TEST_LOG="$scratch/gpu-tests"
 : >"$AREALIGHT_GPU_TEST_LOG"
+
+# Everything is built once: with the windows, too
+workspace=(--workspace --features "arealight-cli/view,arealight-examples/window" --locked)
 
 summary=()
 failed=0
@@ -38,12 +41,12 @@ step() { # name, command and its arguments
 run_tests() {
     local status
     if cargo nextest --version >/dev/null 2>&1; then
-        cargo nextest run --workspace --locked 2>&1 | tee "$scratch/tests"
+        cargo nextest run "${workspace[@]}" 2>&1 | tee "$scratch/tests"
         status=$?
         grep -E '^ *Summary' "$scratch/tests" >"$scratch/count"
     else
         echo "cargo-nextest is not installed: using cargo test"
-        cargo test --workspace --locked --lib --bins --tests --examples --no-fail-fast 2>&1 | tee "$scratch/tests"
+        cargo test "${workspace[@]}" --lib --bins --tests --examples --no-fail-fast 2>&1 | tee "$scratch/tests"
         status=$?
         awk '/^test result:/ { passed += $4; failed += $6; ignored += $8 }
             END { printf "%d tests passed, %d failed, %d ignored\n", passed, failed, ignored }' \
@@ -55,14 +58,15 @@ run_tests() {
 # Runs the GPU tests again with the shaders instrumented: an access out of bounds is found. (The tests above run
 # under core and synchronisation validation, which cannot be had together with this.) The batteries, tests of numbers, are left
 # out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too.
-batteries='bits|effects|footprints|guard|properties|shading|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
+batteries='bits|effects|footprints|guard|lobe_horizons|material_frames|properties|prune|reach|rescattered|shading|shadow_levels|shadow_motion'
+batteries+='|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
 run_assisted() {
     local left_out="test(/^($batteries)::/)"
     if [[ "${AREALIGHT_ASSISTED:-}" == all ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
-        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run --workspace --locked \
-            -E "(package(arealight-tests) or package(arealight-examples)) - $left_out"
+        AREALIGHT_VALIDATION=gpu-assisted cargo nextest run "${workspace[@]}" \
+            -E "(package(arealight-tests) or package(arealight-examples)) - binary(window) - $left_out"
     else
         AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked -- \
             --skip the_guard_outlives_the_optimiser
@@ -88,12 +92,12 @@ run_second_driver() {
     manifest="$(tools/swiftshader.sh)" || return 1
     : >"$scratch/second-driver"
     VK_ICD_FILENAMES="$manifest" AREALIGHT_REQUIRE_GPU=1 AREALIGHT_GPU_TEST_LOG="$scratch/second-driver" \
-        cargo test --workspace --test gpu --locked --quiet -- \
+        cargo test "${workspace[@]}" --test gpu --quiet -- \
         constants:: surfaces:: output:: resize:: frame:: probe:: huge_lights:: parts::a_frame self_test:: \
         --skip probe::frames_are_orthonormal_whatever_comes_in --skip probe::ggx_is_that_of_the_oracle \
         --skip probe::unit_vectors_and_scales_are_what_they_say || return 1
     VK_ICD_FILENAMES="$manifest" AREALIGHT_REQUIRE_GPU=1 \
-        cargo test --workspace --test compile_budget --locked --quiet -- --nocapture || return 1
+        cargo test "${workspace[@]}" --test compile_budget --quiet -- --nocapture || return 1
     ran="$(grep '^ran ' "$scratch/second-driver" | sort -u | wc -l)"
     echo "$ran tests had the second driver (required: $second_driver_floor)"
     [[ "$ran" -ge "$second_driver_floor" ]]
@@ -103,37 +107,40 @@ run_second_driver() {
 strict=()
 if grep -q '^12' /etc/debian_version 2>/dev/null; then strict=(--strict); fi
 
+# Built once, and not again for one package, whose dependencies would have other features
+programs="${CARGO_TARGET_DIR:-target}/debug"
+xtask="$programs/xtask"
+
 step "format" cargo fmt --all --check
-step "links of documents" cargo run --locked --quiet -p xtask -- links
-step "code in documents is that of the files" cargo run --locked --quiet -p xtask -- quotes --check
-step "the product depends on no laboratory" cargo run --locked --quiet -p xtask -- dependencies
-step "licences of dependencies" cargo run --locked --quiet -p xtask -- licences
-step "the product has few public types" cargo run --locked --quiet -p xtask -- types
-# With the window of an example, which nothing below builds: tools/test-window.sh runs it
-step "lints" cargo clippy --workspace --features arealight-examples/window --all-targets --locked --quiet -- -D warnings
+step "programs" cargo build "${workspace[@]}" --bins --quiet
+step "links of documents" "$xtask" links
+step "code in documents is that of the files" "$xtask" quotes --check
+step "the product depends on no laboratory" "$xtask" dependencies
+step "licences of dependencies" "$xtask" licences
+step "the product has few public types" "$xtask" types
+step "lints" cargo clippy "${workspace[@]}" --all-targets --quiet -- -D warnings
 step "tests" run_tests
 step "tests that had a GPU" check_gpu_tests
 step "GPU tests, GPU-assisted validation" run_assisted
 step "GPU tests on a second driver, SwiftShader" run_second_driver
-step "examples in the documentation" cargo test --workspace --doc --locked --quiet
+step "examples in the documentation" cargo test "${workspace[@]}" --doc --quiet
 # Without debug assertions: what it checks of a host in every build
 step "the recorder in a release build" cargo test --locked --quiet --release -p arealight-vk --lib
 # The command line and the library have the same name, and their pages would collide.
 step "documentation" env RUSTDOCFLAGS="-D warnings" \
     cargo doc --workspace --exclude arealight-cli --features arealight-examples/window --no-deps --locked --quiet
-step "embedded SPIR-V is fresh" cargo run --locked --quiet -p xtask -- shaders --check "${strict[@]}"
-step "GLSL library stands alone" cargo run --locked --quiet -p xtask -- includes
-step "C header is fresh" cargo run --locked --quiet -p xtask -- header --check
+step "embedded SPIR-V is fresh" "$xtask" shaders --check "${strict[@]}"
+step "GLSL library stands alone" "$xtask" includes
+step "C header is fresh" "$xtask" header --check
 step "C library is found by pkg-config and CMake" tools/test-capi.sh
-step "exported GLSL library compiles for hosts of every kind" cargo run --locked --quiet -p xtask -- matrix
-step "WGSL in a browser answers as the oracle" tools/test-web.sh
-# A workspace of its own, which takes minutes to build the first time
+step "exported GLSL library compiles for hosts of every kind" "$xtask" matrix
+step "WGSL in a browser answers as the oracle" env AREALIGHT="$programs/arealight" tools/test-web.sh
+# A workspace of its own, which takes minutes to build the first time: once, so that its lints are the compiler's
 wgpu_example=(--manifest-path examples/wgpu/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/wgpu")
 step "format of the example on wgpu" cargo fmt --manifest-path examples/wgpu/Cargo.toml --check
-step "lints of the example on wgpu" cargo clippy "${wgpu_example[@]}" --all-targets -- -D warnings
-step "a host on wgpu draws what the Rust example does" cargo test "${wgpu_example[@]}"
+step "a host on wgpu draws what the Rust example does" env RUSTFLAGS="-D warnings" cargo test "${wgpu_example[@]}"
 step "Blender add-on, without Blender" python3 -B tools/blender/test_lamps.py
-step "packages" cargo run --locked --quiet -p xtask -- packages
+step "packages" "$xtask" packages
 
 printf '\n== summary\n'
 printf '%s\n' "${summary[@]}"

@@ -15,9 +15,9 @@ mod timing;
 
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
-pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT};
+pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, SHADE_YARDSTICK};
 pub use names::{LevelNames, UnknownLevel};
-pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
+pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth, yardstick_for};
 pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};

@@ -91,17 +91,21 @@ pub fn beside_the_truth(
     scenes.iter().map(|scene| render(&engine, scene, &duel(scene), view, progress)).collect()
 }
 
-/// The default level, and the yardstick that is for the scene's lights: clip by cases where they are quads, else the clipped sphere.
+/// The default level, and the yardstick that is for the scene's lights.
 fn duel(scene: &Scene) -> [(&'static str, Method); 2] {
     let effects = effects_of(scene);
-    let is_quads = !effects.contains(Effects::POLYGON);
-    let (name, school) = if is_quads {
-        (CASES_PUBLISHED, School::ClipByCases)
-    } else {
-        (SPHERE_PUBLISHED, School::SphereHorizon)
-    };
+    let (name, school) = yardstick_for(scene);
     let published = Method::Yardstick { effects, school, table: YardstickTable::PublishedQuality };
     [(DEFAULT, Method::Level { effects, quality: Quality::default() }), (name, published)]
+}
+
+/// The yardstick for a scene's polygons: clip by cases where they are quads, else the clipped sphere.
+pub fn yardstick_for(scene: &Scene) -> (&'static str, School) {
+    if effects_of(scene).contains(Effects::POLYGON) {
+        (SPHERE_PUBLISHED, School::SphereHorizon)
+    } else {
+        (CASES_PUBLISHED, School::ClipByCases)
+    }
 }
 
 /// What is shown: yardsticks as they are shipped, with their table, but for scenes that are too much for them; quality levels; and

@@ -1,14 +1,18 @@
 //! The command line of Arealight.
 
 mod budget;
+mod canvas;
 mod commands;
+mod differences;
 mod failure;
+mod film;
 mod gpu;
 mod output;
 mod picture;
 mod progress;
 mod quality;
 mod shadows;
+mod view;
 mod visible;
 
 use clap::{CommandFactory, Parser, Subcommand};
@@ -29,6 +33,7 @@ const AFTER_HELP: &str = "\
 For example:
   arealight render                                 the demo scene, into out/
   arealight render scenes/room.glb -o room.exr
+  arealight view scenes/room.glb                   move lamps and the camera, in a window
   arealight compare room.exr reference.exr -o difference.png
   arealight export DIR                             the GLSL library, tables and SPIR-V for your engine
 
@@ -41,6 +46,7 @@ or a kernel takes more than bench compiled --check allows, \
 #[derive(Subcommand)]
 enum Command {
     Render(commands::render::Arguments),
+    View(commands::view::Arguments),
     Eval(commands::eval::Arguments),
     Effects(commands::effects::Arguments),
     Fit(commands::fit::Arguments),
@@ -61,6 +67,7 @@ fn main() -> ExitCode {
     }
     let result = match command {
         Command::Render(arguments) => commands::render::run(&arguments),
+        Command::View(arguments) => commands::view::run(&arguments),
         Command::Eval(arguments) => commands::eval::run(&arguments),
         Command::Effects(arguments) => commands::effects::run(&arguments),
         Command::Fit(arguments) => commands::fit::run(&arguments),

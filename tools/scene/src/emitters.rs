@@ -2,11 +2,12 @@
 
 use crate::closed::closed;
 use crate::light_textures::{self, TexturedLight};
-use crate::load::{Lamp, Loader};
+use crate::load::Loader;
 use crate::meshes::Instance;
 use crate::nodes::PlacedNode;
 use crate::outlines::{Coordinates, outlines};
-use crate::shape_lights;
+use crate::scene::SceneLamp;
+use crate::{Scene, shape_lights};
 use arealight::{Light, LightShape};
 use glam::Vec3;
 use std::ops::Range;
@@ -26,16 +27,39 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     first..loader.scene.lights.len()
 }
 
-/// Drops the lights that are black, and marks the triangles that look like the others.
+/// Drops the lights that are black, and says which triangles look like the others.
 pub(crate) fn finish(loader: &mut Loader) {
     let scene = &mut loader.scene;
     let shines = |light: &Light| light.radiance != Vec3::ZERO;
-    for Lamp { triangles, lights } in std::mem::take(&mut loader.lamps) {
-        let lamp = scene.lights[lights].iter().any(shines);
-        scene.triangles[triangles].iter_mut().for_each(|triangle| triangle.lamp = lamp);
+    // How many lights before each stay
+    let mut kept = vec![0];
+    kept.extend(scene.lights.iter().scan(0, |count, light| {
+        *count += usize::from(shines(light));
+        Some(*count)
+    }));
+    for SceneLamp { triangles, lights } in std::mem::take(&mut scene.lamps) {
+        let lights = kept[lights.start]..kept[lights.end];
+        if lights.is_empty() {
+            continue;
+        }
+        scene.triangles[triangles.clone()].iter_mut().for_each(|triangle| triangle.lamp = true);
+        // A shape of several primitives is one lamp
+        match scene.lamps.last_mut() {
+            Some(last) if last.lights == lights && last.triangles.end == triangles.start => {
+                last.triangles.end = triangles.end;
+            }
+            _ => scene.lamps.push(SceneLamp { triangles, lights }),
+        }
     }
     // A black light lights nothing. None is that shows no texture: its material would not emit
     scene.lights.retain(shines);
+}
+
+/// Adds lamps without a triangle for the lights from `first` on, which nothing looks like.
+pub(crate) fn add_bare(scene: &mut Scene, first: usize) {
+    let bare =
+        (first..scene.lights.len()).map(|light| SceneLamp { triangles: 0..0, lights: light..light + 1 });
+    scene.lamps.extend(bare);
 }
 
 /// Adds an instance's flat parts as lights: those of its closed parts as one-sided ones whatever the material says, for nobody sees their

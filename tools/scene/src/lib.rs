@@ -66,5 +66,6 @@ pub use light_textures::{
     LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, MAX_REPEATS, SceneLightTexture,
 };
 pub use scene::{
-    Bounds, Image, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneMaterial, Texture, Triangle, Warning, Wrap,
+    Bounds, Image, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneLamp, SceneMaterial, Texture, Triangle,
+    Warning, Wrap,
 };

@@ -2,12 +2,12 @@
 
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
+use crate::scene::SceneLamp;
 use crate::{
     Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes, skins,
 };
 use glam::Vec3;
 use std::cell::LazyCell;
-use std::ops::Range;
 use std::path::Path;
 
 /// A scene in the making.
@@ -22,16 +22,8 @@ pub(crate) struct Loader {
     pub images: Vec<Option<u32>>,
     /// The lights that a texture shines through, until all are known.
     pub textured: Vec<TexturedLight>,
-    /// What the lights look like, until all are known.
-    pub lamps: Vec<Lamp>,
     /// The [`nodes::PlacedNode::number`] whose mesh was last found to stand for a shape, and what it shines with.
     pub shaped: Option<(usize, Vec3)>,
-}
-
-/// A primitive's triangles and the lights that they look like, as ranges of the scene's.
-pub(crate) struct Lamp {
-    pub triangles: Range<usize>,
-    pub lights: Range<usize>,
 }
 
 impl Loader {
@@ -65,8 +57,7 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     let materials = vec![None; document.root.materials.len() + 1];
     let images = vec![None; document.root.images.len()];
     let scene = Scene { name, ..Scene::default() };
-    let mut loader =
-        Loader { document, scene, materials, images, textured: Vec::new(), lamps: Vec::new(), shaped: None };
+    let mut loader = Loader { document, scene, materials, images, textured: Vec::new(), shaped: None };
     warn_of_what_is_ignored(&mut loader);
     // Place the nodes in the world
     let placed = nodes::place(&mut loader)?;
@@ -83,13 +74,16 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
             let first = loader.scene.triangles.len();
             let instance = meshes::place(&mut loader, (node, pose.as_deref()), primitive, material)?;
             let lights = emitters::add(&mut loader, node, &instance);
-            loader.lamps.push(Lamp { triangles: first..loader.scene.triangles.len(), lights });
+            let triangles = first..loader.scene.triangles.len();
+            loader.scene.lamps.push(SceneLamp { triangles, lights });
         }
     }
     light_textures::assign(&mut loader);
     emitters::finish(&mut loader);
     // Lights and cameras that hang on nodes
+    let shown = loader.scene.lights.len();
     area_lights::add(&mut loader, &placed)?;
+    emitters::add_bare(&mut loader.scene, shown);
     let Loader { scene, .. } = &mut loader;
     let corners = scene.triangles.iter().flat_map(|t| t.positions);
     scene.bounds = corners.collect();

@@ -5,6 +5,7 @@ use arealight::Light;
 pub use arealight::texture_part::Wrap;
 use arealight_oracle::material::Material;
 use glam::{DVec3, Vec2, Vec3, Vec4};
+use std::ops::Range;
 use std::path::Path;
 
 /// The most triangles a scene may have; a file beyond is refused.
@@ -28,6 +29,8 @@ pub struct Scene {
     pub images: Vec<Image>,
     /// Every light; each passes [`Light::validate`].
     pub lights: Vec<Light>,
+    /// What can be moved of the lights: each of them is one lamp's.
+    pub lamps: Vec<SceneLamp>,
     /// What the textured lights show, at most [`crate::MAX_LIGHT_TEXTURES`]: their layers, in order.
     pub light_textures: Vec<SceneLightTexture>,
     /// The file's cameras, in the order of its nodes.
@@ -38,6 +41,15 @@ pub struct Scene {
     pub warnings: Vec<Warning>,
     /// What is shown as the file means, though not word for word: nothing is lost.
     pub notes: Vec<Warning>,
+}
+
+/// What emits: lights, and the triangles that look like them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneLamp {
+    /// Those of [`Scene::triangles`]; none of a light that no mesh is.
+    pub triangles: Range<usize>,
+    /// Those of [`Scene::lights`].
+    pub lights: Range<usize>,
 }
 
 /// A triangle. Seen from its front the vertices run counter-clockwise, also under mirroring transforms.

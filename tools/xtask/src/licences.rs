@@ -32,7 +32,7 @@ struct Package {
 
 /// Whether every package keeps the rules.
 pub fn run(root: &Path) -> Result<bool, TaskError> {
-    let Packages { packages } = metadata(root, &[])?;
+    let Packages { packages } = metadata(root, &["--all-features"])?;
     let wrong: Vec<_> = packages.iter().filter_map(violation).collect();
     for message in &wrong {
         eprintln!("error: {message}");

@@ -1,6 +1,6 @@
 //! `arealight compare`
 
-use crate::commands::inspect::canvas::Canvas;
+use crate::canvas::Canvas;
 use crate::commands::inspect::colour::diverging;
 use crate::failure::Failure;
 use crate::output::{self, print};

@@ -14,7 +14,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-pub(super) mod canvas;
 mod channels;
 pub mod colour;
 mod entries;

@@ -11,3 +11,4 @@ pub mod inspect;
 pub mod render;
 pub mod shell;
 pub mod table;
+pub mod view;

@@ -172,15 +172,20 @@ fn warn_of_dearer_lights(effects: Effects, path: &Path) {
 }
 
 /// The most texels a side that a light's texture gets.
-const TEXTURE_SIZE: u32 = 1024;
+pub(super) const TEXTURE_SIZE: u32 = 1024;
+
+/// The scene that is shown where no file is given.
+pub(super) fn demo() -> Result<Scene, Failure> {
+    Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo")
+        .map_err(|error| Failure::input("demo (built in)", error))
+}
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let path = arguments.scene_name();
     let scene = match &arguments.scene {
         Some(path) => Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?,
-        None => Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo")
-            .map_err(|error| Failure::input(&path, error))?,
+        None => demo()?,
     };
     say_what_is_not_shown(&scene, &path);
     let output = arguments.output(&scene);
@@ -190,7 +195,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     output::check(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
-    let camera = choose_camera(&scene, arguments)?;
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let camera = camera_of(&scene, arguments.camera.as_deref(), aspect, &path)?;
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
@@ -233,15 +239,23 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
         .ok_or_else(|| "must be like 1280x720, each side from 1 to 8192".to_owned())
 }
 
-fn choose_camera(scene: &Scene, arguments: &Arguments) -> Result<Camera, Failure> {
-    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    scene.camera(arguments.camera.as_deref(), aspect).ok_or_else(|| {
+/// The camera of a name, or the scene's first.
+pub(super) fn camera_of(
+    scene: &Scene,
+    name: Option<&str>,
+    aspect: f64,
+    path: &Path,
+) -> Result<Camera, Failure> {
+    scene.camera(name, aspect).ok_or_else(|| {
         let names: Vec<_> = scene.cameras.iter().map(|camera| format!("'{}'", camera.name)).collect();
         let names = if names.is_empty() { "no cameras".to_owned() } else { names.join(", ") };
-        let wanted = arguments.camera.as_deref().unwrap_or_default();
         Failure::Argument {
             argument: "--camera",
-            message: format!("'{wanted}' is not in {}, which has {names}", arguments.scene_name().display()),
+            message: format!(
+                "'{}' is not in {}, which has {names}",
+                name.unwrap_or_default(),
+                path.display()
+            ),
         }
     })
 }

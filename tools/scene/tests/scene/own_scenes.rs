@@ -315,3 +315,25 @@ fn the_product_is_coated_and_brushed_under_a_softbox_that_fades() {
     let textured = scene.lights.iter().filter(|light| light.texture.is_some());
     assert_eq!(textured.map(|light| light.name.as_str()).collect::<Vec<_>>(), ["softbox"]);
 }
+
+#[test]
+fn each_light_is_one_lamp_s_and_a_lamp_is_what_it_looks_like() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    for name in ["room", "shapes", "neon", "shop", "studio", "screen"] {
+        let scene = Scene::load(folder.join(format!("{name}.glb"))).unwrap();
+        let mut lights: Vec<usize> = scene.lamps.iter().flat_map(|lamp| lamp.lights.clone()).collect();
+        lights.sort_unstable();
+        assert_eq!(lights, (0..scene.lights.len()).collect::<Vec<_>>(), "{name}");
+        let of_lamps: usize = scene.lamps.iter().map(|lamp| lamp.triangles.len()).sum();
+        assert_eq!(of_lamps, scene.triangles.iter().filter(|triangle| triangle.lamp).count(), "{name}");
+        for lamp in scene.lamps.iter().filter(|lamp| !lamp.triangles.is_empty()) {
+            // What looks like a light is where it is, and about as large: a tube in place of a capsule lacks the ends
+            let corners = scene.triangles[lamp.triangles.clone()].iter().flat_map(|t| t.positions);
+            let seen: arealight_scene::Bounds = corners.collect();
+            let shines: arealight_scene::Bounds =
+                lamp.lights.clone().flat_map(|light| scene.lights[light].shape.bounds()).collect();
+            let off = (seen.min - shines.min).abs().max((seen.max - shines.max).abs()).max_element();
+            assert!(off < 0.1 * seen.diagonal(), "{name}: {seen:?}, {shines:?}");
+        }
+    }
+}

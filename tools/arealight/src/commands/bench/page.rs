@@ -1,8 +1,9 @@
 //! The report: one page that needs nothing else. Charts are drawn, pictures are within it, and it has no script.
 
 mod charts;
-pub(super) mod images;
+mod images;
 
+use crate::differences;
 use crate::failure::Failure;
 use arealight_benches::ladder::{
     BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, Ladder, Picture, PictureError, Pictures, READS,
@@ -203,12 +204,12 @@ fn caption(error: &PictureError) -> String {
 
 /// The pictures with their maps.
 fn show(pictures: &Pictures) -> Result<String, Failure> {
-    let [low, high] = images::SCALE;
+    let [low, high] = differences::SCALE;
     let mut html = format!(
         "<div class=\"scale\"><span>{}</span><div style=\"background:{}\"></div><span>{} of the mean, logarithmic</span></div>\n\
          <div class=\"pictures\">\n",
         percent(low),
-        images::gradient(),
+        differences::gradient(),
         percent(high)
     );
     let whole = |reflected: &[DVec3]| {

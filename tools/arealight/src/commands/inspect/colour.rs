@@ -1,6 +1,6 @@
 //! Colours of text, and colour maps.
 
-use super::canvas::Colour;
+use crate::canvas::Colour;
 
 pub const PAPER: Colour = [255, 255, 255];
 pub const INK: Colour = [32, 32, 36];

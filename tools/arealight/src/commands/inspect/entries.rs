@@ -2,10 +2,10 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, LINE};
 use super::channels::Channel;
 use super::colour::{FAINT, INK, PAPER, viridis};
 use super::panel::{self, Axes, MARGIN, SIDE};
+use crate::canvas::{Align, Canvas, LINE};
 use arealight::LightTable;
 
 const COLUMNS: usize = 4;

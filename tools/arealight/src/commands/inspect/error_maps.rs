@@ -1,9 +1,9 @@
 //! Error maps side by side, one colour scale for all.
 
-use super::canvas::{Align, Canvas, Colour};
 use super::colour::{FAINT, INK, PAPER, viridis};
 use super::errors::{CELLS, ErrorMap, REFLECTANCES, ROUGHNESS, VIEW};
 use super::panel::{self, Axes, MARGIN};
+use crate::canvas::{Align, Canvas, Colour};
 
 const FOOTER: i32 = 60;
 

@@ -2,8 +2,8 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, LINE};
 use super::colour::{FAINT, INK, PAPER, diverging, viridis};
+use crate::canvas::{Align, Canvas, LINE};
 use arealight::{LightTable, SpecularLobes, TableSample};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::ltsd::{Original, TransformedDistribution};

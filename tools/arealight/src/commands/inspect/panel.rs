@@ -2,8 +2,8 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, Colour, LINE};
 use super::colour::{FAINT, INK};
+use crate::canvas::{Align, Canvas, Colour, LINE};
 
 /// The side of a map, in pixels.
 pub const SIDE: i32 = 256;

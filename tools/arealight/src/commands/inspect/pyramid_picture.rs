@@ -2,9 +2,9 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::canvas::{Align, Canvas, LINE};
 use super::colour::{FAINT, INK, PAPER};
 use super::pyramid::{Level, Pyramid};
+use crate::canvas::{Align, Canvas, LINE};
 use crate::picture::srgb_from_linear;
 use glam::DVec3;
 

@@ -1,22 +1,17 @@
-//! Lights that swing: ours beside the truth, as an animated GIF of one palette.
+//! Lights that swing: ours beside the truth.
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
 use super::strip::shown;
-use crate::commands::inspect::canvas::{Align, Canvas, Colour, LINE};
+use crate::canvas::{Align, Canvas, Colour, LINE};
 use arealight_benches::ladder::{DEFAULT, Pictures};
 use arealight_scene::Scene;
-use color_quant::NeuQuant;
-use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+use gif::EncodingError;
 use glam::DQuat;
-use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 const PAPER: Colour = [16, 18, 22];
 const INK: Colour = [230, 233, 238];
-
-/// Colours of the palette; one more says that a pixel is as it was.
-const COLORS: usize = 127;
 
 /// Hundredths of a second that a frame is shown.
 const DELAY: u16 = 7;
@@ -54,44 +49,10 @@ fn draw(pictures: &Pictures, [x, y, width, height]: [u32; 4]) -> Canvas {
     canvas
 }
 
-/// The film as a GIF. Pixels that stay as they were are transparent, which is what keeps the file small.
+/// The film as a GIF.
 pub fn encode(pictures: &[Pictures], crop: [u32; 4]) -> Result<Vec<u8>, EncodingError> {
     let frames: Vec<Canvas> = pictures.iter().map(|pictures| draw(pictures, crop)).collect();
-    let opaque = |frame: &Canvas| -> Vec<u8> {
-        frame.bytes().chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect()
-    };
-    let pixels: Vec<u8> = frames.iter().flat_map(opaque).collect();
-    let quantizer = NeuQuant::new(10, COLORS, &pixels);
-    let mut palette = quantizer.color_map_rgb();
-    palette.extend([0; 3]);
-
-    let [width, height] = frames.first().map_or([0, 0], Canvas::size).map(|side| side as u16);
-    let mut film = Vec::new();
-    let mut encoder = Encoder::new(&mut film, width, height, &palette)?;
-    encoder.set_repeat(Repeat::Infinite)?;
-    let unchanged = COLORS as u8;
-    let mut before: Vec<u8> = vec![];
-    for pixels in pixels.chunks(4 * usize::from(width) * usize::from(height)) {
-        let indices: Vec<u8> = pixels.chunks_exact(4).map(|rgba| quantizer.index_of(rgba) as u8).collect();
-        let previous = before.iter().map(Some).chain(std::iter::repeat(None));
-        let changed: Vec<u8> = indices
-            .iter()
-            .zip(previous)
-            .map(|(index, before)| if before == Some(index) { unchanged } else { *index })
-            .collect();
-        encoder.write_frame(&Frame {
-            delay: DELAY,
-            dispose: DisposalMethod::Keep,
-            transparent: Some(unchanged),
-            width,
-            height,
-            buffer: Cow::Owned(changed),
-            ..Frame::default()
-        })?;
-        before = indices;
-    }
-    drop(encoder);
-    Ok(film)
+    crate::film::encode(&frames, DELAY)
 }
 
 #[cfg(test)]

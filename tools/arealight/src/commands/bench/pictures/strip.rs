@@ -2,8 +2,8 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use super::super::page::images::{SCALE, color, difference_colors};
-use crate::commands::inspect::canvas::{Align, Canvas, Colour, LINE};
+use crate::canvas::{Align, Canvas, Colour, LINE};
+use crate::differences::{SCALE, color, difference_colors};
 use crate::picture::{srgb_from_linear, tone_map};
 use arealight_benches::ladder::{Picture, Pictures, percent};
 use glam::DVec3;

@@ -2,7 +2,7 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
-use crate::commands::inspect::canvas::{Align, Canvas, Colour, LINE};
+use crate::canvas::{Align, Canvas, Colour, LINE};
 use crate::failure::Failure;
 use crate::output;
 use arealight_benches::shadow_motion::{Scheme, Still};

@@ -35,6 +35,12 @@ impl Canvas {
         Self { width, height, pixels: colour.repeat((width * height) as usize) }
     }
 
+    /// A picture of bytes: red, green, blue, row after row from the top. What is missing is black.
+    pub fn of_pixels(width: u32, height: u32, mut pixels: Vec<u8>) -> Self {
+        pixels.resize(3 * width as usize * height as usize, 0);
+        Self { width, height, pixels }
+    }
+
     /// Blends `colour` over a pixel; `coverage` in [0, 1].
     pub fn blend(&mut self, x: i32, y: i32, colour: Colour, coverage: f64) {
         let is_inside = (0..self.width as i32).contains(&x) && (0..self.height as i32).contains(&y);

@@ -1,0 +1,185 @@
+//! `arealight view`: a scene in a window, or a recording of what a script does in one.
+
+use crate::canvas::Canvas;
+use crate::failure::Failure;
+use crate::gpu;
+use crate::output::{self, print, say_what_is_not_shown};
+use crate::picture::Exposure;
+use crate::progress;
+use crate::view::{Engines, Mode, Script, Shown, State, Viewer, levels, paint};
+use arealight_scene::Scene;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Look at a scene: move its lamps and the camera, and see what each quality level errs and takes.
+///
+/// In a window, which `h` explains the keys of; or, with --record, as pictures of what a script does, without one. For example:
+/// arealight view scenes/room.glb
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// A .gltf or .glb file; the built-in demo scene if absent
+    scene: Option<PathBuf>,
+    /// Size of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = super::render::parse_size)]
+    size: [u32; 2],
+    /// The file's camera of this name to begin with; its first one, or one that frames the scene, if absent
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Exposure to begin with, in stops
+    #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
+    exposure: Exposure,
+    /// Samples a pixel that each frame adds to the truth, where it is shown
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    samples: u32,
+    /// What to do, a line for each event: seconds, and `key NAME`, `press X Y`, `move X Y`, `release` or `wheel STEPS`; the viewer ends with it
+    #[arg(long, value_name = "FILE")]
+    script: Option<PathBuf>,
+    /// Open no window, and write what the script does into this folder: frame-0000.png and so on, and film.gif
+    #[arg(long, value_name = "DIR", requires = "script")]
+    record: Option<PathBuf>,
+    /// Frames a second of a recording
+    #[arg(long, value_name = "FPS", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=50))]
+    rate: u32,
+    /// Print what each frame of a recording shows as JSON: the quality level, times, and the error as far as it is known
+    #[arg(long, requires = "record")]
+    json: bool,
+    #[command(flatten)]
+    device: gpu::DeviceArgument,
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    // Read what is given
+    let path = arguments.scene.clone().unwrap_or_else(|| "demo (built in)".into());
+    let scene = match &arguments.scene {
+        Some(path) => Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?,
+        None => super::render::demo()?,
+    };
+    say_what_is_not_shown(&scene, &path);
+    let script = arguments.script.as_deref().map(read_script).transpose()?;
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let camera = super::render::camera_of(&scene, arguments.camera.as_deref(), aspect, &path)?;
+    let exposure = match arguments.exposure {
+        Exposure::Stops(stops) => stops,
+        Exposure::Auto => {
+            let message = "a viewer's exposure is a number of stops; + and - change it".to_owned();
+            return Err(Failure::Argument { argument: "--exposure", message });
+        }
+    };
+
+    // A place for a recording, before anything takes long
+    if let Some(folder) = &arguments.record {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::output(folder, error))?;
+        output::check(&folder.join(FILM))?;
+    }
+
+    // Draw
+    let table = arealight_table::ggx();
+    let mut engine = gpu::engine(arguments.device.device.as_deref(), &table)?;
+    engine
+        .load_scene_textures(&scene, super::render::TEXTURE_SIZE)
+        .map_err(|error| gpu::failure(error, &path))?;
+    let engines = Engines::new(engine, &scene).map_err(|error| gpu::failure(error, &path))?;
+    let state = State::new(&scene, &camera, exposure, engines.has_yardstick());
+    let viewer = Viewer::new(&engines, scene, arguments.size).map_err(|error| gpu::failure(error, &path))?;
+    match (&arguments.record, script) {
+        (Some(folder), Some(script)) => record(arguments, viewer, state, &script, folder, &path),
+        (_, script) => show(arguments, viewer, state, script.as_ref(), &path),
+    }
+}
+
+/// The name of a recording as one file.
+const FILM: &str = "film.gif";
+
+fn read_script(path: &Path) -> Result<Script, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    Script::parse(&text).map_err(|error| Failure::input(path, error))
+}
+
+/// Draws a frame for each step of time, and writes them.
+fn record(
+    arguments: &Arguments,
+    mut viewer: Viewer<'_>,
+    mut state: State,
+    script: &Script,
+    folder: &Path,
+    scene: &Path,
+) -> Result<ExitCode, Failure> {
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let step = 1.0 / f64::from(arguments.rate);
+    let count = (script.seconds() / step).ceil() as u32 + 1;
+    let bar = progress::bar(u64::from(count), "frames");
+    let (mut frames, mut said): (Vec<Canvas>, Vec<Value>) = (vec![], vec![]);
+    for index in 0..count {
+        // What is at time 0 comes before the first frame
+        let now = f64::from(index) * step;
+        let before = if index == 0 { -1.0 } else { now - step };
+        for event in script.between(before, now) {
+            state.apply(event, viewer.scene(), aspect);
+        }
+        state.save = false; // every frame is
+        let shown = viewer.draw(&state, arguments.samples).map_err(|error| gpu::failure(error, scene))?;
+        said.push(summary(&state, &shown, now));
+        let frame = paint(&state, &shown);
+        frame.save_png(&folder.join(format!("frame-{index:04}.png")))?;
+        frames.push(frame);
+        bar.inc(1);
+        if state.quit {
+            break;
+        }
+    }
+    bar.finish_and_clear();
+    let film = folder.join(FILM);
+    let bytes = crate::film::encode(&frames, (100 / arguments.rate) as u16)
+        .map_err(|error| Failure::output(&film, error))?;
+    output::write(&film, &bytes)?;
+    eprintln!("wrote {} frames and {}", frames.len(), film.display());
+    if arguments.json { print(&format!("{:#}\n", json!({ "frames": said }))) } else { Ok(ExitCode::SUCCESS) }
+}
+
+/// What a frame shows.
+fn summary(state: &State, shown: &Shown<'_>, seconds: f64) -> Value {
+    let distance = shown.truth.and_then(|(_, distance)| distance);
+    let [visibility, shading] = shown.times.map(|time| time.map(|time| time.as_secs_f64()));
+    let costs: Vec<Value> = shown
+        .costs
+        .iter()
+        .map(|cost| {
+            let error = cost.distance.and_then(|distance| distance.error);
+            json!({ "name": cost.name, "milliseconds": cost.milliseconds, "error": error })
+        })
+        .collect();
+    json!({
+        "seconds": seconds,
+        "level": levels().get(state.level).map(|level| level.name),
+        "mode": match state.mode {
+            Mode::Picture => "picture",
+            Mode::Wipe(_) => "wipe",
+            Mode::Error => "error",
+        },
+        "shadows": state.has_shadows(),
+        "effects": shown.effects.names(),
+        "gpu_seconds": { "visibility": visibility, "shading": shading },
+        "truth_samples": shown.truth.map_or(0, |(samples, _)| samples),
+        "error": distance.and_then(|distance| distance.error),
+        "truth_noise": distance.map(|distance| distance.noise),
+        "costs": costs,
+    })
+}
+
+#[cfg(feature = "view")]
+fn show(
+    arguments: &Arguments,
+    viewer: Viewer<'_>,
+    state: State,
+    script: Option<&Script>,
+    scene: &Path,
+) -> Result<ExitCode, Failure> {
+    crate::view::show(viewer, state, arguments.size, arguments.samples, script, scene)
+}
+
+#[cfg(not(feature = "view"))]
+fn show(_: &Arguments, _: Viewer<'_>, _: State, _: Option<&Script>, _: &Path) -> Result<ExitCode, Failure> {
+    let message = "this program was built without a window: build it with --features view, or give --record and --script".to_owned();
+    Err(Failure::Argument { argument: "view", message })
+}

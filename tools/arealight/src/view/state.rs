@@ -1,0 +1,403 @@
+//! What a person has chosen, and how keys and the pointer change it. Nothing here draws.
+
+use super::lamps;
+use super::orbit::Orbit;
+use crate::picture::MAX_STOPS;
+use arealight::{FormFactor, Horizon, Lobes, Quality, SpecularLobes};
+use arealight_scene::{Camera, Scene};
+use glam::DVec3;
+use std::str::FromStr;
+
+/// A quality level with its name.
+pub struct Level {
+    /// A short name.
+    pub name: &'static str,
+    /// The level.
+    pub quality: Quality,
+}
+
+/// The levels that keys choose, from 1 on: the default, and what each option adds.
+pub fn levels() -> [Level; 5] {
+    let exact = Quality::default();
+    let all = Quality {
+        specular_lobes: SpecularLobes::Two,
+        horizon: Horizon::Both,
+        form_factor: FormFactor::Difference,
+        ..exact
+    };
+    [
+        Level { name: "exact", quality: exact },
+        Level { name: "two lobes", quality: Quality { specular_lobes: SpecularLobes::Two, ..exact } },
+        Level { name: "both horizons", quality: Quality { horizon: Horizon::Both, ..exact } },
+        Level { name: "everything", quality: all },
+        Level { name: "formula", quality: Quality { lobes: Lobes::Formula, ..exact } },
+    ]
+}
+
+/// What is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// The picture.
+    Picture,
+    /// The picture to the left of a line, another to the right.
+    Wipe(Partner),
+    /// How far the picture is from the truth, in false colours.
+    Error,
+}
+
+/// What the picture is wiped against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Partner {
+    /// Monte Carlo, which converges.
+    Truth,
+    /// What engines ship, with a table of the published one's quality; without shadows.
+    Yardstick,
+}
+
+/// A key that means something.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Key {
+    /// A quality level, from 0.
+    Level(usize),
+    Wipe,
+    Error,
+    Shadows,
+    Costs,
+    Help,
+    Save,
+    Quit,
+    /// Everything as it was.
+    Reset,
+    /// By a step to the brighter, or the darker.
+    Exposure(f32),
+    /// By a step to the rougher, or the smoother.
+    Roughness(f32),
+    /// A drag of the camera, in heights of the picture.
+    Turn([f64; 2]),
+}
+
+/// Keys as help and scripts name them, and what each does.
+pub const KEYS: [(&str, &str); 11] = [
+    ("1 to 5", "quality level"),
+    ("w", "wipe: against the truth, against what engines ship, off"),
+    ("e", "map of the error"),
+    ("s", "shadows"),
+    ("c", "what each level and effect costs here"),
+    ("[ ]", "roughness of every surface: smoother, rougher"),
+    ("- +", "exposure"),
+    ("arrows", "turn the camera, as dragging does; the wheel goes nearer"),
+    ("r", "everything as it was"),
+    ("p", "save the picture"),
+    ("h, escape", "this help; quit"),
+];
+
+impl FromStr for Key {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Ok(match name {
+            "w" => Self::Wipe,
+            "e" => Self::Error,
+            "s" => Self::Shadows,
+            "c" => Self::Costs,
+            "h" => Self::Help,
+            "p" => Self::Save,
+            "r" => Self::Reset,
+            "q" | "escape" => Self::Quit,
+            "+" | "=" => Self::Exposure(0.5),
+            "-" => Self::Exposure(-0.5),
+            "]" => Self::Roughness(0.05),
+            "[" => Self::Roughness(-0.05),
+            "left" => Self::Turn([-0.04, 0.0]),
+            "right" => Self::Turn([0.04, 0.0]),
+            "up" => Self::Turn([0.0, -0.04]),
+            "down" => Self::Turn([0.0, 0.04]),
+            _ => match name.parse() {
+                Ok(number @ 1..=5) => Self::Level(number - 1),
+                _ => return Err(format!("'{name}' is no key of the viewer")),
+            },
+        })
+    }
+}
+
+/// Something that a person does. Places are parts of the picture's width and height, from its upper left corner.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Event {
+    /// A key goes down.
+    Key(Key),
+    /// A button of the pointer goes down: the second one slides the view.
+    Press { at: [f64; 2], second: bool },
+    /// The pointer goes to a place.
+    Move([f64; 2]),
+    /// The button goes up.
+    Release,
+    /// The wheel turns, forwards by positive steps.
+    Wheel(f64),
+}
+
+/// What the pointer holds while a button is down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Grip {
+    Nothing,
+    View,
+    Slide,
+    Divider,
+    /// A lamp at a distance along the view.
+    Lamp(usize, f64),
+}
+
+/// What a person has chosen.
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of its own")]
+#[derive(Debug, Clone, PartialEq)]
+pub struct State {
+    /// The camera.
+    pub orbit: Orbit,
+    /// Of [`levels`].
+    pub level: usize,
+    /// What is shown.
+    pub mode: Mode,
+    /// Where the line of a wipe is, as a part of the width.
+    pub divider: f64,
+    /// In stops.
+    pub exposure: f32,
+    /// Of every surface, in [0, 1]; as the scene says where none.
+    pub roughness: Option<f32>,
+    /// Whether lights have shadows.
+    pub shadows: bool,
+    /// Whether keys are explained.
+    pub help: bool,
+    /// Whether the costs of levels and effects are to be shown.
+    pub costs: bool,
+    /// The lamp that was picked last, of [`Scene::lamps`].
+    pub picked: Option<usize>,
+    /// By how much each lamp was moved.
+    pub offsets: Vec<DVec3>,
+    /// The picture is to be saved.
+    pub save: bool,
+    /// There is nothing more to show.
+    pub quit: bool,
+    /// Whether there is a yardstick for the scene's lights.
+    has_yardstick: bool,
+    home: Orbit,
+    first_exposure: f32,
+    pointer: [f64; 2],
+    grip: Grip,
+}
+
+/// How near to the line of a wipe a press takes hold of it, as a part of the width.
+const HOLD: f64 = 0.02;
+
+impl State {
+    /// As a scene is first shown.
+    pub fn new(scene: &Scene, camera: &Camera, exposure: f32, has_yardstick: bool) -> Self {
+        let home = Orbit::new(camera, scene.bounds);
+        Self {
+            orbit: home,
+            level: 0,
+            mode: Mode::Picture,
+            divider: 0.5,
+            exposure,
+            roughness: None,
+            shadows: true,
+            help: false,
+            costs: false,
+            picked: None,
+            offsets: vec![DVec3::ZERO; scene.lamps.len()],
+            save: false,
+            quit: false,
+            has_yardstick,
+            home,
+            first_exposure: exposure,
+            pointer: [0.5; 2],
+            grip: Grip::Nothing,
+        }
+    }
+
+    /// Whether the picture has shadows. Yardsticks have none, and are wiped against a picture without; what they cost is the same on every level.
+    pub fn has_shadows(&self) -> bool {
+        self.shadows && self.mode != Mode::Wipe(Partner::Yardstick) && !self.costs
+    }
+
+    /// Whether the truth is shown, or what is far from it.
+    pub fn needs_truth(&self) -> bool {
+        self.costs || matches!(self.mode, Mode::Wipe(Partner::Truth) | Mode::Error)
+    }
+
+    /// Does what an event asks for. `scene` is the one that is shown, with its lamps where they are; `aspect` is the picture's width over its
+    /// height.
+    pub fn apply(&mut self, event: Event, scene: &Scene, aspect: f64) {
+        match event {
+            Event::Key(key) => self.press_key(key),
+            Event::Press { at, second } => {
+                self.pointer = at;
+                self.grip = self.take(at, second, scene, aspect);
+            }
+            Event::Move(at) => {
+                let drag = [(at[0] - self.pointer[0]) * aspect, at[1] - self.pointer[1]];
+                self.pointer = at;
+                self.drag(drag);
+            }
+            Event::Release => self.grip = Grip::Nothing,
+            Event::Wheel(steps) => match self.grip {
+                // A lamp that is held goes farther along the view
+                Grip::Lamp(lamp, distance) => {
+                    let forward = self.orbit.camera().forward;
+                    let farther = distance * 0.05 * steps;
+                    self.offsets[lamp] += forward * farther;
+                    self.grip = Grip::Lamp(lamp, distance + farther);
+                }
+                _ => self.orbit.approach(steps),
+            },
+        }
+    }
+
+    fn press_key(&mut self, key: Key) {
+        match key {
+            Key::Level(level) => self.level = level.min(levels().len() - 1),
+            Key::Wipe => {
+                self.mode = match self.mode {
+                    Mode::Wipe(Partner::Truth) if self.has_yardstick => Mode::Wipe(Partner::Yardstick),
+                    Mode::Wipe(_) => Mode::Picture,
+                    Mode::Picture | Mode::Error => Mode::Wipe(Partner::Truth),
+                };
+            }
+            Key::Error => {
+                self.mode = if self.mode == Mode::Error { Mode::Picture } else { Mode::Error };
+            }
+            Key::Shadows => self.shadows = !self.shadows,
+            Key::Costs => self.costs = !self.costs,
+            Key::Help => self.help = !self.help,
+            Key::Save => self.save = true,
+            Key::Quit => self.quit = true,
+            Key::Reset => {
+                (self.orbit, self.exposure, self.roughness) = (self.home, self.first_exposure, None);
+                self.offsets.fill(DVec3::ZERO);
+            }
+            Key::Exposure(step) => self.exposure = (self.exposure + step).clamp(-MAX_STOPS, MAX_STOPS),
+            Key::Roughness(step) => {
+                self.roughness = Some((self.roughness.unwrap_or(0.5) + step).clamp(0.0, 1.0));
+            }
+            Key::Turn(drag) => self.orbit.turn(drag),
+        }
+    }
+
+    /// What a press takes hold of.
+    fn take(&mut self, at: [f64; 2], second: bool, scene: &Scene, aspect: f64) -> Grip {
+        if second {
+            return Grip::Slide;
+        }
+        if matches!(self.mode, Mode::Wipe(_)) && (at[0] - self.divider).abs() < HOLD {
+            return Grip::Divider;
+        }
+        let heights = [(at[0] - 0.5) * aspect, at[1] - 0.5];
+        match lamps::pick(scene, &self.orbit.camera(), heights) {
+            Some((lamp, distance)) => {
+                self.picked = Some(lamp);
+                Grip::Lamp(lamp, distance)
+            }
+            None => Grip::View,
+        }
+    }
+
+    /// Moves what is held by a drag in heights of the picture.
+    fn drag(&mut self, drag: [f64; 2]) {
+        match self.grip {
+            Grip::Nothing => {}
+            Grip::View => self.orbit.turn(drag),
+            Grip::Slide => self.orbit.slide(drag),
+            Grip::Divider => self.divider = self.pointer[0].clamp(0.0, 1.0),
+            Grip::Lamp(lamp, distance) => self.offsets[lamp] += self.orbit.offset(drag, distance),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ASPECT: f64 = 1.5;
+
+    fn shown() -> (Scene, State) {
+        let scene = Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo").unwrap();
+        let camera = scene.camera(None, ASPECT).unwrap();
+        let state = State::new(&scene, &camera, 0.0, true);
+        (scene, state)
+    }
+
+    fn keys(names: &[&str]) -> State {
+        let (scene, mut state) = shown();
+        for name in names {
+            state.apply(Event::Key(name.parse().unwrap()), &scene, ASPECT);
+        }
+        state
+    }
+
+    #[test]
+    fn keys_choose_what_is_shown() {
+        assert_eq!(keys(&["4"]).level, 3);
+        assert!(levels().iter().enumerate().all(|(i, _)| keys(&[&(i + 1).to_string()]).level == i));
+        assert_eq!(keys(&["w"]).mode, Mode::Wipe(Partner::Truth));
+        assert_eq!(keys(&["w", "w"]).mode, Mode::Wipe(Partner::Yardstick));
+        assert_eq!(keys(&["w", "w", "w"]).mode, Mode::Picture);
+        assert_eq!(keys(&["w", "e"]).mode, Mode::Error);
+        assert_eq!(keys(&["+", "+", "-"]).exposure, 0.5);
+        assert_eq!(keys(&["s"]).shadows, !keys(&[]).shadows);
+        assert!(keys(&["h", "p", "escape"]) != keys(&[]));
+        assert_eq!(keys(&["]"]).roughness, Some(0.55));
+        assert_eq!(keys(&["]", "left", "+", "r"]), keys(&[]));
+        assert!("f13".parse::<Key>().unwrap_err().contains("'f13'") && "6".parse::<Key>().is_err());
+    }
+
+    #[test]
+    fn a_yardstick_is_offered_where_there_is_one_and_has_no_shadows() {
+        let (scene, with) = shown();
+        let mut without = State { has_yardstick: false, ..with };
+        for expected in [Mode::Wipe(Partner::Truth), Mode::Picture] {
+            without.apply(Event::Key(Key::Wipe), &scene, ASPECT);
+            assert_eq!(without.mode, expected);
+        }
+        assert!(keys(&["w"]).has_shadows() && !keys(&["w", "w"]).has_shadows());
+    }
+
+    #[test]
+    fn a_drag_moves_the_lamp_that_it_begins_on_or_the_view() {
+        let (scene, mut state) = shown();
+        // Where a lamp is seen
+        let camera = state.orbit.camera();
+        let seen = |heights: [f64; 2]| lamps::pick(&scene, &camera, heights);
+        let places = (0..40 * 40).map(|i| [f64::from(i % 40) / 39.0, f64::from(i / 40) / 39.0]);
+        let on = |at: &[f64; 2]| seen([(at[0] - 0.5) * ASPECT, at[1] - 0.5]);
+        let (lit, dark): (Vec<_>, Vec<_>) = places.partition(|at| on(at).is_some());
+        let (lit, dark) = (lit[0], dark[0]);
+        let (lamp, distance) = on(&lit).unwrap();
+
+        state.apply(Event::Press { at: lit, second: false }, &scene, ASPECT);
+        state.apply(Event::Move([lit[0] + 0.1, lit[1]]), &scene, ASPECT);
+        assert_eq!(state.picked, Some(lamp));
+        let expected = camera.right * (0.1 * ASPECT * 2.0 * camera.tan_half_height * distance);
+        assert!((state.offsets[lamp] - expected).length() < 1e-9);
+        assert_eq!(state.orbit, state.home);
+        state.apply(Event::Wheel(1.0), &scene, ASPECT);
+        assert!((state.offsets[lamp] - expected).dot(camera.forward) > 0.0);
+        state.apply(Event::Release, &scene, ASPECT);
+        let offsets = state.offsets.clone();
+
+        state.apply(Event::Move([0.5, 0.5]), &scene, ASPECT);
+        assert_eq!((state.orbit, &state.offsets), (state.home, &offsets), "nothing is held");
+        state.apply(Event::Press { at: dark, second: false }, &scene, ASPECT);
+        state.apply(Event::Move([dark[0] + 0.1, dark[1]]), &scene, ASPECT);
+        assert_eq!(state.offsets, offsets);
+        assert_ne!(state.orbit, state.home);
+    }
+
+    #[test]
+    fn the_line_of_a_wipe_is_dragged() {
+        let (scene, _) = shown();
+        let mut state = keys(&["w"]);
+        state.apply(Event::Press { at: [0.505, 0.9], second: false }, &scene, ASPECT);
+        state.apply(Event::Move([0.25, 0.9]), &scene, ASPECT);
+        assert_eq!(state.divider, 0.25);
+        state.apply(Event::Move([-1.0, 0.9]), &scene, ASPECT);
+        assert_eq!(state.divider, 0.0);
+    }
+}

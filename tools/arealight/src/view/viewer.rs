@@ -1,0 +1,426 @@
+//! A scene on the device, drawn as the state says: what has changed since the last frame alone is done again.
+
+use super::state::{Mode, Partner, State, levels};
+use super::truth::{Distance, Truth};
+use super::{lamps, orbit::Orbit};
+use crate::shadows::Shadows;
+use arealight::plan::{ShadeOptions, ShadowHistory};
+use arealight::{Effects, Quality};
+use arealight_benches::ladder::{SHADE_YARDSTICK, yardstick_for};
+use arealight_benches::published;
+use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, ShadowedView};
+use arealight_scene::{Scene, SceneBuffers};
+use arealight_vk::TableFormat;
+use glam::{DVec3, Vec3};
+use std::time::Duration;
+
+/// The devices' tables and pipelines, which outlive what is drawn.
+pub struct Engines {
+    ours: Engine,
+    /// With the table of a yardstick; none where there is no yardstick for the lights.
+    yardstick: Option<Engine>,
+}
+
+impl Engines {
+    /// With what the yardstick for the scene needs.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device or its memory is too small.
+    pub fn new(ours: Engine, scene: &Scene) -> Result<Self, EngineError> {
+        // Yardsticks shade polygons of one colour
+        let others = Effects::SHAPES | Effects::IMAGES;
+        let yardstick = if scene.effects().intersects(others) {
+            None
+        } else {
+            Some(Engine::new(ours.host().clone(), &published::table(), TableFormat::default())?)
+        };
+        Ok(Self { ours, yardstick })
+    }
+
+    /// Whether there is a yardstick for the scene.
+    pub fn has_yardstick(&self) -> bool {
+        self.yardstick.is_some()
+    }
+}
+
+/// Where the lamps are, and how rough surfaces are.
+#[derive(Debug, Clone, PartialEq)]
+struct Placed {
+    offsets: Vec<DVec3>,
+    roughness: Option<f32>,
+}
+
+/// What a picture is of: another needs other pixels.
+#[derive(Debug, Clone, PartialEq)]
+struct Seen {
+    placed: Placed,
+    orbit: Orbit,
+    shadows: bool,
+}
+
+/// A picture that was drawn.
+struct Drawn {
+    of: (Seen, usize),
+    radiance: Vec<DVec3>,
+    time: Option<Duration>,
+}
+
+/// A scene, and what was drawn of it last.
+pub struct Viewer<'a> {
+    engines: &'a Engines,
+    /// As it was read.
+    original: Scene,
+    /// As it is.
+    scene: Scene,
+    placed: Placed,
+    buffers: SceneBuffers,
+    renderer: SceneRenderer<'a>,
+    yardstick: Option<SceneRenderer<'a>>,
+    shadowed: Option<(usize, ShadowedView)>,
+    size: [u32; 2],
+    /// Of the renderers' cameras.
+    looks: Option<Orbit>,
+    visibility: Option<Duration>,
+    emission: Vec<DVec3>,
+    ours: Option<Drawn>,
+    theirs: Option<Drawn>,
+    truth: Option<(Seen, Truth)>,
+    tried: Option<(Seen, Vec<Tried>)>,
+}
+
+/// What a level, or every effect but one, was found to take.
+struct Tried {
+    name: String,
+    milliseconds: Option<f64>,
+    radiance: Vec<DVec3>,
+}
+
+/// What a level costs, or every effect but one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cost {
+    /// The level's name, or "without" and the effect's.
+    pub name: String,
+    /// Milliseconds of shading.
+    pub milliseconds: Option<f64>,
+    /// How far it is from the truth.
+    pub distance: Option<Distance>,
+}
+
+/// What there is to show.
+pub struct Shown<'v> {
+    /// The picture's size.
+    pub size: [u32; 2],
+    /// Our radiance.
+    pub ours: &'v [DVec3],
+    /// What it is wiped against, or how far from: that of the yardstick or the truth.
+    pub other: Option<Vec<DVec3>>,
+    /// Radiance of the lamps themselves.
+    pub emission: &'v [DVec3],
+    /// The device's time of finding surfaces and of shading them.
+    pub times: [Option<Duration>; 2],
+    /// What the surfaces and lights need.
+    pub effects: Effects,
+    /// Samples of the truth so far, and how far our picture is from it.
+    pub truth: Option<(u32, Option<Distance>)>,
+    /// The yardstick's name.
+    pub yardstick: &'static str,
+    /// What each level costs, and every effect but one, where that is asked for.
+    pub costs: Vec<Cost>,
+}
+
+/// Runs whose fastest is a cost.
+const COST_RUNS: usize = 3;
+
+impl<'a> Viewer<'a> {
+    /// Uploads a scene.
+    ///
+    /// # Errors
+    /// [`EngineError`] names what is too large for the device.
+    pub fn new(engines: &'a Engines, scene: Scene, size: [u32; 2]) -> Result<Self, EngineError> {
+        let placed = Placed { offsets: vec![DVec3::ZERO; scene.lamps.len()], roughness: None };
+        let (buffers, renderer, yardstick) = upload(engines, &scene, size)?;
+        Ok(Self {
+            engines,
+            original: scene.clone(),
+            scene,
+            placed,
+            buffers,
+            renderer,
+            yardstick,
+            shadowed: None,
+            size,
+            looks: None,
+            visibility: None,
+            emission: vec![],
+            ours: None,
+            theirs: None,
+            truth: None,
+            tried: None,
+        })
+    }
+
+    /// The scene as it is, with lamps where they were moved to.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Samples a pixel of the truth so far.
+    #[cfg(feature = "view")]
+    pub fn truth_samples(&self) -> u32 {
+        self.truth.as_ref().map_or(0, |(_, truth)| truth.samples())
+    }
+
+    /// Draws in another size from now on.
+    ///
+    /// # Errors
+    /// As [`Viewer::new`].
+    #[cfg(feature = "view")]
+    pub fn resize(&mut self, size: [u32; 2]) -> Result<(), EngineError> {
+        if size == self.size {
+            return Ok(());
+        }
+        self.size = size;
+        self.upload()
+    }
+
+    /// Draws what the state asks for, and adds `samples` a pixel to the truth where that is a part of it.
+    ///
+    /// # Errors
+    /// [`EngineError`] where the device fails, or a moved lamp cannot be shaded.
+    pub fn draw(&mut self, state: &State, samples: u32) -> Result<Shown<'_>, EngineError> {
+        self.place(state)?;
+        let seen = Seen { placed: self.placed.clone(), orbit: state.orbit, shadows: state.has_shadows() };
+        self.look(state.orbit)?;
+        self.draw_ours(&seen, state.level)?;
+        if state.mode == Mode::Wipe(Partner::Yardstick) {
+            self.draw_theirs(&seen)?;
+        }
+        if state.needs_truth() {
+            self.add_truth(&seen, samples)?;
+        }
+        if state.costs {
+            self.try_levels_and_effects(&seen)?;
+        }
+        Ok(self.shown(state, &seen))
+    }
+
+    fn upload(&mut self) -> Result<(), EngineError> {
+        (self.buffers, self.renderer, self.yardstick) = upload(self.engines, &self.scene, self.size)?;
+        (self.shadowed, self.looks, self.ours, self.theirs) = (None, None, None, None);
+        (self.truth, self.tried) = (None, None);
+        Ok(())
+    }
+
+    /// Moves lamps, and makes surfaces as rough as the state says.
+    fn place(&mut self, state: &State) -> Result<(), EngineError> {
+        let placed = Placed { offsets: state.offsets.clone(), roughness: state.roughness };
+        if placed == self.placed {
+            return Ok(());
+        }
+        let mut scene = self.original.clone();
+        lamps::shift(&mut scene, &placed.offsets);
+        if let Some(roughness) = placed.roughness {
+            for material in &mut scene.materials {
+                material.material.roughness = roughness;
+            }
+        }
+        (self.scene, self.placed) = (scene, placed);
+        self.upload()
+    }
+
+    /// Finds the surfaces that the camera sees, and what it sees of lamps.
+    fn look(&mut self, orbit: Orbit) -> Result<(), EngineError> {
+        if self.looks == Some(orbit) {
+            return Ok(());
+        }
+        let constants = self.buffers.constants(&orbit.camera(), self.size, Vec3::ZERO);
+        for renderer in self.yardstick.iter_mut().chain([&mut self.renderer]) {
+            renderer.look(constants);
+        }
+        self.visibility = self.renderer.visibility()?;
+        self.emission = radiance(&mut self.renderer)?;
+        self.looks = Some(orbit);
+        Ok(())
+    }
+
+    /// What the pass has to handle of the scene's surfaces.
+    fn surfaces(&self) -> Effects {
+        let required = self.scene.effects() & Effects::SURFACES;
+        if required.is_empty() { Effects::DIFFUSE } else { required }
+    }
+
+    fn draw_ours(&mut self, seen: &Seen, level: usize) -> Result<(), EngineError> {
+        let of = (seen.clone(), level);
+        if self.ours.as_ref().is_some_and(|drawn| drawn.of == of) {
+            return Ok(());
+        }
+        self.renderer.visibility()?;
+        let time = if seen.shadows { self.shade_with_shadows(level)? } else { self.shade(level)? };
+        self.ours = Some(Drawn { of, radiance: radiance(&mut self.renderer)?, time });
+        Ok(())
+    }
+
+    fn shade(&mut self, level: usize) -> Result<Option<Duration>, EngineError> {
+        self.renderer.shade(self.surfaces(), quality(level))
+    }
+
+    fn shade_with_shadows(&mut self, level: usize) -> Result<Option<Duration>, EngineError> {
+        let Shadows::Rays(shadow_rays, filter) = Shadows::default() else { return self.shade(level) };
+        if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
+            let (surfaces, quality) = (self.surfaces(), quality(level));
+            let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
+            let view = self.renderer.shadowed(&self.buffers, options, (filter, ShadowHistory::Off))?;
+            self.shadowed = Some((level, view));
+        }
+        let Some((_, view)) = &self.shadowed else { return Ok(None) };
+        self.renderer.shade_shadowed(view, 0)
+    }
+
+    fn draw_theirs(&mut self, seen: &Seen) -> Result<(), EngineError> {
+        let of = (seen.clone(), 0);
+        let Some(renderer) = &mut self.yardstick else { return Ok(()) };
+        if self.theirs.as_ref().is_some_and(|drawn| drawn.of == of) {
+            return Ok(());
+        }
+        let (_, school) = yardstick_for(&self.scene);
+        // Diffuse lobes are added, as where these are from
+        let effects = self.scene.effects() - Effects::MODEL;
+        renderer.visibility()?;
+        let time = renderer.shade_by(&SHADE_YARDSTICK, &[(0, effects.bits()), (1, school as u32)])?;
+        self.theirs = Some(Drawn { of, radiance: radiance(renderer)?, time });
+        Ok(())
+    }
+
+    fn add_truth(&mut self, seen: &Seen, samples: u32) -> Result<(), EngineError> {
+        let pixels = self.emission.len();
+        let mut truth = match self.truth.take() {
+            Some((of, truth)) if of == *seen => truth,
+            _ => Truth::new(pixels),
+        };
+        if truth.samples() < MOST_SAMPLES {
+            let coupled = self.surfaces().contains(Effects::COUPLED);
+            let reference = Reference { samples, seed: truth.samples(), shadows: seen.shadows, coupled };
+            self.renderer.visibility()?;
+            self.renderer.reference(reference, |_| {})?;
+            truth.add(&radiance(&mut self.renderer)?, samples);
+        }
+        self.truth = Some((seen.clone(), truth));
+        Ok(())
+    }
+
+    /// Shades by each level, and without each effect in turn.
+    fn try_levels_and_effects(&mut self, seen: &Seen) -> Result<(), EngineError> {
+        if self.tried.as_ref().is_some_and(|(of, _)| of == seen) {
+            return Ok(());
+        }
+        let surfaces = self.surfaces();
+        let mut tried = vec![];
+        for level in levels() {
+            tried.push(self.try_shading(level.name.to_owned(), surfaces, level.quality)?);
+        }
+        for effect in (surfaces - Effects::MODEL).iter() {
+            let left = without(surfaces, effect);
+            if left.intersects(Effects::DIFFUSE | Effects::GLOSSY) {
+                tried.push(self.try_shading(format!("without {effect}"), left, Quality::default())?);
+            }
+        }
+        self.tried = Some((seen.clone(), tried));
+        Ok(())
+    }
+
+    fn try_shading(
+        &mut self,
+        name: String,
+        surfaces: Effects,
+        quality: Quality,
+    ) -> Result<Tried, EngineError> {
+        let mut fastest: Option<Duration> = None;
+        for _ in 0..COST_RUNS {
+            self.renderer.visibility()?;
+            let took = self.renderer.shade(surfaces, quality)?;
+            fastest = fastest.into_iter().chain(took).min();
+        }
+        let milliseconds = fastest.map(|time| time.as_secs_f64() * 1e3);
+        Ok(Tried { name, milliseconds, radiance: radiance(&mut self.renderer)? })
+    }
+
+    /// What was tried of a view, by the truth as far as it is known.
+    fn costs(&self, seen: &Seen, truth: Option<&Truth>) -> Vec<Cost> {
+        let tried = self.tried.as_ref().filter(|(of, _)| of == seen);
+        let cost = |tried: &Tried| Cost {
+            name: tried.name.clone(),
+            milliseconds: tried.milliseconds,
+            distance: truth.and_then(|truth| truth.distance(&tried.radiance, |i| self.is_lit(i))),
+        };
+        tried.into_iter().flat_map(|(_, tried)| tried).map(cost).collect()
+    }
+
+    /// Whether a pixel shows no lamp.
+    fn is_lit(&self, pixel: usize) -> bool {
+        self.emission.get(pixel) == Some(&DVec3::ZERO)
+    }
+
+    fn shown(&self, state: &State, seen: &Seen) -> Shown<'_> {
+        let ours = self.ours.as_ref().map_or(&[][..], |drawn| &drawn.radiance);
+        let truth = self.truth.as_ref().filter(|(of, _)| of == seen).map(|(_, truth)| truth);
+        let other = match state.mode {
+            Mode::Picture => None,
+            Mode::Wipe(Partner::Yardstick) => self.theirs.as_ref().map(|drawn| drawn.radiance.clone()),
+            Mode::Wipe(Partner::Truth) | Mode::Error => truth.map(Truth::mean),
+        };
+        Shown {
+            size: self.size,
+            ours,
+            other,
+            emission: &self.emission,
+            times: [self.visibility, self.ours.as_ref().and_then(|drawn| drawn.time)],
+            effects: self.surfaces() | self.renderer.lights().effects,
+            truth: truth.map(|truth| (truth.samples(), truth.distance(ours, |i| self.is_lit(i)))),
+            yardstick: yardstick_for(&self.scene).0,
+            costs: if state.costs { self.costs(seen, truth) } else { vec![] },
+        }
+    }
+}
+
+/// Samples of the truth that are enough.
+pub const MOST_SAMPLES: u32 = 1 << 14;
+
+fn quality(level: usize) -> Quality {
+    levels().get(level).map_or_else(Quality::default, |level| level.quality)
+}
+
+/// The set without an effect, and without those that need it.
+fn without(surfaces: Effects, effect: Effects) -> Effects {
+    let dependent = match effect {
+        Effects::DIFFUSE => Effects::DIFFUSE_ROUGHNESS | Effects::COUPLED | Effects::COUPLED_BY_ALBEDO,
+        Effects::GLOSSY => {
+            Effects::SPECULAR_INPUT
+                | Effects::ANISOTROPY
+                | Effects::COUPLED
+                | Effects::COUPLED_BY_ALBEDO
+                | Effects::MULTIPLE_SCATTERING
+        }
+        Effects::COAT => Effects::COAT_NORMAL | Effects::COAT_BY_ALBEDO,
+        _ => Effects::empty(),
+    };
+    surfaces - effect - dependent
+}
+
+/// A scene's buffers, and what draws it by our table and by the yardstick's.
+type Uploaded<'a> = (SceneBuffers, SceneRenderer<'a>, Option<SceneRenderer<'a>>);
+
+fn upload<'a>(engines: &'a Engines, scene: &Scene, size: [u32; 2]) -> Result<Uploaded<'a>, EngineError> {
+    // Everything on the device is relative to the scene's middle, about which the camera goes
+    let buffers = SceneBuffers::new(scene, scene.bounds.center())?;
+    let camera = scene.framing_camera(f64::from(size[0]) / f64::from(size[1]));
+    let constants = buffers.constants(&camera, size, Vec3::ZERO);
+    let renderer = SceneRenderer::new(&engines.ours, &buffers, &scene.lights, constants, size)?;
+    let yardstick = engines.yardstick.as_ref();
+    let yardstick =
+        yardstick.map(|engine| SceneRenderer::new(engine, &buffers, &scene.lights, constants, size));
+    Ok((buffers, renderer, yardstick.transpose()?))
+}
+
+fn radiance(renderer: &mut SceneRenderer<'_>) -> Result<Vec<DVec3>, EngineError> {
+    Ok(renderer.radiance()?.into_iter().map(|texel| texel.truncate().as_dvec3()).collect())
+}

@@ -1,0 +1,226 @@
+//! The viewer in a window of X11 or Wayland. Pictures come from the device through memory: whatever it is, it need not present.
+
+use super::paint;
+use super::script::Script;
+use super::state::{Event, Key, State};
+use super::viewer::{MOST_SAMPLES, Viewer};
+use crate::failure::Failure;
+use crate::gpu;
+use crate::output::print;
+use softbuffer::{Context, Surface};
+use std::fmt::Display;
+use std::num::NonZeroU32;
+use std::path::Path;
+use std::process::ExitCode;
+use std::rc::Rc;
+use std::time::Instant;
+use winit::application::ApplicationHandler;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key as WindowKey, NamedKey};
+use winit::window::{Window, WindowId};
+
+/// Shows a scene until its window is closed, or the script is over.
+///
+/// # Errors
+/// [`Failure`] where there is no window, or the device fails.
+pub fn show(
+    viewer: Viewer<'_>,
+    state: State,
+    size: [u32; 2],
+    samples: u32,
+    script: Option<&Script>,
+    scene: &Path,
+) -> Result<ExitCode, Failure> {
+    let events = EventLoop::new().map_err(|error| no_window(&error))?;
+    let context = Context::new(events.owned_display_handle()).map_err(|error| no_window(&error))?;
+    let mut desk = Desk {
+        viewer,
+        state,
+        size,
+        samples,
+        script,
+        scene,
+        context,
+        window: None,
+        pointer: [0.5; 2],
+        start: Instant::now(),
+        before: -1.0,
+        frames: 0,
+        failure: None,
+    };
+    events.run_app(&mut desk).map_err(|error| no_window(&error))?;
+    match desk.failure {
+        Some(failure) => Err(failure),
+        None => print(&format!("{} frames were shown\n", desk.frames)),
+    }
+}
+
+fn no_window(why: &dyn Display) -> Failure {
+    let message = format!("no window can be opened ({why}); --record and --script need none");
+    Failure::Argument { argument: "view", message }
+}
+
+/// A pixel's step of a touchpad, in steps of a wheel.
+const PIXELS_A_STEP: f64 = 40.0;
+
+/// A window's pixels.
+type Pixels = Surface<OwnedDisplayHandle, Rc<Window>>;
+
+/// What winit calls back.
+struct Desk<'a> {
+    viewer: Viewer<'a>,
+    state: State,
+    /// Of the picture, and so of the window, in pixels.
+    size: [u32; 2],
+    samples: u32,
+    script: Option<&'a Script>,
+    /// For messages.
+    scene: &'a Path,
+    context: Context<OwnedDisplayHandle>,
+    window: Option<(Rc<Window>, Pixels)>,
+    /// Where the pointer is, in parts of the picture.
+    pointer: [f64; 2],
+    start: Instant,
+    /// The time of the last frame, in seconds of the script.
+    before: f64,
+    frames: u32,
+    failure: Option<Failure>,
+}
+
+impl Desk<'_> {
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
+        let size = PhysicalSize::<u32>::from(self.size);
+        let attributes = Window::default_attributes().with_title("Arealight").with_inner_size(size);
+        let window = Rc::new(events.create_window(attributes).map_err(|error| no_window(&error))?);
+        let surface = Surface::new(&self.context, Rc::clone(&window)).map_err(|error| no_window(&error))?;
+        self.size = window.inner_size().into();
+        self.window = Some((window, surface));
+        self.start = Instant::now();
+        Ok(())
+    }
+
+    fn apply(&mut self, event: Event) {
+        let [width, height] = self.size.map(|side| f64::from(side.max(1)));
+        self.state.apply(event, self.viewer.scene(), width / height);
+        if let Some((window, _)) = &self.window {
+            window.request_redraw();
+        }
+    }
+
+    /// Draws a frame, and shows it.
+    fn draw(&mut self) -> Result<(), Failure> {
+        // Minimised windows have no area
+        let [Some(width), Some(height)] = self.size.map(NonZeroU32::new) else { return Ok(()) };
+        self.viewer.resize(self.size).map_err(|error| gpu::failure(error, self.scene))?;
+        if let Some(script) = self.script {
+            let now = self.start.elapsed().as_secs_f64();
+            for event in script.between(self.before, now) {
+                self.apply(event);
+            }
+            self.before = now;
+            self.state.quit |= now > script.seconds();
+        }
+        let shown =
+            self.viewer.draw(&self.state, self.samples).map_err(|error| gpu::failure(error, self.scene))?;
+        let frame = paint(&self.state, &shown);
+        if std::mem::take(&mut self.state.save) {
+            let path = format!("view-{:04}.png", self.frames);
+            frame.save_png(path.as_ref())?;
+            eprintln!("wrote {path}");
+        }
+        let Some((window, surface)) = &mut self.window else { return Ok(()) };
+        surface.resize(width, height).map_err(|error| no_window(&error))?;
+        let mut pixels = surface.buffer_mut().map_err(|error| no_window(&error))?;
+        for (pixel, rgb) in pixels.iter_mut().zip(frame.bytes().chunks_exact(3)) {
+            *pixel = u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]]);
+        }
+        window.pre_present_notify();
+        pixels.present().map_err(|error| no_window(&error))?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    /// Whether the next frame differs, although nobody does anything.
+    fn goes_on(&self) -> bool {
+        let converges = self.state.needs_truth() && self.viewer.truth_samples() < MOST_SAMPLES;
+        self.script.is_some() || converges
+    }
+}
+
+/// A key as scripts name it.
+fn name_of(key: &WindowKey) -> Option<String> {
+    Some(match key {
+        WindowKey::Character(text) => text.to_lowercase(),
+        WindowKey::Named(NamedKey::Escape) => "escape".to_owned(),
+        WindowKey::Named(NamedKey::ArrowLeft) => "left".to_owned(),
+        WindowKey::Named(NamedKey::ArrowRight) => "right".to_owned(),
+        WindowKey::Named(NamedKey::ArrowUp) => "up".to_owned(),
+        WindowKey::Named(NamedKey::ArrowDown) => "down".to_owned(),
+        _ => return None,
+    })
+}
+
+impl ApplicationHandler for Desk<'_> {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.window.is_some() {
+            return;
+        }
+        if let Err(failure) = self.open(events) {
+            self.failure = Some(failure);
+            events.exit();
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::Resized(size) => {
+                self.size = size.into();
+                if let Some((window, _)) = &self.window {
+                    window.request_redraw();
+                }
+            }
+            WindowEvent::CloseRequested | WindowEvent::Destroyed => events.exit(),
+            WindowEvent::KeyboardInput { event, .. } if event.state == ElementState::Pressed => {
+                let key = name_of(&event.logical_key).and_then(|name| name.parse::<Key>().ok());
+                if let Some(key) = key {
+                    self.apply(Event::Key(key));
+                }
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                let [width, height] = self.size.map(|side| f64::from(side.max(1)));
+                self.pointer = [position.x / width, position.y / height];
+                self.apply(Event::Move(self.pointer));
+            }
+            WindowEvent::MouseInput { state, button, .. } => match (state, button) {
+                (ElementState::Released, _) => self.apply(Event::Release),
+                (ElementState::Pressed, button) => {
+                    let second = button != MouseButton::Left;
+                    self.apply(Event::Press { at: self.pointer, second });
+                }
+            },
+            WindowEvent::MouseWheel { delta, .. } => self.apply(Event::Wheel(match delta {
+                MouseScrollDelta::LineDelta(_, lines) => lines.into(),
+                MouseScrollDelta::PixelDelta(pixels) => pixels.y / PIXELS_A_STEP,
+            })),
+            WindowEvent::RedrawRequested => {
+                if let Err(failure) = self.draw() {
+                    self.failure = Some(failure);
+                    events.exit();
+                }
+            }
+            _ => {}
+        }
+        if self.state.quit {
+            events.exit();
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        events.set_control_flow(ControlFlow::Wait);
+        if let Some((window, _)) = self.window.as_ref().filter(|_| self.goes_on()) {
+            window.request_redraw();
+        }
+    }
+}

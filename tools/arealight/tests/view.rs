@@ -1,0 +1,154 @@
+//! The viewer without a window: what a script does is what the frames show.
+
+mod common;
+
+use common::run;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// Every mode, a quarter of a second each; a lamp of the room is dragged, and then the view.
+const SCRIPT: &str = "
+0     key s          # without shadows
+0.25  key 4
+0.5   key w
+1.5   key w
+1.75  key w
+2     key e
+2.25  key e
+2.25  press LAMP     # a lamp
+2.5   move 0.5 0.45
+2.5   release
+2.75  press 0.5 0.98 # the floor
+3     move 0.6 0.9
+3     release
+3.25  key ]
+3.5   key c
+4     key c
+4     key r
+4     key [
+4     key r
+4     key 1
+";
+
+struct Recording {
+    folder: tempfile::TempDir,
+    frames: Vec<Value>,
+}
+
+impl Recording {
+    fn pixels(&self, frame: usize) -> Vec<u8> {
+        let path: PathBuf = self.folder.path().join(format!("out/frame-{frame:04}.png"));
+        image::open(path).unwrap().to_rgb8().into_raw()
+    }
+
+    /// The part of the bytes that differ between two frames.
+    fn difference(&self, a: usize, b: usize) -> f64 {
+        let (a, b) = (self.pixels(a), self.pixels(b));
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count() as f64 / a.len() as f64
+    }
+}
+
+fn record(scene: &str, script: &str) -> Recording {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("script"), script).unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(scene);
+    let output = run(
+        folder.path(),
+        &[
+            "view",
+            scene.to_str().unwrap(),
+            "--size",
+            "160x96",
+            "--script",
+            "script",
+            "--record",
+            "out",
+            "--rate",
+            "4",
+            "--samples",
+            "4",
+            "--json",
+        ],
+    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    Recording { folder, frames: said["frames"].as_array().unwrap().clone() }
+}
+
+#[test]
+fn a_recording_shows_what_its_script_does() {
+    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
+        return;
+    }
+    // The middle of sweep's lamp
+    let recording = record("sweep.glb", &SCRIPT.replace("LAMP", "0.5 0.13"));
+    let frames = &recording.frames;
+    assert_eq!(frames.len(), 17);
+    let film = std::fs::read(recording.folder.path().join("out/film.gif")).unwrap();
+    assert_eq!(&film[..6], b"GIF89a");
+
+    // Modes and levels
+    let word = |frame: usize, field: &str| frames[frame][field].as_str().unwrap().to_owned();
+    assert_eq!([word(0, "level"), word(1, "level")], ["exact", "everything"]);
+    assert_eq!(
+        [2, 6, 7, 8, 9].map(|frame| word(frame, "mode")),
+        ["wipe", "wipe", "picture", "error", "picture"]
+    );
+    assert_eq!(frames[0]["shadows"], false);
+
+    // The truth converges: while frames 2 to 5 show it, its noise falls as the root of the samples
+    let samples = |frame: usize| frames[frame]["truth_samples"].as_f64().unwrap();
+    let noise = |frame: usize| frames[frame]["truth_noise"].as_f64().unwrap();
+    assert_eq!([2, 3, 5].map(samples), [4.0, 8.0, 16.0]);
+    assert!(noise(5) < 0.85 * noise(3), "{} after {}", noise(5), noise(3));
+
+    // Frames differ where something was done, and only there
+    for (a, b, least) in [(6, 7, 0.05), (7, 8, 0.3), (9, 10, 0.1), (11, 12, 0.1), (12, 13, 0.05)] {
+        let found = recording.difference(a, b);
+        assert!(found > least, "frames {a} and {b} differ in {found}");
+    }
+    assert_eq!(recording.difference(10, 11), 0.0, "nothing is done");
+
+    // What levels and effects cost
+    let costs = frames[14]["costs"].as_array().unwrap();
+    let names: Vec<&str> = costs.iter().map(|cost| cost["name"].as_str().unwrap()).collect();
+    assert_eq!(names[..5], ["exact", "two lobes", "both horizons", "everything", "formula"]);
+    assert!(names.contains(&"without glossy"), "{names:?}");
+    assert!(frames[13]["costs"].as_array().unwrap().is_empty());
+
+    // In the end everything is as it was, but for digits of the time that it took
+    let found = recording.difference(0, 16);
+    assert!(found < 0.02, "{found}");
+}
+
+#[test]
+fn shadows_and_scenes_without_a_yardstick_are_shown_too() {
+    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
+        return;
+    }
+    // Disks, spheres and tubes: after the truth comes the picture again
+    let recording = record("shapes.glb", "0 key w\n0.25 key w\n0.5 key s\n");
+    let modes: Vec<&str> = recording.frames.iter().map(|frame| frame["mode"].as_str().unwrap()).collect();
+    assert_eq!(modes, ["wipe", "picture", "picture"]);
+    assert!(recording.difference(1, 2) > 0.02, "shadows are seen");
+}
+
+#[test]
+fn wrong_scripts_and_places_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |arguments: &[&str], code: i32, words: &str| {
+        let output = run(folder.path(), arguments);
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {said}");
+        assert!(said.contains(words) && !said.contains("panicked"), "{arguments:?}: {said}");
+    };
+    std::fs::write(folder.path().join("bad"), "0 key w\n0 key f13").unwrap();
+    std::fs::write(folder.path().join("file"), "").unwrap();
+    refused(&["view", "--script", "bad", "--record", "out"], 3, "bad: line 2: 'f13' is no key");
+    refused(&["view", "--script", "missing", "--record", "out"], 3, "missing");
+    refused(&["view", "--script", "file", "--record", "file"], 5, "file: cannot write");
+    refused(&["view", "--record", "out"], 2, "--script");
+    refused(&["view", "--exposure", "auto"], 2, "--exposure");
+    refused(&["view", "missing.glb"], 3, "missing.glb");
+}
