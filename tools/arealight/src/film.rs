@@ -5,20 +5,39 @@ use color_quant::NeuQuant;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 
-/// Colours of the palette; one more says that a pixel is as it was.
-const COLORS: usize = 127;
+/// How a film's colours become few.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Palette {
+    /// Colours, at most 255; one more says that a pixel is as it was.
+    pub colors: u8,
+    /// The most that a channel is raised or lowered by a fixed pattern of 4 x 4 pixels, so that gradients have no bands. What stays as it was stays so.
+    pub dither: i32,
+}
+
+/// The order in which a pattern's pixels are raised (Bayer 1973).
+const PATTERN: [[i32; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
+
+/// A frame's pixels, raised and lowered by the pattern, as the palette's chooser takes them.
+fn dithered(frame: &Canvas, dither: i32) -> Vec<u8> {
+    let width = frame.size()[0] as usize;
+    let pixels = frame.bytes().chunks_exact(3).enumerate();
+    let raised = pixels.flat_map(|(index, rgb)| {
+        let by = (2 * PATTERN[index / width % 4][index % width % 4] - 15) * dither / 15;
+        let channel = |value: u8| (i32::from(value) + by).clamp(0, 255) as u8;
+        [channel(rgb[0]), channel(rgb[1]), channel(rgb[2]), 255]
+    });
+    raised.collect()
+}
 
 /// Pictures of one size, each shown for `delay` hundredths of a second, again and again. Pixels that stay as they were are transparent, which is
 /// what keeps the file small.
 ///
 /// # Errors
 /// [`EncodingError`] where a side is above 65,535 pixels.
-pub fn encode(frames: &[Canvas], delay: u16) -> Result<Vec<u8>, EncodingError> {
-    let opaque = |frame: &Canvas| -> Vec<u8> {
-        frame.bytes().chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect()
-    };
-    let pixels: Vec<u8> = frames.iter().flat_map(opaque).collect();
-    let quantizer = NeuQuant::new(10, COLORS, &pixels);
+pub fn encode(frames: &[Canvas], delay: u16, palette: Palette) -> Result<Vec<u8>, EncodingError> {
+    let Palette { colors, dither } = palette;
+    let pixels: Vec<u8> = frames.iter().flat_map(|frame| dithered(frame, dither)).collect();
+    let quantizer = NeuQuant::new(10, colors.into(), &pixels);
     let mut palette = quantizer.color_map_rgb();
     palette.extend([0; 3]);
 
@@ -26,7 +45,6 @@ pub fn encode(frames: &[Canvas], delay: u16) -> Result<Vec<u8>, EncodingError> {
     let mut film = Vec::new();
     let mut encoder = Encoder::new(&mut film, width, height, &palette)?;
     encoder.set_repeat(Repeat::Infinite)?;
-    let unchanged = COLORS as u8;
     let mut before: Vec<u8> = vec![];
     for pixels in pixels.chunks(4 * usize::from(width) * usize::from(height)) {
         let indices: Vec<u8> = pixels.chunks_exact(4).map(|rgba| quantizer.index_of(rgba) as u8).collect();
@@ -34,12 +52,12 @@ pub fn encode(frames: &[Canvas], delay: u16) -> Result<Vec<u8>, EncodingError> {
         let changed: Vec<u8> = indices
             .iter()
             .zip(previous)
-            .map(|(index, before)| if before == Some(index) { unchanged } else { *index })
+            .map(|(index, before)| if before == Some(index) { colors } else { *index })
             .collect();
         encoder.write_frame(&Frame {
             delay,
             dispose: DisposalMethod::Keep,
-            transparent: Some(unchanged),
+            transparent: Some(colors),
             width,
             height,
             buffer: Cow::Owned(changed),
@@ -49,4 +67,29 @@ pub fn encode(frames: &[Canvas], delay: u16) -> Result<Vec<u8>, EncodingError> {
     }
     drop(encoder);
     Ok(film)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dithered_gradient_keeps_its_mean_and_what_is_still_stays_so() {
+        // A gradient of 32 steps with 8 colours: without the pattern it has 8 bands
+        let mut frame = Canvas::new(64, 16, [0; 3]);
+        frame.rectangle((0, 0), (64, 16), |x, _| [(x / 2 * 4) as u8 + 60; 3]);
+        let still = dithered(&frame, 12);
+        assert_eq!(still, dithered(&frame, 12));
+        let mean = |column: usize| {
+            let sum: u32 =
+                (0..16).flat_map(|y| [0, 1].map(|x| u32::from(still[4 * (y * 64 + column + x)]))).sum();
+            f64::from(sum) / 32.0
+        };
+        for column in (0..64).step_by(4) {
+            assert!((mean(column) - f64::from(column as u32 / 2 * 4 + 60)).abs() < 4.0, "{column}");
+        }
+        assert_ne!(still, dithered(&frame, 0));
+        let film = encode(&[frame], 1, Palette { colors: 8, dither: 12 }).unwrap();
+        assert_eq!(&film[..6], b"GIF89a");
+    }
 }

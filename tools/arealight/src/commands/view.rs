@@ -2,6 +2,7 @@
 
 use crate::canvas::Canvas;
 use crate::failure::Failure;
+use crate::film::Palette;
 use crate::gpu;
 use crate::output::{self, print, say_what_is_not_shown};
 use crate::picture::Exposure;
@@ -130,8 +131,9 @@ fn record(
     }
     bar.finish_and_clear();
     let film = folder.join(FILM);
-    let bytes = crate::film::encode(&frames, (100 / arguments.rate) as u16)
-        .map_err(|error| Failure::output(&film, error))?;
+    let bytes =
+        crate::film::encode(&frames, (100 / arguments.rate) as u16, Palette { colors: 255, dither: 6 })
+            .map_err(|error| Failure::output(&film, error))?;
     output::write(&film, &bytes)?;
     eprintln!("wrote {} frames and {}", frames.len(), film.display());
     if arguments.json { print(&format!("{:#}\n", json!({ "frames": said }))) } else { Ok(ExitCode::SUCCESS) }

@@ -287,7 +287,15 @@ impl<'a> Viewer<'a> {
         let effects = self.scene.effects() - Effects::MODEL;
         renderer.visibility()?;
         let time = renderer.shade_by(&SHADE_YARDSTICK, &[(0, effects.bits()), (1, school as u32)])?;
-        self.theirs = Some(Drawn { of, radiance: radiance(renderer)?, time });
+        let mut radiance = radiance(renderer)?;
+        // Lamps are shown as they are: a yardstick has no answer for a point on the light itself
+        let ours = self.ours.as_ref().map_or(&[][..], |drawn| &drawn.radiance);
+        for ((theirs, ours), emission) in radiance.iter_mut().zip(ours).zip(&self.emission) {
+            if *emission != DVec3::ZERO {
+                *theirs = *ours;
+            }
+        }
+        self.theirs = Some(Drawn { of, radiance, time });
         Ok(())
     }
 

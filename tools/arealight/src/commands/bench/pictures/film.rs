@@ -4,6 +4,7 @@
 
 use super::strip::shown;
 use crate::canvas::{Align, Canvas, Colour, LINE};
+use crate::film::Palette;
 use arealight_benches::ladder::{DEFAULT, Pictures};
 use arealight_scene::Scene;
 use gif::EncodingError;
@@ -52,7 +53,7 @@ fn draw(pictures: &Pictures, [x, y, width, height]: [u32; 4]) -> Canvas {
 /// The film as a GIF.
 pub fn encode(pictures: &[Pictures], crop: [u32; 4]) -> Result<Vec<u8>, EncodingError> {
     let frames: Vec<Canvas> = pictures.iter().map(|pictures| draw(pictures, crop)).collect();
-    crate::film::encode(&frames, DELAY)
+    crate::film::encode(&frames, DELAY, Palette { colors: 127, dither: 0 })
 }
 
 #[cfg(test)]
