@@ -6,10 +6,10 @@ use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, LightTexture, Quality};
 use arealight_benches::pictures;
 use arealight_benches::start::start;
-use arealight_benches::tiles::{Baseline, TiledFrame, disks, lamps, markdown, measure, round_lamps};
+use arealight_benches::tiles::{Baseline, TiledFrame, disks, floor, lamps, markdown, measure, round_lamps};
 use arealight_engine::{Engine, SceneRenderer};
 use arealight_oracle::texture::Texture;
-use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_scene::{Scene, SceneBuffers};
 use glam::{DVec3, Vec3};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -21,6 +21,9 @@ const SIZE: [u32; 2] = [640, 360];
 
 /// The size of the floor's picture: as tiles get smaller, bounds get sharper.
 const FLOOR_SIZE: [u32; 2] = [1280, 720];
+
+/// Its width over its height.
+const ASPECT: f64 = FLOOR_SIZE[0] as f64 / FLOOR_SIZE[1] as f64;
 
 /// The side of the floor in metres.
 const FLOOR: f64 = 40.0;
@@ -46,32 +49,6 @@ fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
     Ok(Scene::load(folder.join(name).with_extension("glb"))?)
 }
 
-/// The floor of the sweep by itself, square and of this roughness, without lights.
-fn floor(roughness: f32) -> Result<Scene, Box<dyn Error>> {
-    let mut scene = scene("sweep")?;
-    let floor = scene.materials.iter().position(|material| material.name == "floor").ok_or("a floor")?;
-    scene.triangles.retain(|triangle| triangle.material as usize == floor);
-    let material = &mut scene.materials[floor].material;
-    (material.base_color, material.roughness) = (Vec3::splat(0.5), roughness);
-    let middle = scene.bounds.center();
-    let corners = scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions);
-    for corner in corners {
-        *corner =
-            DVec3::new(corner.x - middle.x, 0.0, corner.z - middle.z).signum().with_y(0.0) * (0.5 * FLOOR);
-    }
-    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
-    let down = DVec3::new(0.0, -1.0, -1.0);
-    scene.cameras = vec![Camera::framing(
-        "from above",
-        scene.bounds,
-        down,
-        DVec3::Y,
-        f64::from(FLOOR_SIZE[0]) / f64::from(FLOOR_SIZE[1]),
-    )];
-    scene.lights.clear();
-    Ok(scene)
-}
-
 fn frame(
     engine: &Engine,
     (name, scene): (&str, &Scene),
@@ -95,7 +72,7 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
     for (kind, are_spheres) in [("disks", false), ("spheres", true)] {
         for cull_threshold in THRESHOLDS {
             for count in ROUND_LAMPS {
-                let mut scene = floor(FLOORS[0].1)?;
+                let mut scene = floor(FLOORS[0].1, FLOOR, ASPECT);
                 scene.lights = round_lamps(count, FLOOR, are_spheres);
                 let against = (TileOptions { cull_threshold, ..TileOptions::default() }, Baseline::Exact);
                 let name = format!("{count} {kind}, threshold {cull_threshold}");
@@ -109,7 +86,7 @@ fn shape_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<d
 /// Frames of textured disks, by one fetch and by four.
 fn image_frames(engine: &Engine, rounds: usize) -> Result<Vec<TiledFrame>, Box<dyn Error>> {
     let mut frames = vec![];
-    let mut scene = floor(FLOORS[0].1)?;
+    let mut scene = floor(FLOORS[0].1, FLOOR, ASPECT);
     scene.lights = disks(DISKS, 0.5 * FLOOR, DISK_HEIGHT, DVec3::ZERO);
     let texture = Some(LightTexture { layer: 0, uvs: vec![] });
     scene.lights.iter_mut().for_each(|disk| disk.texture.clone_from(&texture));
@@ -147,7 +124,7 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
                     TileOptions { cull_threshold, capacity: 512, ..TileOptions::default() },
                     Baseline::Clipless,
                 );
-                let mut scene = floor(roughness)?;
+                let mut scene = floor(roughness, FLOOR, ASPECT);
                 scene.lights = lamps(count, FLOOR, DVec3::ZERO);
                 let rounds = rounds.div_ceil(if count > 100 { 10 } else { 4 });
                 let name = format!("{material}, {count} lamps, threshold {cull_threshold}");

@@ -32,6 +32,7 @@
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
 pub mod budget;
+pub mod clusters;
 pub mod compiled;
 pub mod cost;
 pub mod figures;
@@ -39,6 +40,7 @@ pub mod footprints;
 pub mod furnace;
 pub mod kernel;
 pub mod ladder;
+pub mod many_lights;
 pub mod materials;
 pub mod method;
 pub mod model;

@@ -34,6 +34,10 @@ impl Markers {
         end: "<!-- end: arealight bench furnace -->",
     };
 
+    /// Of [`crate::many_lights`].
+    pub const LIGHTS: Self =
+        Self { begin: "<!-- begin: arealight bench lights -->", end: "<!-- end: arealight bench lights -->" };
+
     /// Of [`crate::shadow_motion`].
     pub const SHADOWS_IN_MOTION: Self = Self {
         begin: "<!-- begin: arealight bench shadows --motion -->",

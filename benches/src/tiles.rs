@@ -13,6 +13,7 @@ use arealight::plan::{ShadeOptions, TileOptions, shade_specialization};
 use arealight::{Effects, Light, LightShape, LightSummary, TileClass};
 use arealight_engine::host::Host;
 use arealight_engine::{EngineError, SceneRenderer, TileCounts};
+use arealight_scene::{Camera, Scene};
 use glam::{DVec3, Vec3, Vec4};
 use std::fmt::Write as _;
 
@@ -125,7 +126,7 @@ pub fn measure(
 }
 
 /// Root mean square over mean, and the largest of a pixel over the pixel.
-fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
+pub(crate) fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
     let (mut squares, mut mean, mut largest) = (0.0, 0.0, 0.0_f64);
     for (truth, found) in truth.iter().map(sum).zip(found.iter().map(sum)) {
@@ -135,6 +136,32 @@ fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     }
     let count = truth.len().max(1) as f64;
     [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
+}
+
+/// A square floor of `side` metres and of this roughness about the origin, in y, which reflects half of what it scatters; and a camera from above
+/// that sees all of it in a picture of `aspect`. Without lights.
+///
+/// # Panics
+/// Never: the scene that its material is of is a part of the program.
+pub fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
+    let sweep = include_bytes!("../../scenes/sweep.glb");
+    let mut scene = Scene::from_bytes(sweep, "floor").expect("the scene in the repository is valid");
+    let floor = scene.materials.iter().position(|material| material.name == "floor");
+    scene.triangles.retain(|triangle| Some(triangle.material as usize) == floor);
+    if let Some(material) = floor.and_then(|floor| scene.materials.get_mut(floor)) {
+        (material.material.base_color, material.material.roughness) = (Vec3::splat(0.5), roughness);
+    }
+    let middle = scene.bounds.center();
+    for corner in scene.triangles.iter_mut().flat_map(|triangle| &mut triangle.positions) {
+        *corner =
+            DVec3::new(corner.x - middle.x, 0.0, corner.z - middle.z).signum().with_y(0.0) * (0.5 * side);
+    }
+    scene.bounds = scene.triangles.iter().flat_map(|triangle| triangle.positions).collect();
+    let down = DVec3::new(0.0, -1.0, -1.0);
+    scene.cameras = vec![Camera::framing("from above", scene.bounds, down, DVec3::Y, aspect)];
+    scene.lights.clear();
+    scene.lamps.clear();
+    scene
 }
 
 /// The middles of as many squares, side by side, as cover one of `side` metres about the origin in x and z, row by row; and their side.

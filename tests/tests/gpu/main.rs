@@ -26,6 +26,7 @@ mod huge_lights;
 mod light_textures;
 mod lobe_horizons;
 mod manifest;
+mod many_lights;
 mod material_frames;
 mod meshes;
 mod modules;

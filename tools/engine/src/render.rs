@@ -185,6 +185,19 @@ impl<'a> SceneRenderer<'a> {
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
+        self.shade_by_lists(kernel, specialization, None)
+    }
+
+    /// As [`SceneRenderer::shade_by`], with a buffer of lists of lights in the place of those of tiles.
+    ///
+    /// # Errors
+    /// As [`SceneRenderer::shade_by`].
+    pub fn shade_by_lists(
+        &mut self,
+        kernel: &'static Kernel,
+        specialization: &[(u32, u32)],
+        lists: Option<&Buffer>,
+    ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let [position, normal, base_color, specular, coat, sheen, anisotropy, _] = self.g_buffer.sampled();
         let resources = [
@@ -202,9 +215,9 @@ impl<'a> SceneRenderer<'a> {
             coat,
             sheen,
             anisotropy,
-            // Shadow rays and tiles, which no frame of these has
+            // Picks of shadow rays, lists, and horizons of lobes: no frame of these has the first and the last
             Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(self.light_buffer.handle()),
+            Resource::buffer(lists.unwrap_or(&self.light_buffer).handle()),
             Resource::buffer(self.light_buffer.handle()),
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;

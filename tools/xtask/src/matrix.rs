@@ -31,6 +31,8 @@ pub struct Arguments {
 enum Tool {
     Glslang,
     Glslc,
+    /// With an option for its optimiser.
+    GlslcOptimised(&'static str),
 }
 
 /// Something to compile.
@@ -169,7 +171,8 @@ fn examples(folder: &Path) -> Result<Vec<Case>, TaskError> {
             Some("frag") => false,
             _ => continue,
         };
-        for tool in [Tool::Glslang, Tool::Glslc] {
+        let optimised = ["-O", "-Os"].map(Tool::GlslcOptimised);
+        for tool in [Tool::Glslang, Tool::Glslc].into_iter().chain(optimised) {
             let (shader, macros) = (shader.clone(), vec![]);
             cases.push(Case { tool, compute, shader, name: "example".into(), macros, lacks: None });
         }
@@ -213,7 +216,11 @@ fn host_bridges(folder: &Path) -> Vec<Case> {
 impl Case {
     fn title(&self) -> String {
         let stage = if self.compute { "compute" } else { "fragment" };
-        let tool = if self.tool == Tool::Glslang { "glslangValidator" } else { "glslc" };
+        let tool = match self.tool {
+            Tool::Glslang => "glslangValidator".to_owned(),
+            Tool::Glslc => "glslc".to_owned(),
+            Tool::GlslcOptimised(option) => format!("glslc {option}"),
+        };
         let file = self.shader.file_name().unwrap_or_default().to_string_lossy();
         format!("{tool}, {stage}: {file}, {}", self.name)
     }
@@ -249,8 +256,11 @@ impl Case {
                 command.arg(format!("-I{}", include.join("../examples").display()));
                 (command, "glslangValidator", "glslang-tools")
             }
-            Tool::Glslc => {
+            Tool::Glslc | Tool::GlslcOptimised(_) => {
                 let mut command = Command::new("glslc");
+                if let Tool::GlslcOptimised(option) = self.tool {
+                    command.arg(option);
+                }
                 let stage = if self.compute { "compute" } else { "fragment" };
                 command.args(["--target-env=vulkan1.1", "-c", &format!("-fshader-stage={stage}"), "-I"]);
                 command.arg(include).arg("-I").arg(include.join("../examples"));
@@ -280,11 +290,18 @@ fn said(output: &Output) -> String {
     (String::from_utf8_lossy(&output.stdout) + String::from_utf8_lossy(&output.stderr)).into_owned()
 }
 
-/// Lets the command line write the library to `folder`, as a user would.
+/// Lets the command line, built here or $AREALIGHT, write the library to `folder`, as a user would.
 fn export(root: &Path, folder: &Path) -> Result<PathBuf, TaskError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let output = Command::new(cargo)
-        .args(["run", "--locked", "--quiet", "-p", "arealight-cli", "--", "export"])
+    let mut command = match std::env::var_os("AREALIGHT") {
+        Some(program) => Command::new(program),
+        None => {
+            let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+            cargo.args(["run", "--locked", "--quiet", "-p", "arealight-cli", "--"]);
+            cargo
+        }
+    };
+    let output = command
+        .arg("export")
         .arg(folder)
         .current_dir(root)
         .output()

@@ -4,6 +4,7 @@ mod compare;
 mod compiled;
 mod furnace;
 mod ladder;
+mod lights;
 mod materials;
 mod page;
 mod pictures;
@@ -39,6 +40,7 @@ enum Bench {
     Compare(compare::Arguments),
     Compiled(compiled::Arguments),
     Furnace(furnace::Arguments),
+    Lights(lights::Arguments),
     Materials(materials::Arguments),
     Pictures(pictures::Arguments),
     Shadows(shadows::Arguments),
@@ -52,6 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         Some(Bench::Compare(arguments)) => compare::run(arguments),
         Some(Bench::Compiled(arguments)) => compiled::run(arguments),
         Some(Bench::Furnace(arguments)) => furnace::run(arguments),
+        Some(Bench::Lights(arguments)) => lights::run(arguments),
         Some(Bench::Materials(arguments)) => materials::run(arguments),
         Some(Bench::Pictures(arguments)) => pictures::run(arguments),
         Some(Bench::Shadows(arguments)) => shadows::run(arguments),

@@ -121,6 +121,11 @@ impl TiledView {
         Ok(lists)
     }
 
+    /// Bytes of the lists.
+    pub fn memory(&self) -> u64 {
+        self.pass.tile_memory(self.size).map_or(0, |memory| memory.size)
+    }
+
     /// What the last run found, of a frame of so many lights of all kinds.
     ///
     /// # Errors

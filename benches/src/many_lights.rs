@@ -1,0 +1,472 @@
+//! A floor under ever more lamps, shaded with all of them, by tiles of the library's, and by clusters of a host's own: time, memory, error.
+
+use crate::clusters::{Clusters, Grid};
+use crate::ladder::frame::processors;
+use crate::ladder::{number, percent};
+use crate::svg::{Axis, Drawing, FILE_STYLE, grid, number_short};
+use crate::table::Table;
+use crate::textures::{clocked, is_software};
+use crate::tiles::{difference, floor, lamps};
+use arealight::kernels::{Kernel, SHADE, constant};
+use arealight::plan::{Output, ShadeOptions, TileOptions, shade_specialization};
+use arealight::reach::DIFFUSE_DENSITY;
+use arealight::{LightTable, PackedLights, SpecularLobes};
+use arealight_engine::host::Host;
+use arealight_engine::{Engine, EngineError, SceneRenderer, TiledView};
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_vk::TableFormat;
+use glam::{DVec3, Vec3, Vec4};
+use serde::Serialize;
+use std::time::Instant;
+
+/// The shade kernel over the lights of clusters.
+pub static SHADE_CLUSTERS: Kernel = Kernel {
+    constants: &[
+        constant::EFFECTS,
+        constant::FORM_FACTOR,
+        constant::POSITION_SOURCE,
+        constant::OUTPUT,
+        constant::HORIZON,
+        constant::SPECULAR_LOBES,
+        constant::LOBES,
+        constant::FOOTPRINT,
+        constant::HAS_QUADS,
+        constant::LAYOUT,
+        constant::SHADOW_RAYS,
+        constant::VIEW,
+    ],
+    ..SHADE.like("shade_clusters", include_bytes!("../spirv/shade_clusters.spv"))
+};
+
+/// What to measure.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// How many lamps there are.
+    pub counts: Vec<usize>,
+    /// The picture in pixels.
+    pub size: [u32; 2],
+    /// Of the floor.
+    pub roughness: f32,
+    /// Runs of which the fastest counts; of frames with all of many lights one.
+    pub rounds: u32,
+    /// How lights come to a pixel; all of them first, which the others are held against.
+    pub ways: Vec<Way>,
+}
+
+impl Default for Options {
+    /// 10 to 10,000 lamps over concrete, every way.
+    fn default() -> Self {
+        Self {
+            counts: vec![10, 100, 1000, 10_000],
+            size: [640, 360],
+            roughness: 0.9,
+            rounds: 3,
+            ways: WAYS.to_vec(),
+        }
+    }
+}
+
+/// How lights come to a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way {
+    /// All of them.
+    All,
+    /// By tiles, which cull so much of a pixel's radiance: [`TileOptions::cull_threshold`].
+    Tiles(f32),
+    /// By clusters, out of which a light is kept that reflects less than so much of the picture's mean.
+    Clusters(f64),
+}
+
+/// What is compared.
+pub const WAYS: [Way; 5] =
+    [Way::All, Way::Tiles(0.01), Way::Tiles(0.1), Way::Clusters(0.03), Way::Clusters(0.3)];
+
+impl Way {
+    /// Its name in tables and charts.
+    pub fn name(self) -> String {
+        match self {
+            Self::All => "all".to_owned(),
+            Self::Tiles(threshold) => format!("tiles, {threshold}"),
+            Self::Clusters(part) => format!("clusters, {part}"),
+        }
+    }
+}
+
+/// What was found of a frame.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// How many lamps there are.
+    pub lamps: usize,
+    /// How they come to a pixel.
+    pub way: String,
+    /// The mean over the pixels of the floor of the lights that each is shaded with.
+    pub lights_per_pixel: f64,
+    /// Milliseconds of the device, with the lists where it makes them.
+    pub milliseconds: f64,
+    /// Milliseconds of one processor that fills the lists, where that does.
+    pub fill_milliseconds: Option<f64>,
+    /// What the lists take.
+    pub bytes: u64,
+    /// The difference from the picture with all lights: root mean square over mean.
+    pub rmse: f64,
+    /// The largest difference of a pixel over that pixel.
+    pub largest: f64,
+}
+
+/// Frames of every number of lamps, by every way.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ManyLights {
+    /// The device's name.
+    pub device: String,
+    /// The picture in pixels.
+    pub size: [u32; 2],
+    /// Columns, rows and slices of the clusters.
+    pub clusters: [u32; 3],
+    /// What was found.
+    pub rows: Vec<Row>,
+}
+
+/// The side of the floor in metres.
+const FLOOR: f64 = 40.0;
+
+/// The most lights that a tile's list holds.
+const CAPACITY: u32 = 8192;
+
+/// The clusters: 32 pixels a side at the default size.
+const CLUSTERS: [u32; 3] = [20, 12, 16];
+
+/// How many steps `run` reports.
+pub fn steps(options: &Options) -> u64 {
+    (options.counts.len() * options.ways.len()) as u64
+}
+
+/// Shades every frame by every way.
+///
+/// # Errors
+/// [`EngineError`] where the device fails or its memory is too small.
+pub fn run(
+    host: &Host,
+    table: &LightTable,
+    options: &Options,
+    progress: &dyn Fn(u64),
+) -> Result<ManyLights, EngineError> {
+    let engine = Engine::new(host.clone(), table, TableFormat::default())?;
+    let mut rows = vec![];
+    for count in &options.counts {
+        let aspect = f64::from(options.size[0]) / f64::from(options.size[1]);
+        let mut scene = floor(options.roughness, FLOOR, aspect);
+        scene.lights = lamps(*count, FLOOR, DVec3::ZERO);
+        let mut frame = Frame::new(&engine, table, &scene, options)?;
+        for way in &options.ways {
+            rows.push(frame.measure(*way)?);
+            progress(1);
+        }
+    }
+    Ok(ManyLights { device: host.device_name(), size: options.size, clusters: CLUSTERS, rows })
+}
+
+/// A floor under lamps.
+struct Frame<'a> {
+    host: &'a Host,
+    scene: &'a Scene,
+    camera: Camera,
+    shade: ShadeOptions,
+    /// Of the floor's lobes, in 1/sr.
+    density: f64,
+    options: &'a Options,
+    renderer: SceneRenderer<'a>,
+    origin: DVec3,
+    /// The picture with all lights, once it is known.
+    exact: Vec<Vec4>,
+}
+
+impl<'a> Frame<'a> {
+    fn new(
+        engine: &'a Engine,
+        table: &LightTable,
+        scene: &'a Scene,
+        options: &'a Options,
+    ) -> Result<Self, EngineError> {
+        let camera = scene.framing_camera(1.0);
+        let camera = scene.cameras.first().cloned().unwrap_or(camera);
+        let buffers = SceneBuffers::new(scene, camera.position)?;
+        let constants = buffers.constants(&camera, options.size, Vec3::ZERO);
+        let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
+        let shade =
+            ShadeOptions { surfaces: scene.effects(), output: Output::Overwrite, ..ShadeOptions::default() };
+        let density =
+            DIFFUSE_DENSITY + table.lobe_density(SpecularLobes::default(), options.roughness.into());
+        let (host, origin) = (engine.host(), buffers.origin);
+        Ok(Self { host, scene, camera, shade, density, options, renderer, origin, exact: vec![] })
+    }
+
+    fn measure(&mut self, way: Way) -> Result<Row, EngineError> {
+        let (mut fill_milliseconds, mut bytes) = (None, 0);
+        let (seconds, lights_per_pixel) = match way {
+            Way::All => {
+                // Where that takes long one run is enough: a pipeline is there from fewer lamps
+                let rounds = if self.scene.lights.len() > 1000 { 1 } else { self.options.rounds };
+                let seconds = self.fastest(rounds, SceneRenderer::shade_as)?;
+                self.exact = self.renderer.radiance()?;
+                (seconds, self.scene.lights.len() as f64)
+            }
+            Way::Tiles(cull_threshold) => {
+                let capacity = CAPACITY.min(self.scene.lights.len() as u32);
+                let tiles = TileOptions { cull_threshold, capacity, ..TileOptions::default() };
+                let view = self.renderer.tiled(self.shade, tiles)?;
+                let seconds = self.fastest(self.options.rounds, |renderer, _| renderer.shade_tiled(&view))?;
+                bytes = view.memory();
+                (seconds, self.lights_by_tiles(&view)?)
+            }
+            Way::Clusters(part) => {
+                let began = Instant::now();
+                let clusters = self.clusters(part * self.mean());
+                fill_milliseconds = Some(began.elapsed().as_secs_f64() * 1e3);
+                let words = clusters.words(&self.record_of()?);
+                bytes = size_of_val(&words[..]) as u64;
+                let lists = self.host.storage_buffer("cluster lists", &words)?;
+                let mut specialization = shade_specialization(self.shade, self.renderer.lights());
+                specialization.retain(|(id, _)| SHADE_CLUSTERS.constants.contains(id));
+                let seconds = self.fastest(self.options.rounds, |renderer, _| {
+                    renderer.shade_by_lists(&SHADE_CLUSTERS, &specialization, Some(&lists))
+                })?;
+                (seconds, self.lights_by_clusters(&clusters))
+            }
+        };
+        let [rmse, largest] = difference(&self.exact, &self.renderer.radiance()?);
+        // On a software device seconds are of all its processors
+        let processors = if is_software(self.host) { processors() } else { 1.0 };
+        Ok(Row {
+            lamps: self.scene.lights.len(),
+            way: way.name(),
+            lights_per_pixel,
+            milliseconds: seconds * 1e3 / processors,
+            fill_milliseconds,
+            bytes,
+            rmse,
+            largest,
+        })
+    }
+
+    /// Seconds of the fastest of some runs, the first of which makes pipelines.
+    fn fastest(
+        &mut self,
+        rounds: u32,
+        mut run: impl FnMut(
+            &mut SceneRenderer<'a>,
+            ShadeOptions,
+        ) -> Result<Option<std::time::Duration>, EngineError>,
+    ) -> Result<f64, EngineError> {
+        let (host, shade) = (self.host, self.shade);
+        self.renderer.visibility()?;
+        let mut fastest = f64::INFINITY;
+        for _ in 0..rounds {
+            fastest = fastest.min(clocked(host, || run(&mut self.renderer, shade))?);
+        }
+        Ok(fastest)
+    }
+
+    /// The mean radiance of the floor, of a channel.
+    fn mean(&self) -> f64 {
+        let lit = self.exact.iter().filter(|pixel| pixel.w != 0.0);
+        let (sum, count) = lit.fold((0.0, 0.0), |(sum, count), pixel| {
+            (sum + f64::from(pixel.truncate().element_sum()) / 3.0, count + 1.0)
+        });
+        sum / f64::max(count, 1.0)
+    }
+
+    fn clusters(&self, threshold: f64) -> Clusters {
+        let grid = Grid { counts: CLUSTERS, size: self.options.size };
+        // As deep as the scene is
+        let depth = |corner: DVec3| (corner - self.camera.position).dot(self.camera.forward);
+        let depths = self.scene.bounds.corners().map(depth);
+        let (near, far) = depths
+            .iter()
+            .fold((f64::INFINITY, 0.0_f64), |(near, far), depth| (near.min(*depth), far.max(*depth)));
+        let far = far.max(1e-3);
+        let depths = [near.max(0.01 * far), far];
+        Clusters::fill(&self.scene.lights, &self.camera, grid, depths, (threshold, self.density))
+    }
+
+    /// Which record each light became.
+    fn record_of(&self) -> Result<Vec<u32>, EngineError> {
+        let packed = PackedLights::new(&self.scene.lights, self.origin)?;
+        let mut record_of = vec![0; self.scene.lights.len()];
+        for (record, light) in (0..).zip(&packed.order) {
+            record_of[*light as usize] = record;
+        }
+        Ok(record_of)
+    }
+
+    /// The pixels of the floor.
+    fn pixels(&self) -> impl Iterator<Item = [u32; 2]> {
+        let width = self.options.size[0] as usize;
+        let lit = self.exact.iter().enumerate().filter(|(_, pixel)| pixel.w != 0.0);
+        lit.map(move |(index, _)| [(index % width) as u32, (index / width) as u32])
+    }
+
+    fn lights_by_tiles(&self, view: &TiledView) -> Result<f64, EngineError> {
+        let lists = view.lists()?;
+        let all = self.scene.lights.len();
+        let count =
+            |[x, y]: [u32; 2]| lists.lights([x / 8, y / 8]).map_or(all, |[lights, _]| lights.len()) as f64;
+        Ok(mean(self.pixels().map(count)))
+    }
+
+    fn lights_by_clusters(&self, clusters: &Clusters) -> f64 {
+        let [width, height] = self.options.size.map(f64::from);
+        let count = |pixel: [u32; 2]| {
+            let at = [(f64::from(pixel[0]) + 0.5) / width, (f64::from(pixel[1]) + 0.5) / height];
+            let direction = self.camera.direction([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], width / height);
+            // The floor is where y is 0
+            let position = self.camera.position - direction * (self.camera.position.y / direction.y);
+            clusters.at(&self.camera, pixel, position).len() as f64
+        };
+        mean(self.pixels().map(count))
+    }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / f64::max(count, 1.0)
+}
+
+impl ManyLights {
+    fn table(&self) -> Table {
+        let heads =
+            ["lamps", "shaded by", "lights a pixel", "ms", "of the CPU, ms", "lists, KB", "RMSE", "largest"];
+        let mut before = 0;
+        let row = |row: &Row| {
+            // A number once, where its rows begin
+            let lamps = if before == row.lamps { String::new() } else { row.lamps.to_string() };
+            before = row.lamps;
+            let error = |error: f64| if row.way == "all" { String::new() } else { percent(error) };
+            vec![
+                lamps,
+                row.way.clone(),
+                number(row.lights_per_pixel),
+                number(row.milliseconds),
+                row.fill_milliseconds.map_or_else(String::new, number),
+                if row.bytes == 0 { String::new() } else { (row.bytes / 1000).to_string() },
+                error(row.rmse),
+                error(row.largest),
+            ]
+        };
+        Table {
+            heads: heads.into_iter().map(String::from).collect(),
+            rows: self.rows.iter().map(row).collect(),
+        }
+    }
+
+    /// For a terminal.
+    pub fn to_text(&self) -> String {
+        let [width, height] = self.size;
+        format!("{}: {width} x {height} pixels\n\n{}", self.device, self.table().to_text())
+    }
+
+    /// A section of a document. `command` is what made it.
+    pub fn to_markdown(&self, command: &str) -> String {
+        let ([width, height], [columns, rows, slices]) = (self.size, self.clusters);
+        format!(
+            "By `{command}` on {}: {width} x {height} pixels, {columns} x {rows} x {slices} clusters.\n\n{}",
+            self.device,
+            self.table().to_markdown()
+        )
+    }
+
+    /// Time and error over the number of lamps.
+    pub fn to_svg(&self) -> String {
+        const SIZE: [f64; 2] = [960.0, 400.0];
+        let mut drawing = Drawing::new(
+            SIZE[0],
+            SIZE[1],
+            "Time and error over the number of lights, with all of them, by tiles and by clusters",
+        );
+        drawing.bar("paper", [0.0, 0.0], SIZE);
+        let device = self.device.split(" (").next().unwrap_or_default();
+        let time = format!("milliseconds on {device}, over lamps");
+        self.panel(&mut drawing, [60.0, 30.0, 390.0, 340.0], &time, &number_short, |row| row.milliseconds);
+        let error = "difference from all lights, RMSE over mean, over lamps";
+        self.panel(&mut drawing, [540.0, 30.0, 830.0, 340.0], error, &percent, |row| row.rmse);
+        drawing.into_file(FILE_STYLE)
+    }
+
+    /// A chart of a value of each way that has one, with their names at the lines' ends.
+    fn panel(
+        &self,
+        drawing: &mut Drawing,
+        bounds: [f64; 4],
+        title: &str,
+        name: &dyn Fn(f64) -> String,
+        value: impl Fn(&Row) -> f64,
+    ) {
+        let rows = || self.rows.iter().filter(|row| value(row) > 0.0);
+        let x = Axis::over(rows().map(|row| row.lamps as f64), bounds[0], bounds[2]);
+        let y = Axis::over(rows().map(&value), bounds[3], bounds[1]);
+        grid(drawing, &x, &y, bounds, name);
+        drawing.text("", "middle", [f64::midpoint(bounds[0], bounds[2]), bounds[3] + 40.0], title);
+        let mut ends: Vec<(f64, f64, String)> = vec![];
+        for way in WAYS {
+            let class = match way {
+                Way::All => "noise",
+                Way::Tiles(_) => "ours",
+                Way::Clusters(_) => "theirs",
+            };
+            let points: Vec<[f64; 2]> = rows()
+                .filter(|row| row.way == way.name())
+                .map(|row| [x.at(row.lamps as f64), y.at(value(row))])
+                .collect();
+            drawing.path(&format!("line-{class}"), &points);
+            for (point, row) in points.iter().zip(rows().filter(|row| row.way == way.name())) {
+                drawing.dot(
+                    class,
+                    *point,
+                    &format!("{} lamps, {}: {}", row.lamps, row.way, name(value(row))),
+                );
+            }
+            ends.extend(points.last().map(|[x, y]| (*x, *y, way.name())));
+        }
+        // Names beside the ends, a line apart at least
+        ends.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let mut lowest = f64::NEG_INFINITY;
+        for (x, y, name) in ends {
+            lowest = y.max(lowest + 14.0);
+            drawing.text("", "start", [x + 10.0, lowest + 4.0], &name);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found() -> ManyLights {
+        let row = |lamps: usize, way: Way| Row {
+            lamps,
+            way: way.name(),
+            lights_per_pixel: 2.5,
+            milliseconds: lamps as f64,
+            fill_milliseconds: matches!(way, Way::Clusters(_)).then_some(0.5),
+            bytes: if way == Way::All { 0 } else { 12_345 },
+            rmse: if way == Way::All { 0.0 } else { 0.012 },
+            largest: 0.03,
+        };
+        let rows = [10, 100].into_iter().flat_map(|lamps| WAYS.map(|way| row(lamps, way))).collect();
+        ManyLights { device: "a device (driver)".to_owned(), size: [64, 36], clusters: CLUSTERS, rows }
+    }
+
+    #[test]
+    fn tables_and_charts_have_every_way() {
+        let found = found();
+        let (text, svg) = (found.to_markdown("command"), found.to_svg());
+        for way in WAYS {
+            assert!(
+                text.contains(&format!("| {} |", way.name())) && svg.contains(&way.name()),
+                "{}",
+                way.name()
+            );
+        }
+        assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
+        assert!(text.contains("| 0.50 | 12 | 1.20 % | 3.00 % |"), "{text}");
+    }
+}

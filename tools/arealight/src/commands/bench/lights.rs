@@ -1,0 +1,71 @@
+//! `arealight bench lights`
+
+use super::{Ends, document, write};
+use crate::commands::render::parse_size;
+use crate::failure::Failure;
+use crate::{output, progress};
+use arealight_benches::many_lights::{self, Options};
+use arealight_benches::sections::Markers;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Measure what many lights cost: a floor under 10 to 10,000 lamps, shaded with all of them, by tiles and by clusters of a host's own.
+///
+/// Tiles cull a stated fraction of a pixel's radiance; clusters get the lights that may reflect more than a stated fraction of the picture's mean into them.
+/// Errors are against the picture with all lights.
+#[derive(clap::Args)]
+pub struct Arguments {
+    /// How many lamps there are.
+    #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_values_t = Options::default().counts, value_parser = parse_count)]
+    lamps: Vec<usize>,
+    /// The picture in pixels.
+    #[arg(long, value_name = "WxH", default_value = "640x360", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Roughness of the floor, in [0.1, 1].
+    #[arg(long, value_name = "R", default_value_t = Options::default().roughness, value_parser = parse_roughness)]
+    roughness: f32,
+    /// Runs of each frame, of which the fastest counts.
+    #[arg(long, value_name = "N", default_value_t = Options::default().rounds, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    rounds: u32,
+    /// Write a chart of time and error as SVG.
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+    #[command(flatten)]
+    ends: Ends,
+}
+
+fn parse_count(text: &str) -> Result<usize, String> {
+    let count = text.trim().parse().ok().filter(|count| (1..=100_000).contains(count));
+    count.ok_or_else(|| "must be a number from 1 to 100000".to_owned())
+}
+
+fn parse_roughness(text: &str) -> Result<f32, String> {
+    let roughness = text.parse().ok().filter(|roughness| (0.1..=1.0).contains(roughness));
+    roughness.ok_or_else(|| "must be a number from 0.1 to 1".to_owned())
+}
+
+pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
+    let Arguments { lamps, size, roughness, rounds, svg, ends } = arguments;
+    svg.as_deref().map_or(Ok(()), output::check)?;
+    let host = ends.host()?;
+    let options = Options {
+        counts: lamps.clone(),
+        size: *size,
+        roughness: *roughness,
+        rounds: *rounds,
+        ..Options::default()
+    };
+    let bar = progress::bar(many_lights::steps(&options), "frames");
+    let found = many_lights::run(&host, &arealight_table::ggx(), &options, &|count| bar.inc(count));
+    bar.finish_and_clear();
+    let found = found.map_err(|error| Failure::Device(error.to_string()))?;
+
+    let section =
+        found.to_markdown("arealight bench lights --markdown docs/tiles.md --svg docs/images/lights.svg");
+    let whole = ends.markdown.as_deref().map(|path| document(path, Markers::LIGHTS, &section));
+    if let Some(path) = svg {
+        write(path, &found.to_svg())?;
+    }
+    ends.report(&found, &whole.unwrap_or_default(), &found.to_text())?;
+    Ok(ExitCode::SUCCESS)
+}
