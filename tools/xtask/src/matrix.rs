@@ -292,13 +292,12 @@ fn said(output: &Output) -> String {
 
 /// Lets the command line, built here or $AREALIGHT, write the library to `folder`, as a user would.
 fn export(root: &Path, folder: &Path) -> Result<PathBuf, TaskError> {
-    let mut command = match std::env::var_os("AREALIGHT") {
-        Some(program) => Command::new(program),
-        None => {
-            let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-            cargo.args(["run", "--locked", "--quiet", "-p", "arealight-cli", "--"]);
-            cargo
-        }
+    let mut command = if let Some(program) = std::env::var_os("AREALIGHT") {
+        Command::new(program)
+    } else {
+        let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+        cargo.args(["run", "--locked", "--quiet", "-p", "arealight-cli", "--"]);
+        cargo
     };
     let output = command
         .arg("export")
