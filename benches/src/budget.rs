@@ -24,7 +24,7 @@ impl ProfileLevel {
     }
 }
 
-/// What was measured on a device: `arealight bench --json` writes it.
+/// What was measured on a device: `arealight bench --save` writes it.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Profile {
     /// The device's name.
@@ -75,7 +75,7 @@ pub enum BudgetError {
         value: f64,
     },
     /// Nothing was measured for such lights.
-    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --json`", if *.textured { "that are textured" } else { "of one colour" })]
+    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --save`", if *.textured { "that are textured" } else { "of one colour" })]
     NoLevel {
         /// The device.
         device: String,

@@ -5,14 +5,14 @@ use arealight_benches::budget::{Budget, FrameLoad, Limit, ProfileLevel};
 use arealight_benches::ladder::Ladder;
 use std::path::{Path, PathBuf};
 
-/// Reads what `arealight bench --json FILE` wrote.
+/// Reads what `arealight bench --save FILE` wrote.
 ///
 /// # Errors
 /// A file that cannot be read, or is something else.
 pub fn read_profile(path: &Path) -> Result<Ladder, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
     serde_json::from_str(&text).map_err(|error| {
-        Failure::input(path, format!("{error}; write one with `arealight bench --json {}`", path.display()))
+        Failure::input(path, format!("{error}; write one with `arealight bench --save {}`", path.display()))
     })
 }
 
@@ -25,7 +25,7 @@ pub struct BudgetArguments {
     /// Shade on the fastest level that errs no more, as root of the mean square over the mean
     #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "specular_lobes", "lobes", "footprint"])]
     max_error: Option<f64>,
-    /// What `arealight bench --json FILE` measured on this device
+    /// What `arealight bench --save FILE` measured on this device
     #[arg(long, value_name = "FILE")]
     profile: Option<PathBuf>,
 }

@@ -41,6 +41,26 @@ pub fn check(path: &Path) -> Result<(), Failure> {
     Output::open(path).map(drop).map_err(|error| Failure::output(path, error))
 }
 
+/// What stands for standard input and output among paths.
+pub const STREAM: &str = "-";
+
+/// Whether a path stands for a standard stream.
+pub fn is_stream(path: &Path) -> bool {
+    path == Path::new(STREAM)
+}
+
+/// Says what was done: on standard output, or on standard error where the work's own output, at `path`, goes to standard output.
+///
+/// # Errors
+/// As [`print`].
+pub fn say_beside(path: Option<&Path>, text: &str) -> Result<ExitCode, Failure> {
+    if path.is_some_and(is_stream) {
+        eprint!("{text}");
+        return Ok(ExitCode::SUCCESS);
+    }
+    print(text)
+}
+
 /// Writes a file: a reader sees what was there before or all of what is new, also if the disk is full or the program ends.
 ///
 /// # Errors
@@ -56,10 +76,15 @@ enum Output {
     Beside(NamedTempFile, PathBuf),
     /// A device or a pipe, which cannot be replaced.
     There(File),
+    /// Standard output.
+    Stream,
 }
 
 impl Output {
     fn open(path: &Path) -> io::Result<Self> {
+        if is_stream(path) {
+            return Ok(Self::Stream);
+        }
         // A link stays, and what it leads to is replaced
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         let there = std::fs::metadata(&path).ok();
@@ -89,6 +114,11 @@ impl Output {
     fn write(self, bytes: &[u8]) -> io::Result<()> {
         match self {
             Self::There(mut file) => file.write_all(bytes),
+            Self::Stream => {
+                let mut out = io::stdout().lock();
+                out.write_all(bytes)?;
+                out.flush()
+            }
             Self::Beside(mut temporary, path) => {
                 temporary.write_all(bytes)?;
                 temporary.as_file().sync_all()?;

@@ -102,8 +102,11 @@ impl Picture {
         }
     }
 
-    /// The format that a path's ending names: ask before long work.
+    /// The format that a path's ending names, PNG for standard output: ask before long work.
     pub fn check_format(path: &Path) -> Result<Format, Failure> {
+        if output::is_stream(path) {
+            return Ok(Format::Png);
+        }
         match path.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
             Some("exr") => Ok(Format::Exr),
             Some("png") => Ok(Format::Png),

@@ -420,3 +420,27 @@ fn thousands_of_cases_are_answered_each_like_the_one_it_repeats() {
         assert_eq!(answer["radiance"], first["radiance"], "{}", first["name"]);
     }
 }
+
+#[test]
+fn cases_and_answers_go_through_pipes() {
+    use std::io::Write as _;
+    let (cases, truth) = (reference("cases.json"), reference("truth.json"));
+    let plain = eval(&[&cases, "--on", "oracle"]);
+    assert!(plain.status.success());
+    let mut piped = Command::new(env!("CARGO_BIN_EXE_arealight"))
+        .args(["eval", "-", "--on", "oracle", "--against", &truth, "-o", "-"])
+        // Images of lights are beside the file, or where the program runs
+        .current_dir(Path::new(&cases).parent().unwrap())
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    piped.stdin.take().unwrap().write_all(&std::fs::read(&cases).unwrap()).unwrap();
+    let piped = piped.wait_with_output().unwrap();
+    let said = text(&piped.stderr);
+    assert!(piped.status.success(), "{said}");
+    // Answers and nothing else on one stream, how far they are on the other
+    assert!(piped.stdout == plain.stdout, "{} bytes, not {}", piped.stdout.len(), plain.stdout.len());
+    assert!(said.contains("family") && said.contains("worst"), "{said}");
+}

@@ -68,7 +68,7 @@ fn a_path_that_cannot_be_written_is_said_before_the_work() {
     let cases = cases();
     for arguments in [
         &["bench", "--html", "missing/report.html"][..],
-        &["bench", "--json", "missing/report.json"],
+        &["bench", "--save", "missing/report.json"],
         &["bench", "stability", "--svg", "missing/chart.svg"],
         &["bench", "shadows", "--markdown", "missing/page.md"],
         &["fit", "-o", "missing/table.exr"],
@@ -114,7 +114,7 @@ fn what_is_interrupted_leaves_the_old_file() {
     for signal in ["INT", "TERM"] {
         // Minutes of work
         let mut child = Command::new(env!("CARGO_BIN_EXE_arealight"))
-            .args(["bench", "stability", "--samples", "1000000", "--json", "picture.exr"])
+            .args(["bench", "stability", "--samples", "1000000", "--save", "picture.exr"])
             .current_dir(folder.path())
             .stdout(std::process::Stdio::null())
             .stderr(std::process::Stdio::null())
@@ -128,4 +128,19 @@ fn what_is_interrupted_leaves_the_old_file() {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "old", "{signal}");
         assert_eq!(names(folder.path()), ["picture.exr"], "{signal}");
     }
+}
+
+#[test]
+fn a_picture_goes_through_a_pipe() {
+    if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["render", "--size", "32x18", "--supersample", "1", "-o", "-"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let picture = image::load_from_memory_with_format(&output.stdout, image::ImageFormat::Png).unwrap();
+    assert_eq!((picture.width(), picture.height()), (32, 18));
+    assert!(said.contains("picture  - (32x18"), "{said}");
+    assert_eq!(names(folder.path()), [""; 0]);
 }

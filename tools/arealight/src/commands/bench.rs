@@ -68,9 +68,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 struct Ends {
     #[command(flatten)]
     device: gpu::DeviceArgument,
-    /// Write JSON; `-` prints it instead of the tables. Numbers that are not finite are null.
-    #[arg(long, value_name = "FILE|-")]
-    json: Option<PathBuf>,
+    /// Print JSON instead of the tables. Numbers that are not finite are null.
+    #[arg(long)]
+    json: bool,
+    /// Write that JSON.
+    #[arg(long, value_name = "FILE")]
+    save: Option<PathBuf>,
     /// Write the tables as Markdown.
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
@@ -79,8 +82,7 @@ struct Ends {
 impl Ends {
     /// The device, when it is known that every file can be written.
     fn host(&self) -> Result<Host, Failure> {
-        let json = self.json.as_deref().filter(|path| *path != Path::new("-"));
-        json.into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
+        self.save.as_deref().into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
         let options = HostOptions { device: self.device.device.clone(), ..HostOptions::default() };
         Host::new(options).map_err(|error| Failure::Device(error.to_string()))
     }
@@ -92,12 +94,10 @@ impl Ends {
         }
         // Strings and numbers, with strings for keys, always serialise
         let json = || serde_json::to_string_pretty(found).unwrap_or_default() + "\n";
-        match self.json.as_deref() {
-            Some(path) if path == Path::new("-") => return print(&json()).map(drop),
-            Some(path) => write(path, &json())?,
-            None => {}
+        if let Some(path) = &self.save {
+            write(path, &json())?;
         }
-        print(text).map(drop)
+        if self.json { print(&json()) } else { print(text) }.map(drop)
     }
 }
 

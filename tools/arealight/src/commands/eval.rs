@@ -1,7 +1,7 @@
 //! `arealight eval`
 
 use crate::failure::Failure;
-use crate::output::{self, print};
+use crate::output::{self, print, say_beside};
 use crate::quality::QualityArguments;
 use crate::{gpu, progress, visible};
 use arealight::{Footprint, FormFactor, Quality, SpecularLobes};
@@ -28,9 +28,9 @@ use std::time::Instant;
 /// Answer a file of shading points, and measure answers against known radiance.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The shading points; the format is described in tests/data/reference/README.md.
+    /// The shading points, `-` for standard input (images of lights are in the working folder then); the format is described in tests/data/reference/README.md.
     cases: PathBuf,
-    /// Where the answers go. Without it and without --against they are printed.
+    /// Where the answers go, `-` for standard output. Without it and without --against they are printed.
     #[arg(short, long, value_name = "OUT.json")]
     output: Option<PathBuf>,
     /// What answers.
@@ -100,7 +100,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     match &arguments.output {
         Some(path) => {
             output::write(path, text.as_bytes())?;
-            eprintln!("wrote {}", path.display());
+            if !output::is_stream(path) {
+                eprintln!("wrote {}", path.display());
+            }
         }
         None if known.is_none() => return print(&text),
         None => {}
@@ -112,7 +114,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         None => None,
     };
     let summary = Summary { method: arguments.on, answers: &answers, seconds, measures: measures.as_deref() };
-    print(&if arguments.json { summary.to_json() } else { summary.to_text() })?;
+    say_beside(
+        arguments.output.as_deref(),
+        &if arguments.json { summary.to_json() } else { summary.to_text() },
+    )?;
 
     // Compare
     match arguments.tolerance.and_then(|tolerance| complaint(measures.as_deref()?, tolerance)) {
@@ -125,7 +130,12 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 }
 
 fn read<T>(path: &Path, parse: impl Fn(&str) -> Result<T, CaseError>) -> Result<T, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    let text = if output::is_stream(path) {
+        std::io::read_to_string(std::io::stdin())
+    } else {
+        std::fs::read_to_string(path)
+    };
+    let text = text.map_err(|error| Failure::input(path, error))?;
     parse(&text).map_err(|error| Failure::input(path, error))
 }
 

@@ -19,6 +19,7 @@ pub mod colour;
 mod entries;
 mod error_maps;
 mod errors;
+mod fit_error;
 mod lobes;
 mod panel;
 mod pyramid;
@@ -174,6 +175,9 @@ struct Summary<'a> {
 impl Summary<'_> {
     fn to_text(&self) -> String {
         let (size, description) = (self.table.size(), self.table.description());
+        let fit_error = fit_error::lines(self.fit_error.unwrap_or("not said"));
+        // Text of a file that may be anybody's must not steer the terminal
+        let fit_error: Vec<String> = fit_error.iter().map(|line| line.escape_debug().to_string()).collect();
         let mut text = format!(
             "{}\n\
              brdf           {}\n\
@@ -185,10 +189,9 @@ impl Summary<'_> {
              normalisation  {}\n\
              size           {size} x {size} nodes, {} KiB as float32\n\n",
             self.name,
-            // Text of a file that may be anybody's must not steer the terminal
             description.brdf.escape_debug(),
             description.made_by.escape_debug(),
-            self.fit_error.unwrap_or("not said").escape_debug(),
+            fit_error.join("\n               "),
             arealight_table::FORMAT,
             arealight_table::VERSION,
             arealight_table::AXES,
@@ -250,6 +253,7 @@ impl Summary<'_> {
             "brdf": self.table.description().brdf,
             "made_by": self.table.description().made_by,
             "fit_error": self.fit_error,
+            "fit_errors": self.fit_error.map(fit_error::to_json),
             "format": arealight_table::FORMAT,
             "version": arealight_table::VERSION,
             "axes": arealight_table::AXES,

@@ -6,7 +6,7 @@ mod shading;
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
-use crate::output::{self, print, say_what_is_not_shown};
+use crate::output::{self, say_beside, say_what_is_not_shown};
 use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
@@ -29,7 +29,7 @@ use std::time::Duration;
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
-    /// The picture: .png (exposed and tone-mapped) or .exr (radiance); out/SCENE.png if absent
+    /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output; out/SCENE.png if absent
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
@@ -222,7 +222,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         outcome: &outcome,
         output: &output,
     };
-    print(&if arguments.json { summary.to_json() } else { summary.to_text() })
+    say_beside(Some(&output), &if arguments.json { summary.to_json() } else { summary.to_text() })
 }
 
 /// A part of a pixel.

@@ -7,7 +7,7 @@ use arealight_benches::ladder::compare;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Compare two runs of `arealight bench --json`.
+/// Compare two runs of `arealight bench --save`.
 ///
 /// Two errors agree where they are the same to the digits that are shown, two times where their quartiles overlap. Printed are
 /// the numbers that do not agree. Exit code 1 where there are any.
