@@ -7,10 +7,11 @@ use gltf::json;
 use std::collections::BTreeSet;
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
-const READ: [&str; 15] = [
+const READ: [&str; 16] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
+    crate::punctual::NAME,
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
@@ -26,13 +27,12 @@ const READ: [&str; 15] = [
 ];
 
 /// What a scene is shown without, with a warning, also where a file requires it; and every other `KHR_materials` extension.
-const COSTS_LOOKS: [&str; 9] = [
+const COSTS_LOOKS: [&str; 8] = [
     "EXT_lights_ies",
     "EXT_lights_image_based",
     "KHR_animation_pointer",
     "KHR_audio_emitter",
     "KHR_interactivity",
-    "KHR_lights_punctual",
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "MSFT_lod",
@@ -121,7 +121,6 @@ pub(crate) fn warn_of_unread(loader: &mut Loader) {
 /// What a scene lacks without an extension.
 fn loss(name: &str) -> &'static str {
     match name {
-        "KHR_lights_punctual" => "points have no area: these lights are left out",
         "EXT_lights_image_based" => "light from all around is left out",
         "KHR_materials_variants" => "the default materials are shown",
         "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {

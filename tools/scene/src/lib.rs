@@ -47,6 +47,7 @@ mod materials;
 mod meshes;
 mod nodes;
 mod outlines;
+mod punctual;
 pub mod rays;
 mod scene;
 mod shape_lights;
@@ -66,6 +67,6 @@ pub use light_textures::{
     LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, MAX_REPEATS, SceneLightTexture,
 };
 pub use scene::{
-    Bounds, Image, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneLamp, SceneMaterial, Texture, Triangle,
-    Warning, Wrap,
+    Bounds, Image, LoadOptions, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneLamp, SceneMaterial, Texture,
+    Triangle, Warning, Wrap,
 };

@@ -2,9 +2,10 @@
 
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
-use crate::scene::SceneLamp;
+use crate::scene::{LoadOptions, SceneLamp};
 use crate::{
-    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes, skins,
+    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes,
+    punctual, skins,
 };
 use glam::Vec3;
 use std::cell::LazyCell;
@@ -44,16 +45,16 @@ impl Loader {
     }
 }
 
-pub(crate) fn load(path: &Path) -> Result<Scene, SceneError> {
+pub(crate) fn load(path: &Path, options: LoadOptions) -> Result<Scene, SceneError> {
     let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    read(Document::open(path)?, name)
+    read(Document::open(path)?, name, options)
 }
 
-pub(crate) fn from_bytes(bytes: &[u8], name: &str) -> Result<Scene, SceneError> {
-    read(Document::parse(bytes, name.to_owned(), None)?, name.to_owned())
+pub(crate) fn from_bytes(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Scene, SceneError> {
+    read(Document::parse(bytes, name.to_owned(), None)?, name.to_owned(), options)
 }
 
-fn read(document: Document, name: String) -> Result<Scene, SceneError> {
+fn read(document: Document, name: String, options: LoadOptions) -> Result<Scene, SceneError> {
     let materials = vec![None; document.root.materials.len() + 1];
     let images = vec![None; document.root.images.len()];
     let scene = Scene { name, ..Scene::default() };
@@ -83,10 +84,10 @@ fn read(document: Document, name: String) -> Result<Scene, SceneError> {
     // Lights and cameras that hang on nodes
     let shown = loader.scene.lights.len();
     area_lights::add(&mut loader, &placed)?;
-    emitters::add_bare(&mut loader.scene, shown);
+    loader.scene.bounds = loader.scene.triangles.iter().flat_map(|t| t.positions).collect();
+    punctual::add(&mut loader, &placed, options.light_size)?;
     let Loader { scene, .. } = &mut loader;
-    let corners = scene.triangles.iter().flat_map(|t| t.positions);
-    scene.bounds = corners.collect();
+    emitters::add_bare(scene, shown);
     if scene.bounds.is_empty() {
         let lights = scene.lights.iter().flat_map(|light| light.shape.bounds());
         scene.bounds = lights.collect::<Bounds>();

@@ -1,7 +1,7 @@
 //! The tree of nodes, flattened: who is where in the world.
 
 use crate::load::Loader;
-use crate::{Camera, MAX_COORDINATE, SceneError, instancing, shape_lights};
+use crate::{Camera, MAX_COORDINATE, SceneError, instancing, punctual, shape_lights};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json;
 use serde_json::Value;
@@ -25,6 +25,8 @@ pub(crate) struct PlacedNode {
     camera: Option<usize>,
     /// Its `EXT_lights_area` extension.
     pub area_light: Option<Value>,
+    /// Its `KHR_lights_punctual` extension.
+    pub punctual_light: Option<Value>,
     /// What its `extras` say that its emissive mesh stands for.
     pub shape: Option<Value>,
 }
@@ -57,7 +59,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             hidden += 1;
             continue;
         }
-        let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_lights_area"));
+        let extension = |name: &str| node.extensions.as_ref().and_then(|e| e.others.get(name)).cloned();
         let once = PlacedNode {
             index,
             number: placed.len(),
@@ -66,7 +68,8 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             mesh: node.mesh.map(|m| m.value()),
             skin: node.skin.map(|s| s.value()),
             camera: node.camera.map(|c| c.value()),
-            area_light: extension.cloned(),
+            area_light: extension("EXT_lights_area"),
+            punctual_light: extension(punctual::NAME),
             shape: shape_lights::said(&node.extras),
         };
         match instancing::instances(document, index, node, placed.len())? {
@@ -83,6 +86,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
                     skin: None,
                     camera: None,
                     area_light: None,
+                    punctual_light: None,
                     index,
                 };
                 let instances: Vec<PlacedNode> = instances.into_iter().enumerate().map(instance).collect();

@@ -14,6 +14,13 @@ pub const MAX_TRIANGLES: usize = 1 << 24;
 /// World coordinates beyond are refused: areas of boxes, as `f32`, would be infinite.
 pub const MAX_COORDINATE: f64 = 1e15;
 
+/// What a file leaves open.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LoadOptions {
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without they are left out, with a warning.
+    pub light_size: Option<f64>,
+}
+
 /// A scene, as a renderer needs it.
 #[derive(Debug, Clone, Default)]
 pub struct Scene {
@@ -241,7 +248,15 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] names the file and the field.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        crate::load::load(path.as_ref())
+        Self::load_with(path, LoadOptions::default())
+    }
+
+    /// As [`Scene::load`], with what the file leaves open.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_with(path: impl AsRef<Path>, options: LoadOptions) -> Result<Self, SceneError> {
+        crate::load::load(path.as_ref(), options)
     }
 
     /// Reads a scene from memory. It cannot refer to other files; `name` stands for the file in messages.
@@ -249,7 +264,15 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] names the field.
     pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, SceneError> {
-        crate::load::from_bytes(bytes, name)
+        Self::from_bytes_with(bytes, name, LoadOptions::default())
+    }
+
+    /// As [`Scene::from_bytes`], with what the file leaves open.
+    ///
+    /// # Errors
+    /// As [`Scene::from_bytes`].
+    pub fn from_bytes_with(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Self, SceneError> {
+        crate::load::from_bytes(bytes, name, options)
     }
 
     /// The camera called `name`, or the file's first, or, where the file has none,

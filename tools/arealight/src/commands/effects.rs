@@ -1,9 +1,10 @@
 //! `arealight effects`: what a scene needs, and why.
 
+use super::render::LightSize;
 use crate::failure::Failure;
 use crate::output::{print, say_what_is_not_shown};
 use arealight::Effects;
-use arealight_scene::{RequiredEffect, Scene, required_effects};
+use arealight_scene::{RequiredEffect, required_effects};
 use serde_json::json;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,6 +16,8 @@ use std::process::ExitCode;
 pub struct Arguments {
     /// A .gltf or .glb file
     scene: PathBuf,
+    #[command(flatten)]
+    light_size: LightSize,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -22,7 +25,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let path = &arguments.scene;
-    let scene = Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?;
+    let scene = arguments.light_size.load(path)?;
     say_what_is_not_shown(&scene, path);
     let required = required_effects(&scene);
     print(&if arguments.json { to_json(arguments, &required) } else { to_text(&required) })

@@ -13,7 +13,7 @@ use crate::shadows::Shadows;
 use arealight::{Effects, Quality};
 use arealight_benches::budget::FrameLoad;
 use arealight_benches::ladder::LevelNames;
-use arealight_scene::{Camera, Scene};
+use arealight_scene::{Camera, LoadOptions, Scene};
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -29,6 +29,8 @@ use std::time::Duration;
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    light_size: LightSize,
     /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output; out/SCENE.png if absent
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -69,6 +71,28 @@ pub struct Arguments {
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
+}
+
+/// The size of lights that have none.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub(super) struct LightSize {
+    /// The radius of points and spots of KHR_lights_punctual, in metres, and show suns half a degree wide; without it they are left out, but those whose
+    /// extras.arealight.radius says one
+    #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
+    light_size: Option<f64>,
+}
+
+impl LightSize {
+    /// Reads a scene.
+    pub fn load(self, path: &Path) -> Result<Scene, Failure> {
+        let options = LoadOptions { light_size: self.light_size };
+        Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))
+    }
+}
+
+fn parse_radius(text: &str) -> Result<f64, String> {
+    let radius = text.parse().ok().filter(|radius| (1e-6..=1e6).contains(radius));
+    radius.ok_or_else(|| "must be a radius from 1e-6 to 1e6 m".to_owned())
 }
 
 /// Where pictures go that nobody named a place for.
@@ -184,7 +208,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let path = arguments.scene_name();
     let scene = match &arguments.scene {
-        Some(path) => Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?,
+        Some(path) => arguments.light_size.load(path)?,
         None => demo()?,
     };
     say_what_is_not_shown(&scene, &path);

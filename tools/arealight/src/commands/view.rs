@@ -1,5 +1,6 @@
 //! `arealight view`: a scene in a window, or a recording of what a script does in one.
 
+use super::render::LightSize;
 use crate::canvas::Canvas;
 use crate::failure::Failure;
 use crate::film::Palette;
@@ -8,7 +9,6 @@ use crate::output::{self, print, say_what_is_not_shown};
 use crate::picture::Exposure;
 use crate::progress;
 use crate::view::{Engines, Mode, Script, Shown, State, Viewer, levels, paint};
-use arealight_scene::Scene;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -21,6 +21,8 @@ use std::process::ExitCode;
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    light_size: LightSize,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = super::render::parse_size)]
     size: [u32; 2],
@@ -53,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read what is given
     let path = arguments.scene.clone().unwrap_or_else(|| "demo (built in)".into());
     let scene = match &arguments.scene {
-        Some(path) => Scene::load(path).map_err(|error| Failure::Scene(error.to_string()))?,
+        Some(path) => arguments.light_size.load(path)?,
         None => super::render::demo()?,
     };
     say_what_is_not_shown(&scene, &path);

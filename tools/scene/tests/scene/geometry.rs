@@ -97,13 +97,13 @@ fn what_is_ignored_is_said() {
     writer.root["meshes"][0]["primitives"][0]["indices"] = json!(five);
     writer.root["skins"] = json!([{ "joints": [0] }]);
     writer.root["nodes"][0]["skin"] = json!(0);
-    writer.root["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+    writer.root["extensionsUsed"] = json!(["EXT_lights_image_based"]);
     let times = writer.floats(&[[0.0_f32]]);
     writer.root["animations"] = json!([{ "channels": [{ "sampler": 0, "target": { "node": 0, "path": "weights" } }],
                                          "samplers": [{ "input": times, "output": times }] }]);
     let expected = [
         "animations: 1 ignored; the scene is shown at rest",
-        "KHR_lights_punctual: points have no area: these lights are left out",
+        "EXT_lights_image_based: light from all around is left out",
         "meshes[0] 'panel': morph targets ignored; the mesh is shown at rest",
         "meshes[0] 'panel'.primitives[0]: COLOR_0 is not supported: ignored",
         "meshes[0] 'panel'.primitives[0]: 2 corners are no whole triangle: left out",

@@ -9,6 +9,7 @@ mod lights;
 mod materials;
 mod own_scenes;
 mod placed_meshes;
+mod punctual_lights;
 mod rays;
 mod shape_lights;
 mod tangents;

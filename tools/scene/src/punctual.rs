@@ -1,0 +1,146 @@
+//! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small spheres and disks of the same intensity.
+
+use crate::SceneError;
+use crate::area_lights::LUMENS_PER_WATT;
+use crate::load::Loader;
+use crate::nodes::PlacedNode;
+use arealight::{Light, LightShape};
+use glam::{DVec3, Vec3};
+use serde::Deserialize;
+use serde_json::Value;
+use std::f64::consts::PI;
+
+#[derive(Deserialize)]
+struct Root {
+    #[serde(default)]
+    lights: Vec<PunctualLight>,
+}
+
+#[derive(Deserialize)]
+struct PunctualLight {
+    name: Option<String>,
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(default = "white")]
+    color: [f32; 3],
+    /// Candela, or lux of a directional light.
+    #[serde(default = "one")]
+    intensity: f64,
+    #[serde(default)]
+    extras: Value,
+}
+
+fn white() -> [f32; 3] {
+    [1.0; 3]
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+#[derive(Deserialize)]
+struct Reference {
+    light: usize,
+}
+
+pub(crate) const NAME: &str = "KHR_lights_punctual";
+
+/// The sun's angular radius, in radians: half of 0.533 degrees.
+const SUN_RADIUS: f64 = 4.65e-3;
+
+/// How far away a sun is, in diagonals of the scene: its direction differs by less than its radius from end to end.
+const SUN_DISTANCE: f64 = 1000.0;
+
+/// Adds the punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius` says, else `size`, in metres.
+pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode], size: Option<f64>) -> Result<(), SceneError> {
+    if nodes.iter().all(|node| node.punctual_light.is_none()) {
+        return Ok(());
+    }
+    let document = &loader.document;
+    let root = document.root.extensions.as_ref().and_then(|e| e.others.get(NAME));
+    let root = root.cloned().ok_or_else(|| document.invalid(format!("extensions.{NAME}"), "is missing"))?;
+    let root = Root::deserialize(root);
+    let root = root.map_err(|e| document.invalid(format!("extensions.{NAME}"), e.to_string()))?;
+    for node in nodes {
+        let Some(reference) = &node.punctual_light else { continue };
+        let field = format!("nodes[{}].extensions.{NAME}", node.index);
+        let reference = Reference::deserialize(reference);
+        let reference = reference.map_err(|e| loader.document.invalid(&field, e.to_string()))?;
+        let light = root.lights.get(reference.light).ok_or_else(|| {
+            let problem = format!("light {} of {}", reference.light, root.lights.len());
+            loader.document.invalid(field, problem)
+        })?;
+        let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size) else {
+            loader.warn(
+                NAME,
+                "points have no area: lights without a size are left out (--light-size gives them one)",
+            );
+            continue;
+        };
+        let name = [&node.name, &light.name].into_iter().flatten().find(|name| !name.is_empty());
+        let name = name.map_or_else(|| format!("punctual light {}", reference.light), Clone::clone);
+        match make(loader, light, node, radius, &name) {
+            Ok(light) => loader.scene.lights.push(light),
+            Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),
+        }
+    }
+    Ok(())
+}
+
+/// The light of a radius, or why there is none.
+fn make(
+    loader: &mut Loader,
+    light: &PunctualLight,
+    node: &PlacedNode,
+    radius: f64,
+    name: &str,
+) -> Result<Light, String> {
+    if radius <= 0.0 || !radius.is_finite() {
+        return Err(format!("a radius of {radius} m"));
+    }
+    // A sphere or a disk of radius r and radiance L has the intensity L pi r^2, towards its front
+    let center = node.world.translation;
+    let of_intensity = 1.0 / (PI * radius * radius);
+    let (shape, brightness) = match light.kind.as_str() {
+        "point" => {
+            loader.note(NAME, format!("points are spheres with a radius of {radius} m"));
+            (LightShape::Sphere { center, radius }, of_intensity)
+        }
+        "spot" => {
+            let text = format!(
+                "spots are disks with a radius of {radius} m, whose light falls off with the cosine and ends at no cone"
+            );
+            loader.warn(NAME, text);
+            (disk(center, front(node)?, radius), of_intensity)
+        }
+        "directional" => {
+            let bounds = loader.scene.bounds;
+            if bounds.is_empty() {
+                return Err("a sun over nothing".to_owned());
+            }
+            loader.note(NAME, "suns are disks of half a degree, far away");
+            let (front, distance) = (front(node)?, SUN_DISTANCE * bounds.diagonal().max(1e-3));
+            // What arrives at right angles is L pi sin(a)^2
+            let sine = SUN_RADIUS.sin();
+            (
+                disk(bounds.center() - front * distance, front, distance * SUN_RADIUS.tan()),
+                1.0 / (PI * sine * sine),
+            )
+        }
+        other => return Err(format!("type '{other}' is not known")),
+    };
+    let radiance = Vec3::from_array(light.color) * (light.intensity / LUMENS_PER_WATT * brightness) as f32;
+    let light = Light { name: name.to_owned(), radiance, shape, ..Light::default() };
+    light.validate().map(|()| light).map_err(|fault| fault.to_string())
+}
+
+/// Where a node's light shines to: along -Z.
+fn front(node: &PlacedNode) -> Result<DVec3, String> {
+    let front = (-node.world.matrix3.z_axis).normalize_or_zero();
+    if front == DVec3::ZERO { Err("its node's scale is zero".to_owned()) } else { Ok(front) }
+}
+
+fn disk(center: DVec3, front: DVec3, radius: f64) -> LightShape {
+    let axis_u = front.any_orthonormal_vector() * radius;
+    LightShape::Disk { center, axis_u, axis_v: front.cross(axis_u) }
+}
