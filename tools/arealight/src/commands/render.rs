@@ -19,7 +19,7 @@ use shading::{Outcome, render};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Render a glTF scene: what emits is a light.
 ///
@@ -204,13 +204,38 @@ pub(super) fn demo() -> Result<Scene, Failure> {
         .map_err(|error| Failure::input("demo (built in)", error))
 }
 
+/// What took how long by the clock on the wall, in seconds, in order.
+#[derive(Default)]
+struct Phases(Vec<(&'static str, f64)>);
+
+impl Phases {
+    /// Does a phase's work.
+    fn time<T>(&mut self, name: &'static str, work: impl FnOnce() -> T) -> T {
+        let began = Instant::now();
+        let done = work();
+        self.0.push((name, began.elapsed().as_secs_f64()));
+        done
+    }
+
+    fn to_text(&self) -> String {
+        let phases: Vec<String> =
+            self.0.iter().map(|(name, seconds)| format!("{name} {seconds:.2} s")).collect();
+        phases.join(", ")
+    }
+
+    fn to_json(&self) -> serde_json::Value {
+        self.0.iter().map(|(name, seconds)| (name.replace(' ', "_"), json!(seconds))).collect()
+    }
+}
+
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
+    let mut phases = Phases::default();
     let path = arguments.scene_name();
-    let scene = match &arguments.scene {
-        Some(path) => arguments.light_size.load(path)?,
-        None => demo()?,
-    };
+    let scene = phases.time("load", || match &arguments.scene {
+        Some(path) => arguments.light_size.load(path),
+        None => demo(),
+    })?;
     say_what_is_not_shown(&scene, &path);
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
@@ -224,18 +249,21 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
-    let mut engine = gpu::engine(arguments.device.device.as_deref(), &table)?;
-    engine.load_scene_textures(&scene, TEXTURE_SIZE).map_err(|error| gpu::failure(error, &path))?;
+    let mut engine = phases.time("device", || gpu::engine(arguments.device.device.as_deref(), &table))?;
+    phases
+        .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
+        .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
     let picked = arguments.budget.pick(arguments.load(&scene), &engine.host().device_name())?;
     if picked.is_some() {
         warn_of_dearer_lights(scene.effects(), &path);
     }
     let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |level| level.quality);
-    let mut outcome = render(&engine, &scene, &camera, samples, (surfaces, quality), arguments)
+    let mut outcome = phases
+        .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
         .map_err(|error| gpu::failure(error, &path))?;
     outcome.picked = picked;
-    outcome.picture.save(&output, arguments.supersample, outcome.stops)?;
+    phases.time("save", || outcome.picture.save(&output, arguments.supersample, outcome.stops))?;
     let device = engine.host().device_name();
     let summary = Summary {
         arguments,
@@ -244,6 +272,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         camera: &camera,
         device,
         outcome: &outcome,
+        phases: &phases,
         output: &output,
     };
     say_beside(Some(&output), &if arguments.json { summary.to_json() } else { summary.to_text() })
@@ -292,12 +321,13 @@ struct Summary<'a> {
     camera: &'a Camera,
     device: String,
     outcome: &'a Outcome,
+    phases: &'a Phases,
     output: &'a Path,
 }
 
 impl Summary<'_> {
     fn to_text(&self) -> String {
-        let Self { arguments, scene, surfaces, camera, device, outcome, output } = self;
+        let Self { arguments, scene, surfaces, camera, device, outcome, phases, output } = self;
         let (width, height) = (arguments.size[0], arguments.size[1]);
         let vertices: usize = scene.lights.iter().map(|light| light.shape.vertices().len()).sum();
         let mut lines = vec![format!(
@@ -323,6 +353,7 @@ impl Summary<'_> {
             milliseconds(outcome.visibility),
             milliseconds(outcome.shading)
         ));
+        lines.push(format!("         {}, by the clock on the wall", phases.to_text()));
         if let Some(tiles) = &outcome.tiles {
             let classes: Vec<_> =
                 tiles.classes.iter().map(|(class, count)| format!("{count} {class}")).collect();
@@ -351,7 +382,7 @@ impl Summary<'_> {
     }
 
     fn to_json(&self) -> String {
-        let Self { arguments, scene, surfaces, camera, device, outcome, output } = self;
+        let Self { arguments, scene, surfaces, camera, device, outcome, phases, output } = self;
         let seconds = |time: Option<Duration>| time.map(|time| time.as_secs_f64());
         let required = arealight_scene::required_effects(scene);
         let effects: Vec<_> = required
@@ -379,6 +410,7 @@ impl Summary<'_> {
                 "lights_per_tile": tiles.lights_per_tile(),
             })),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },
+            "seconds": phases.to_json(),
             "picture": output,
             "size": arguments.size,
             "exposure": outcome.stops,
