@@ -59,6 +59,7 @@ pub fn scene_of(triangles: &[[DVec3; 3]], material: SceneMaterial) -> Scene {
             normals: [normal; 3],
             uvs: [Vec2::ZERO; 3],
             tangents: [Vec4::ZERO; 3],
+            colors: [Triangle::WHITE; 3],
             material: 0,
             lamp: false,
         }

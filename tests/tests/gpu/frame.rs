@@ -294,3 +294,49 @@ fn an_image_without_lights_is_black() {
     let pixel = OnePixel::new(&engine, Vec4::new(0.0, 0.0, 0.0, 1.0), 0.5);
     assert_eq!(pixel.shade(ShadeOptions::default(), &[], Vec3::Z, None), Vec4::new(0.0, 0.0, 0.0, 1.0));
 }
+
+#[test]
+fn vertex_colours_multiply_the_base_colour_and_alpha() {
+    let Some(engine) = TestEngine::new() else { return };
+    // The floor of a scene, each corner of its triangles of another colour
+    let mut scene = scene("sweep.glb");
+    let parts = [[255, 128, 0, 255], [0, 255, 64, 200], [90, 10, 255, 0]];
+    for triangle in &mut scene.triangles {
+        triangle.colors = parts;
+    }
+    let base_colors = |scene: &Scene| half_texels(&view(&engine, scene).renderer.g_buffer().base_color);
+    let plain = base_colors(&self::scene("sweep.glb"));
+    let colored = base_colors(&scene);
+    let view = view(&engine, &scene);
+    let aspect = f64::from(SIZE[0]) / f64::from(SIZE[1]);
+    let mut compared = 0;
+    for (index, (plain, colored)) in plain.iter().zip(&colored).enumerate() {
+        let (x, y) = (index as u32 % SIZE[0], index as u32 / SIZE[0]);
+        let at = |side: u32, of: u32| (f64::from(side) + 0.5) / f64::from(of) * 2.0 - 1.0;
+        let direction = view.camera.direction([at(x, SIZE[0]), -at(y, SIZE[1])], aspect);
+        let Some(hit) = view.buffers.closest_hit(view.camera.position, direction) else { continue };
+        let [second, third] = hit.barycentric;
+        let weights = [1.0 - second - third, second, third];
+        for channel in 0..3 {
+            let square = |part: u8| (f64::from(part) / 255.0).powi(2);
+            let factor: f64 =
+                parts.iter().zip(weights).map(|(part, weight)| square(part[channel]) * weight).sum();
+            let expected = f64::from(plain[channel]) * factor;
+            // Stored as float16, and barycentrics are of float32
+            assert!(
+                (f64::from(colored[channel]) - expected).abs() < 2e-3,
+                "{x} {y}: {colored}, not {expected}"
+            );
+        }
+        compared += 1;
+    }
+    assert!(compared > 1000, "{compared}");
+    assert_ne!(plain, colored);
+    // Where alpha is a mask, a vertex without alpha cuts: about it there is a hole
+    for material in &mut scene.materials {
+        material.alpha_cutoff = Some(0.5);
+    }
+    let seen = |colors: &[Vec4]| colors.iter().filter(|color| **color != Vec4::ZERO).count();
+    let cut = seen(&base_colors(&scene));
+    assert!(cut < seen(&colored) && cut > 0, "{cut}");
+}

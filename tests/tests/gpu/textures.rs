@@ -32,7 +32,9 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             tangent0: 0,
             tangent1: 0,
             tangent2: 0,
-            reserved: [0; 3],
+            color0: u32::MAX,
+            color1: u32::MAX,
+            color2: u32::MAX,
         }
     };
     SceneBuffers {

@@ -28,9 +28,9 @@ struct ArealightGpuTriangle {
     uint tangent0;
     uint tangent1;
     uint tangent2;
-    uint reserved0;
-    uint reserved1;
-    uint reserved2;
+    uint color0;
+    uint color1;
+    uint color2;
 };
 
 struct ArealightGpuMaterial {
@@ -82,6 +82,7 @@ const uint NO_TEXTURE = 0xffffffffu;
 const uint TRIANGLE_LAMP = 1u;
 const uint TRIANGLE_TANGENTS = 2u;
 const uint TRIANGLE_MIRRORED = 4u;
+const uint TRIANGLE_COLORS = 8u;
 const uint MATERIAL_DOUBLE_SIDED = 1u;
 const uint MATERIAL_ALPHA_MASK = 2u;
 const uint TEXTURE_SRGB = 1u;
@@ -164,6 +165,18 @@ vec2 hit_uv(ArealightGpuTriangle triangle, vec2 barycentric) {
          + vec2(triangle.u1, triangle.v1) * barycentric.x + vec2(triangle.u2, triangle.v2) * barycentric.y;
 }
 
+// What the vertices' colours multiply the base colour and alpha by at a hit.
+vec4 vertex_color(ArealightGpuTriangle triangle, vec2 barycentric) {
+    if ((triangle.flags & TRIANGLE_COLORS) == 0u) {
+        return vec4(1.0);
+    }
+    vec4 colors[3] = vec4[3](unpackUnorm4x8(triangle.color0), unpackUnorm4x8(triangle.color1), unpackUnorm4x8(triangle.color2));
+    for (int vertex = 0; vertex < 3; vertex++) {
+        colors[vertex].rgb *= colors[vertex].rgb;
+    }
+    return colors[0] * (1.0 - barycentric.x - barycentric.y) + colors[1] * barycentric.x + colors[2] * barycentric.y;
+}
+
 bool masked_out(BvhHit hit) {
     ArealightGpuTriangle triangle = triangles[hit.triangle];
     ArealightGpuMaterial material = materials[triangle.material];
@@ -171,7 +184,7 @@ bool masked_out(BvhHit hit) {
         return false;
     }
     float alpha = sample_texture(material.base_color_texture, hit_uv(triangle, hit.barycentric)).a;
-    return alpha * material.base_alpha < material.alpha_cutoff;
+    return alpha * material.base_alpha * vertex_color(triangle, hit.barycentric).a < material.alpha_cutoff;
 }
 
 // A tangent-space normal's axes at a hit; both zero where the triangle has no tangents.
@@ -242,7 +255,8 @@ ScenePoint scene_point(BvhHit hit) {
     point.sheen.roughness = material.sheen_roughness * sample_texture(material.sheen_roughness_texture, uv).a;
 
     vec4 metallic_roughness = sample_texture(material.metallic_roughness_texture, uv);
-    point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb;
+    point.base_color = material.base_color * sample_texture(material.base_color_texture, uv).rgb
+                     * vertex_color(triangle, hit.barycentric).rgb;
     point.metalness = material.metalness * metallic_roughness.b;
     point.roughness = material.roughness * metallic_roughness.g;
     point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);

@@ -138,7 +138,7 @@ pub struct GpuTriangle {
     pub u2: f32,
     /// Texture coordinate v of the third vertex.
     pub v2: f32,
-    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`].
+    /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`].
     pub flags: u32,
     /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a sign.
     pub tangent0: u32,
@@ -146,8 +146,12 @@ pub struct GpuTriangle {
     pub tangent1: u32,
     /// Tangent at the third vertex.
     pub tangent2: u32,
-    /// Zero.
-    pub reserved: [u32; 3],
+    /// What the base colour is multiplied with at the first vertex: square roots of linear red, green and blue, and alpha, in 255ths from the low byte on.
+    pub color0: u32,
+    /// At the second vertex.
+    pub color1: u32,
+    /// At the third vertex.
+    pub color2: u32,
 }
 
 impl GpuTriangle {
@@ -157,6 +161,8 @@ impl GpuTriangle {
     pub const TANGENTS: u32 = 2;
     /// Its bitangents are `cross(tangent, normal)`, not `cross(normal, tangent)`.
     pub const MIRRORED: u32 = 4;
+    /// Some of its vertices have a colour other than white.
+    pub const COLORS: u32 = 8;
 }
 
 /// A material of the visibility kernel. Texture indices are [`GpuMaterial::NO_TEXTURE`] where there is none.

@@ -151,6 +151,7 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
     let [uv0, uv1, uv2] = triangle.uvs;
     let has_tangents = triangle.tangents.iter().all(|tangent| tangent.truncate() != Vec3::ZERO);
     let [tangent0, tangent1, tangent2] = triangle.tangents.map(|tangent| pack_direction(tangent.truncate()));
+    let [color0, color1, color2] = triangle.colors.map(u32::from_le_bytes);
     let flag = |on: bool, flag: u32| if on { flag } else { 0 };
     GpuTriangle {
         p0,
@@ -168,11 +169,14 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
         v2: uv2.y,
         flags: flag(triangle.lamp, GpuTriangle::LAMP)
             | flag(has_tangents, GpuTriangle::TANGENTS)
+            | flag(triangle.colors != [Triangle::WHITE; 3], GpuTriangle::COLORS)
             | flag(triangle.tangents[0].w < 0.0, GpuTriangle::MIRRORED),
         tangent0,
         tangent1,
         tangent2,
-        reserved: [0; 3],
+        color0,
+        color1,
+        color2,
     }
 }
 

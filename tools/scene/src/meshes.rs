@@ -1,11 +1,13 @@
 //! Primitives, and their instances as triangles in the world.
 
+use crate::document::Document;
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
 use crate::uv_mapping::{Mappings, UvMapping};
 use crate::{MAX_COORDINATE, MAX_TRIANGLES, SceneError, Triangle, accessor, materials, skins, tangents};
 use glam::{DAffine3, DMat3, DVec3, Vec2, Vec3, Vec4};
 use gltf::json;
+use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
 use std::rc::Rc;
@@ -31,6 +33,8 @@ pub(crate) struct Primitive {
     uvs: Vec<Vec2>,
     /// The same for the emissive texture, where it is mapped otherwise.
     light_uvs: Option<Vec<Vec2>>,
+    /// [`Triangle::colors`], as many as positions; none where the file has none.
+    colors: Vec<[u8; 4]>,
     /// What moves each vertex, where the file says it.
     influences: Option<Vec<skins::Influence>>,
     /// Indices of vertices that exist.
@@ -107,9 +111,6 @@ fn read(
         }
         Checked::Invalid => return Err(loader.document.invalid(field, "mode is unknown")),
     };
-    if source.attributes.contains_key(&Checked::Valid(Semantic::Colors(0))) {
-        loader.warn(field.as_str(), "COLOR_0 is not supported: ignored");
-    }
     let document = &loader.document;
     // Vertices
     let attribute = |semantic| source.attributes.get(&Checked::Valid(semantic)).map(json::Index::value);
@@ -140,6 +141,10 @@ fn read(
     };
     let uvs: Vec<Vec2> = mapped(drawn)?;
     let light_uvs = if light == drawn { None } else { Some(mapped(light)?) };
+    let colors = match attribute(Semantic::Colors(0)) {
+        Some(accessor) => colors(document, accessor, &place("COLOR_0"), count)?,
+        None => vec![],
+    };
     if normals.len() != count {
         return Err(document.invalid(place("NORMAL"), format!("{} for {count} positions", normals.len())));
     }
@@ -184,10 +189,40 @@ fn read(
         normals,
         uvs,
         light_uvs,
+        colors,
         influences,
         triangles,
         tangents: tangents.unwrap_or_default(),
     }))
+}
+
+/// The vertices' colours, with alpha or without, as [`Triangle::colors`] are.
+fn colors(
+    document: &Document,
+    accessor: usize,
+    field: &str,
+    count: usize,
+) -> Result<Vec<[u8; 4]>, SceneError> {
+    let has_alpha = document
+        .root
+        .accessors
+        .get(accessor)
+        .is_some_and(|accessor| accessor.type_ == Checked::Valid(Type::Vec4));
+    let colors = if has_alpha {
+        accessor::floats::<4>(document, accessor, field)?
+    } else {
+        let opaque = |[red, green, blue]: [f32; 3]| [red, green, blue, 1.0];
+        accessor::floats::<3>(document, accessor, field)?.into_iter().map(opaque).collect()
+    };
+    if colors.len() != count {
+        return Err(document.invalid(field, format!("{} for {count} positions", colors.len())));
+    }
+    let byte = |part: f32| (part * 255.0).round() as u8;
+    let packed = |color: [f32; 4]| {
+        let [red, green, blue, alpha] = color.map(|part| part.clamp(0.0, 1.0));
+        [byte(red.sqrt()), byte(green.sqrt()), byte(blue.sqrt()), byte(alpha)]
+    };
+    Ok(colors.into_iter().map(packed).collect())
 }
 
 /// Triangles of a list, strip or fan of corners, and how many corners are left over.
@@ -250,8 +285,17 @@ pub(crate) fn place<'a>(
         let Some(flat) = (q - p).cross(r - p).try_normalize() else { continue };
         let normals = corners.map(|i| if normals[i] == Vec3::ZERO { flat.as_vec3() } else { normals[i] });
         let uvs = corners.map(|i| primitive.uvs[i]);
+        let colors = corners.map(|i| primitive.colors.get(i).copied().unwrap_or(Triangle::WHITE));
         let positions = [p, q, r];
-        loader.scene.triangles.push(Triangle { positions, normals, uvs, tangents, material, lamp: false });
+        loader.scene.triangles.push(Triangle {
+            positions,
+            normals,
+            uvs,
+            tangents,
+            colors,
+            material,
+            lamp: false,
+        });
         kept.push(corners.map(|i| i as u32));
     }
     let largest =

@@ -71,10 +71,17 @@ pub struct Triangle {
     /// Unit tangents, the direction of growing u, in xyz, and in w, 1 or -1, the side of the bitangent, `cross(normal, tangent) w`. Zero where no
     /// material needs them, or nothing in the file says what they are.
     pub tangents: [Vec4; 3],
+    /// What the base colour is multiplied with at each vertex: the square roots of linear red, green and blue, which keep dark colours apart, and alpha, in 255ths.
+    pub colors: [[u8; 4]; 3],
     /// Index into [`Scene::materials`].
     pub material: u32,
     /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is where the lamp is, nor another's.
     pub lamp: bool,
+}
+
+impl Triangle {
+    /// [`Triangle::colors`] of a vertex whose colour is its material's.
+    pub const WHITE: [u8; 4] = [255; 4];
 }
 
 /// A material: factors, and the textures that multiply them.

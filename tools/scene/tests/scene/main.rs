@@ -14,6 +14,7 @@ mod rays;
 mod shape_lights;
 mod tangents;
 mod textured_lights;
+mod vertex_colors;
 
 // The program that writes the project's scenes, whose writer and shapes serve the tests too
 #[path = "../../examples/make_scenes/clock.rs"]

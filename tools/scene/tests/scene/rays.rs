@@ -14,6 +14,7 @@ fn scene_of(triangles: &[[DVec3; 3]], double_sided: bool) -> Scene {
         normals: [Vec3::Z; 3],
         uvs: [Vec2::ZERO; 3],
         tangents: [Vec4::ZERO; 3],
+        colors: [Triangle::WHITE; 3],
         material: 0,
         lamp: false,
     };
