@@ -76,8 +76,8 @@ pub struct Arguments {
 /// The size of lights that have none.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub(super) struct LightSize {
-    /// The radius of points and spots of KHR_lights_punctual, in metres, and show suns half a degree wide; without it they are left out, but those whose
-    /// extras.arealight.radius says one
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide; without it they are left out, but those whose
+    /// `extras.arealight.radius` says one
     #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
     light_size: Option<f64>,
 }
