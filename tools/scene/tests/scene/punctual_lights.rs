@@ -6,12 +6,12 @@ use arealight::LightShape;
 use arealight_scene::{LUMENS_PER_WATT, LoadOptions, Scene, SceneError};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 const RADIUS: f64 = 0.05;
 
 /// A panel, and a light on a node.
-fn file(light: Value, node: Value) -> Writer {
+fn file(light: &Value, node: Value) -> Writer {
     let mut writer = panel_with(json!({}));
     writer.root["extensionsUsed"] = json!(["KHR_lights_punctual"]);
     writer.root["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
@@ -26,7 +26,7 @@ fn read(writer: Writer, light_size: Option<f64>) -> Result<Scene, SceneError> {
     Scene::from_bytes_with(&writer.glb(), "test.glb", LoadOptions { light_size })
 }
 
-fn with_size(light: Value, node: Value) -> Scene {
+fn with_size(light: &Value, node: Value) -> Scene {
     read(file(light, node), Some(RADIUS)).unwrap()
 }
 
@@ -37,7 +37,7 @@ fn notes(scene: &Scene) -> Vec<String> {
 #[test]
 fn a_point_is_a_sphere_of_its_intensity() {
     let light = json!({ "type": "point", "name": "bulb", "intensity": 683.0, "color": [1.0, 0.5, 0.0] });
-    let scene = with_size(light, json!({ "translation": [1.0, 2.0, 3.0], "scale": [4.0, 4.0, 4.0] }));
+    let scene = with_size(&light, json!({ "translation": [1.0, 2.0, 3.0], "scale": [4.0, 4.0, 4.0] }));
     let light = &scene.lights[0];
     assert_eq!(light.name, "bulb");
     assert_eq!(light.shape, LightShape::Sphere { center: DVec3::new(1.0, 2.0, 3.0), radius: RADIUS });
@@ -53,8 +53,8 @@ fn a_point_is_a_sphere_of_its_intensity() {
 #[test]
 fn a_spot_is_a_disk_that_shines_where_it_points() {
     // A quarter turn about x takes -z to +y
-    let node = json!({ "rotation": [0.70710678, 0.0, 0.0, 0.70710678] });
-    let scene = with_size(json!({ "type": "spot", "intensity": 683.0, "spot": {} }), node);
+    let node = json!({ "rotation": [FRAC_1_SQRT_2, 0.0, 0.0, FRAC_1_SQRT_2] });
+    let scene = with_size(&json!({ "type": "spot", "intensity": 683.0, "spot": {} }), node);
     let light = &scene.lights[0];
     let LightShape::Disk { axis_u, .. } = light.shape else { panic!("a disk") };
     assert!((axis_u.length() - RADIUS).abs() < 1e-9);
@@ -66,7 +66,7 @@ fn a_spot_is_a_disk_that_shines_where_it_points() {
 
 #[test]
 fn a_sun_lights_the_whole_scene_alike() {
-    let scene = with_size(json!({ "type": "directional", "intensity": 2.0 * LUMENS_PER_WATT }), json!({}));
+    let scene = with_size(&json!({ "type": "directional", "intensity": 2.0 * LUMENS_PER_WATT }), json!({}));
     let light = &scene.lights[0];
     let LightShape::Disk { center, axis_u, .. } = light.shape else { panic!("a disk") };
     // It shines along -z: it is where z is large
@@ -83,21 +83,21 @@ fn a_sun_lights_the_whole_scene_alike() {
 fn the_file_s_own_radius_counts_before_that_of_the_options() {
     let light = || json!({ "type": "point", "extras": { "arealight": { "radius": 0.2 } } });
     for size in [None, Some(RADIUS)] {
-        let scene = read(file(light(), json!({})), size).unwrap();
+        let scene = read(file(&light(), json!({})), size).unwrap();
         assert_eq!(scene.lights[0].shape, LightShape::Sphere { center: DVec3::ZERO, radius: 0.2 });
     }
 }
 
 #[test]
 fn what_has_no_size_or_no_sense_is_left_out_and_said() {
-    let of = |light: Value, size| {
+    let of = |light: &Value, size| {
         let scene = read(file(light, json!({})), size).unwrap();
         assert!(scene.lights.is_empty());
         warnings(&scene)
     };
     let point = || json!({ "type": "point" });
     assert_eq!(
-        of(point(), None),
+        of(&point(), None),
         [
             "KHR_lights_punctual: points have no area: lights without a size are left out (--light-size gives them one)"
         ]
@@ -109,15 +109,15 @@ fn what_has_no_size_or_no_sense_is_left_out_and_said() {
         (json!({ "type": "point", "intensity": -1.0 }), RADIUS, "radiance"),
         (json!({ "type": "point", "intensity": 1e300 }), RADIUS, "radiance"),
     ] {
-        let said = of(light, Some(size));
+        let said = of(&light, Some(size));
         assert!(said.iter().any(|line| line.contains(words)), "{said:?} without {words}");
     }
     // A file that contradicts itself is refused
-    let mut writer = file(point(), json!({}));
+    let mut writer = file(&point(), json!({}));
     writer.root["extensions"] = json!({});
     let error = read(writer, None).unwrap_err().to_string();
     assert!(error.contains("extensions.KHR_lights_punctual: is missing"), "{error}");
-    let mut writer = file(point(), json!({}));
+    let mut writer = file(&point(), json!({}));
     writer.root["nodes"][1]["extensions"]["KHR_lights_punctual"]["light"] = json!(7);
     let error = read(writer, None).unwrap_err().to_string();
     assert!(error.contains("light 7 of 1"), "{error}");
