@@ -1,7 +1,7 @@
-//! A window that is resized: frames of several sizes are in flight by one pass, and nothing waits for another.
+//! Frames by one pass that do not wait for each other: of several sizes, as of a window that is resized, and recorded on several threads.
 
-use arealight::PackedLights;
 use arealight::plan::ShadeOptions;
+use arealight::{Effects, LightSummary, PackedLights};
 use arealight_engine::Kept;
 use arealight_engine::host::{DescriptorPool, Image, ImageDescription, Usage};
 use arealight_tests::TestEngine;
@@ -188,4 +188,108 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
     host.submit(|commands| record(commands, &wider, [8, 4])).unwrap();
     let picture = wider.picture();
     assert_eq!((picture[7], picture[8]), (alone[1][7], BEFORE.to_array()));
+}
+
+/// Command buffers of a thread's own, recorded and not yet submitted.
+struct Recorded<'a> {
+    device: &'a ash::Device,
+    pool: vk::CommandPool,
+    commands: Vec<vk::CommandBuffer>,
+}
+
+impl<'a> Recorded<'a> {
+    fn new(
+        device: &'a ash::Device,
+        family: u32,
+        count: u32,
+        record: impl Fn(u32, vk::CommandBuffer),
+    ) -> Self {
+        let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
+        // SAFETY: the device is alive, and the pool is this thread's alone until it is given away.
+        unsafe {
+            let pool = device.create_command_pool(&info, None).unwrap();
+            let info =
+                vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(count);
+            let commands = device.allocate_command_buffers(&info).unwrap();
+            for (index, commands) in (0..).zip(&commands) {
+                device.begin_command_buffer(*commands, &vk::CommandBufferBeginInfo::default()).unwrap();
+                record(index, *commands);
+                device.end_command_buffer(*commands).unwrap();
+            }
+            Self { device, pool, commands }
+        }
+    }
+}
+
+impl Drop for Recorded<'_> {
+    fn drop(&mut self) {
+        // SAFETY: the test waited for what was submitted.
+        unsafe { self.device.destroy_command_pool(self.pool, None) };
+    }
+}
+
+#[test]
+fn threads_record_with_one_pass_and_make_its_pipelines_at_once() {
+    const FRAMES: u32 = 30;
+    let Some(engine) = TestEngine::new() else { return };
+    let (host, device) = (engine.host(), engine.host().device());
+    let packed = PackedLights::new(&[lamp()], DVec3::ZERO).unwrap();
+    let lights = host.storage_buffer("lights", &packed.lights).unwrap();
+    let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
+    let buffers = [lights.handle(), vertices.handle()];
+    // Each thread asks for the pipelines of three sets of effects, in an order of its own: the first to ask makes them
+    let added = [Effects::empty(), Effects::TWO_SIDED, Effects::POLYGON];
+    let frame_of = |size, index: u32| {
+        let summary = packed.summary();
+        let effects = summary.effects | added[index as usize % added.len()];
+        ShadeFrame {
+            size,
+            camera: Vec3::new(0.0, -1.0, 1.0),
+            lights: LightSummary { effects, ..summary },
+            ..ShadeFrame::default()
+        }
+    };
+    let sizes = [[8, 8], [16, 4], [3, 5], [9, 2]];
+    let kept = engine.shade_pass(ShadeOptions::default()).unwrap();
+    let alone = sizes.map(|size| {
+        let images = Images::new(&engine, &kept, buffers, size);
+        // SAFETY: the commands are being recorded, with a set of images of this size.
+        host.submit(|commands| unsafe { kept.record(commands, images.set, &frame_of(size, 0)) }.unwrap())
+            .unwrap();
+        images.picture()
+    });
+
+    // SAFETY: it is dropped when nothing is pending.
+    let pass = &unsafe { ShadePass::new(engine.context(), ShadeOptions::default()) }.unwrap();
+    let made = sizes.map(|size| Images::new(&engine, pass, buffers, size));
+    let sets = made.each_ref().map(|images| (images.set, images.size));
+    let (family, frame_of) = (host.queue_family(), &frame_of);
+    let recorded: Vec<Recorded<'_>> = std::thread::scope(|scope| {
+        let threads = sets.map(|(set, size)| {
+            scope.spawn(move || {
+                Recorded::new(device, family, FRAMES, |index, commands| {
+                    // SAFETY: the commands are this thread's, and being recorded, with a set of its own.
+                    unsafe { pass.record(commands, set, &frame_of(size, index + size[0])) }.unwrap();
+                })
+            })
+        });
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    // One frame after the other of each thread
+    for index in 0..FRAMES as usize {
+        let commands: Vec<vk::CommandBuffer> =
+            recorded.iter().map(|recorded| recorded.commands[index]).collect();
+        // SAFETY: the commands are complete, and the queue is held; it is idle before anything goes.
+        unsafe {
+            let queue = host.queue();
+            let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
+            device.queue_submit(*queue, &submit, vk::Fence::null()).unwrap();
+            device.queue_wait_idle(*queue).unwrap();
+        }
+    }
+    for (images, alone) in made.iter().zip(&alone) {
+        assert_eq!(images.picture(), *alone, "{:?}", images.size);
+        // The twin: before, there was something else
+        assert_ne!(alone[0], BEFORE.to_array());
+    }
 }
