@@ -209,8 +209,8 @@ int render(const char *path, const std::string &validation, bool tiles, bool mis
 
     // doc: upload
     // Once: the table
+    check(arealight_table_bind_memory(arealight, number(table_memory), 0)); // sets may be written from here on
     ArealightUpload upload = {};
-    upload.memory = number(table_memory);
     upload.staging_data = table_staging.mapped;
     upload.staging_size = needed.staging_size;
     upload.staging_buffer = number(table_staging.handle);

@@ -10,8 +10,8 @@ use arealight_capi::{
     ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
     ArealightResult, ArealightSetLayout, ArealightUpload, ArealightViewport, arealight_create,
     arealight_destroy, arealight_last_error, arealight_pack_lights, arealight_pass_create,
-    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_memory,
-    arealight_table_upload,
+    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_bind_memory,
+    arealight_table_memory, arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use ash::vk::{self, Handle as _};
@@ -182,9 +182,12 @@ impl<'a> CLibrary<'a> {
         commands: vk::CommandBuffer,
     ) -> ArealightResult {
         let mut texels = vec![0_u8; staging.size() as usize];
+        // SAFETY: it is as large as the callers were asked for.
+        let bound = unsafe { arealight_table_bind_memory(self.arealight, memory.as_raw(), 0) };
+        if bound != ArealightResult::Ok {
+            return bound;
+        }
         let upload = ArealightUpload {
-            memory: memory.as_raw(),
-            memory_offset: 0,
             staging_data: texels.as_mut_ptr().cast(),
             staging_size: texels.len() as u64,
             staging_buffer: staging.handle().as_raw(),

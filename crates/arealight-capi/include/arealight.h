@@ -308,10 +308,6 @@ typedef struct ArealightMemory {
 
 // How the table gets to the device.
 typedef struct ArealightUpload {
-    // VkDeviceMemory for ArealightMemory; it is freed after arealight_destroy.
-    uint64_t memory;
-    // Where in it.
-    uint64_t memory_offset;
     // The staging buffer's memory at staging_offset, mapped; the texels are written there.
     void *staging_data;
     // Bytes from there on: ArealightMemory.staging_size or more.
@@ -712,9 +708,17 @@ enum ArealightResult arealight_create(const struct ArealightHost *host,
 // Pointers are null or valid.
 enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
 
-// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
-// once; the commands run before any that shade. Commands that were never run are made good by another call with the same
-// memory.
+// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what arealight_table_memory asks for, and is freed after
+// arealight_destroy. From then on sets may be written. Again with the same memory it is nothing.
+//
+// The host sees to it:
+// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of it.
+enum ArealightResult arealight_table_bind_memory(struct Arealight *arealight,
+                                                 uint64_t memory,
+                                                 uint64_t memory_offset);
+
+// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once, when the table has memory; the commands run before
+// any that shade. Commands that were never run are made good by another call.
 //
 // The host sees to it:
 // Pointers are null or valid, and `upload` is as ArealightUpload says.
@@ -1024,14 +1028,12 @@ AREALIGHT_ASSERT(offsetof(ArealightMemory, alignment) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightMemory, staging_size) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightMemory, memory_type_bits) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightMemory, reserved) == 28);
-AREALIGHT_ASSERT(sizeof(ArealightUpload) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, memory) == 0);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, memory_offset) == 8);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_data) == 16);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 24);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 40);
-AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 48);
+AREALIGHT_ASSERT(sizeof(ArealightUpload) == 40);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_data) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 8);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 16);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 32);
 AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);

@@ -150,9 +150,39 @@ impl Arealight {
     }
 }
 
-/// Binds memory to the table, writes its texels to the staging buffer, and records the copy, with its barriers. Needed
-/// once; the commands run before any that shade. Commands that were never run are made good by another call with the same
-/// memory.
+/// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what arealight_table_memory asks for, and is freed after
+/// arealight_destroy. From then on sets may be written. Again with the same memory it is nothing.
+///
+/// # Safety
+/// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_table_bind_memory(
+    arealight: *mut Arealight,
+    memory: u64,
+    memory_offset: u64,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointer.
+        let arealight = unsafe { handles::borrow(arealight, "arealight")? };
+        arguments::refuse_null([(memory == 0, "memory")])?;
+        let mut image = arealight.image();
+        let place = (memory, memory_offset);
+        if image.memory.is_some_and(|bound| bound != place) {
+            return Err(Failure::argument(
+                "memory: the table has other memory already; make another arealight",
+            ));
+        }
+        if image.memory.is_none() {
+            // SAFETY: the caller vouches for the memory.
+            unsafe { image.table.bind_memory(vk::DeviceMemory::from_raw(memory), memory_offset) }?;
+            image.memory = Some(place);
+        }
+        Ok(())
+    })
+}
+
+/// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once, when the table has memory; the commands run before
+/// any that shade. Commands that were never run are made good by another call.
 ///
 /// # Safety
 /// Pointers are null or valid, and `upload` is as ArealightUpload says.
@@ -166,7 +196,6 @@ pub unsafe extern "C" fn arealight_table_upload(
         let (arealight, upload) =
             unsafe { (handles::borrow(arealight, "arealight")?, arguments::read(upload, "upload")?) };
         arguments::refuse_null([
-            (upload.memory == 0, "upload.memory"),
             (upload.staging_data.is_null(), "upload.staging_data"),
             (upload.staging_buffer == 0, "upload.staging_buffer"),
             (upload.command_buffer.is_null(), "upload.command_buffer"),
@@ -181,20 +210,15 @@ pub unsafe extern "C" fn arealight_table_upload(
             let message = format!("upload.staging_offset: {} is no multiple of 16", upload.staging_offset);
             return Err(Failure::argument(message));
         }
-        let mut image = arealight.image();
-        let place = (upload.memory, upload.memory_offset);
-        if image.memory.is_some_and(|bound| bound != place) {
+        let image = arealight.image();
+        if image.memory.is_none() {
             return Err(Failure::argument(
-                "upload.memory: the table has other memory already; upload again with that, or make another arealight",
+                "arealight: its table has no memory yet; call arealight_table_bind_memory first",
             ));
         }
 
-        // SAFETY: the caller vouches for memory, buffer and command buffer; the mapped memory is large enough.
+        // SAFETY: the caller vouches for buffer and command buffer; the mapped memory is large enough.
         unsafe {
-            if image.memory.is_none() {
-                image.table.bind_memory(vk::DeviceMemory::from_raw(upload.memory), upload.memory_offset)?;
-                image.memory = Some(place);
-            }
             std::ptr::copy_nonoverlapping(bytes.as_ptr(), upload.staging_data.cast(), bytes.len());
             image.table.record_upload(
                 vk::CommandBuffer::from_raw(upload.command_buffer as u64),

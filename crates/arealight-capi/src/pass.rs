@@ -246,7 +246,7 @@ pub(crate) fn read_resources(
     resources: &ArealightResources,
 ) -> Result<ShadeResources, Failure> {
     let table = arealight.table_resource().ok_or_else(|| {
-        Failure::argument("arealight: its table has no memory yet; call arealight_table_upload first")
+        Failure::argument("arealight: its table has no memory yet; call arealight_table_bind_memory first")
     })?;
     for (image, field) in [
         (resources.position, "position"),

@@ -69,10 +69,6 @@ pub struct ArealightMemory {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightUpload {
-    /// VkDeviceMemory for ArealightMemory; it is freed after arealight_destroy.
-    pub memory: u64,
-    /// Where in it.
-    pub memory_offset: u64,
     /// The staging buffer's memory at staging_offset, mapped; the texels are written there.
     pub staging_data: *mut c_void,
     /// Bytes from there on: ArealightMemory.staging_size or more.

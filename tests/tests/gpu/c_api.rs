@@ -9,7 +9,7 @@ use arealight_capi::{
     ArealightViewport, arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
     arealight_pack_lights, arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy,
     arealight_pass_prepare, arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory,
-    arealight_pass_write_set, arealight_table_memory, arealight_table_upload,
+    arealight_pass_write_set, arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_tests::TestEngine;
 use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};
@@ -75,6 +75,7 @@ fn null_objects_are_refused_and_destroying_nothing_is_fine() {
     // SAFETY: the pointers are null.
     unsafe {
         refused(arealight_table_memory(arealight, null_mut()), ErrorArgument, "arealight: is null");
+        refused(arealight_table_bind_memory(arealight, 8, 0), ErrorArgument, "arealight: is null");
         refused(arealight_table_upload(arealight, null()), ErrorArgument, "arealight: is null");
         refused(arealight_pass_set_layout(pass, null_mut()), ErrorArgument, "pass: is null");
         refused(arealight_pass_write_set(pass, arealight, 0, null()), ErrorArgument, "pass: is null");
@@ -277,7 +278,8 @@ fn calls_out_of_order_are_refused() {
         // A set before the table is there, or no set
         let write = |set| arealight_pass_write_set(pass, arealight, set, &raw const resources);
         refused(write(0), ErrorArgument, "set: is null");
-        refused(write(8), ErrorArgument, "call arealight_table_upload first");
+        refused(arealight_table_bind_memory(arealight, 0, 0), ErrorArgument, "memory: is null");
+        refused(write(8), ErrorArgument, "call arealight_table_bind_memory first");
         let layout = set_layout(pass);
         assert!(layout.layout != 0 && layout.sampled_images > 0 && layout.storage_images == 2);
         // A frame that cannot be recorded
@@ -315,8 +317,6 @@ fn calls_out_of_order_are_refused() {
     let memory = library.table_memory();
     assert!(memory.size >= memory.staging_size && memory.staging_size == 64 * 64 * 6 * 16);
     let whole = ArealightUpload {
-        memory: 8,
-        memory_offset: 0,
         staging_data: null_mut::<c_void>().wrapping_add(8),
         staging_size: memory.staging_size,
         staging_buffer: 8,
@@ -324,12 +324,12 @@ fn calls_out_of_order_are_refused() {
         command_buffer: null_mut::<c_void>().wrapping_add(8),
     };
     for (wrong, result, words) in [
-        (ArealightUpload { memory: 0, ..whole }, ErrorArgument, "upload.memory: is null"),
         (ArealightUpload { staging_data: null_mut(), ..whole }, ErrorArgument, "upload.staging_data"),
         (ArealightUpload { staging_buffer: 0, ..whole }, ErrorArgument, "upload.staging_buffer"),
         (ArealightUpload { command_buffer: null_mut(), ..whole }, ErrorArgument, "upload.command_buffer"),
         (ArealightUpload { staging_size: 16, ..whole }, ErrorTooSmall, "upload.staging_size: 16, but 393216"),
         (ArealightUpload { staging_offset: 8, ..whole }, ErrorArgument, "upload.staging_offset: 8"),
+        (whole, ErrorArgument, "call arealight_table_bind_memory first"),
     ] {
         // SAFETY: what is refused is not looked at.
         refused(unsafe { arealight_table_upload(arealight, &raw const wrong) }, result, words);

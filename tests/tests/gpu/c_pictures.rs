@@ -291,7 +291,7 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     });
     never.unwrap_err();
     let other = DeviceMemory::new(&engine, &library.table_memory());
-    let words = "upload.memory: the table has other memory already";
+    let words = "memory: the table has other memory already";
     let refusal = library.record_upload(other.raw, &staging, vk::CommandBuffer::from_raw(8));
     refused(refusal, ArealightResult::ErrorArgument, words);
     library.upload(&memory);
