@@ -105,6 +105,7 @@ fn flags_have_the_same_bits_in_glsl() {
         ("LAMP", GpuTriangle::LAMP.into()),
         ("TANGENTS", GpuTriangle::TANGENTS.into()),
         ("MIRRORED", GpuTriangle::MIRRORED.into()),
+        ("COLORS", GpuTriangle::COLORS.into()),
     ];
     assert_constants(SCENE_GLSL, "TRIANGLE_", &triangle);
     assert_constants(SCENE_GLSL, "MATERIAL_", &material);
