@@ -103,7 +103,7 @@ pub struct Row {
     pub lights_per_pixel: f64,
     /// Milliseconds of the device, with the lists where it makes them.
     pub milliseconds: f64,
-    /// Milliseconds of one processor that fills the lists, where that does.
+    /// Milliseconds of one processor that fills and packs the lists, where that does.
     pub fill_milliseconds: Option<f64>,
     /// What the lists take.
     pub bytes: u64,
@@ -221,8 +221,8 @@ impl<'a> Frame<'a> {
             Way::Clusters(part) => {
                 let began = Instant::now();
                 let clusters = self.clusters(part * self.mean());
-                fill_milliseconds = Some(began.elapsed().as_secs_f64() * 1e3);
                 let words = clusters.words(&self.record_of()?);
+                fill_milliseconds = Some(began.elapsed().as_secs_f64() * 1e3);
                 bytes = size_of_val(&words[..]) as u64;
                 let lists = self.host.storage_buffer("cluster lists", &words)?;
                 let mut specialization = shade_specialization(self.shade, self.renderer.lights());
