@@ -2,6 +2,7 @@
 
 use crate::SceneError;
 use crate::load::Loader;
+use crate::node_lights;
 use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
@@ -11,12 +12,6 @@ use serde_json::Value;
 /// Luminous efficacy of 555 nm light, lm/W: `EXT_lights_area` gives luminance in cd/m², and radiance is that
 /// divided by this. A light of 683 nits has a radiance of 1.
 pub const LUMENS_PER_WATT: f64 = 683.0;
-
-#[derive(Deserialize)]
-struct Root {
-    #[serde(default)]
-    lights: Vec<AreaLight>,
-}
 
 #[derive(Deserialize, Clone)]
 struct AreaLight {
@@ -63,35 +58,14 @@ fn one() -> f64 {
     1.0
 }
 
-#[derive(Deserialize)]
-struct Reference {
-    light: usize,
-}
-
 const NAME: &str = "EXT_lights_area";
 
 /// Adds the area lights of the nodes.
 pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), SceneError> {
-    if nodes.iter().all(|node| node.area_light.is_none()) {
-        return Ok(());
-    }
-    let document = &loader.document;
-    let root = document.root.extensions.as_ref().and_then(|e| e.others.get(NAME));
-    let root = root.cloned().ok_or_else(|| document.invalid(format!("extensions.{NAME}"), "is missing"))?;
-    let root = Root::deserialize(root);
-    let root = root.map_err(|e| document.invalid(format!("extensions.{NAME}"), e.to_string()))?;
-    for node in nodes {
-        let Some(reference) = &node.area_light else { continue };
-        let field = format!("nodes[{}].extensions.{NAME}", node.index);
-        let reference = Reference::deserialize(reference);
-        let reference = reference.map_err(|e| loader.document.invalid(&field, e.to_string()))?;
-        let light = root.lights.get(reference.light);
-        let light = light.ok_or_else(|| {
-            let problem = format!("light {} of {}", reference.light, root.lights.len());
-            loader.document.invalid(field, problem)
-        })?;
-        let name = [&node.name, &light.name].into_iter().flatten().find(|name| !name.is_empty());
-        let name = name.map_or_else(|| format!("area light {}", reference.light), Clone::clone);
+    let lights = node_lights::referenced(&loader.document, NAME, nodes, |node| node.area_light.as_ref())?;
+    for (node, place, light) in lights {
+        let light: &AreaLight = &light;
+        let name = node_lights::name(node, light.name.as_ref(), "area light", place);
         let shape = match light.shape.as_str() {
             "rect" => polygon(light, node),
             "disk" => disk(light, node),

@@ -45,6 +45,7 @@ mod lit_texels;
 mod load;
 mod materials;
 mod meshes;
+mod node_lights;
 mod nodes;
 mod outlines;
 mod punctual;

@@ -3,6 +3,7 @@
 use crate::SceneError;
 use crate::area_lights::LUMENS_PER_WATT;
 use crate::load::Loader;
+use crate::node_lights;
 use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
 use glam::{DVec3, Vec3};
@@ -10,13 +11,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::f64::consts::PI;
 
-#[derive(Deserialize)]
-struct Root {
-    #[serde(default)]
-    lights: Vec<PunctualLight>,
-}
-
-#[derive(Deserialize)]
+#[derive(Deserialize, Clone)]
 struct PunctualLight {
     name: Option<String>,
     #[serde(rename = "type")]
@@ -38,11 +33,6 @@ fn one() -> f64 {
     1.0
 }
 
-#[derive(Deserialize)]
-struct Reference {
-    light: usize,
-}
-
 pub(crate) const NAME: &str = "KHR_lights_punctual";
 
 /// The sun's angular radius, in radians: half of 0.533 degrees.
@@ -53,23 +43,9 @@ const SUN_DISTANCE: f64 = 1000.0;
 
 /// Adds the punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius` says, else `size`, in metres.
 pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode], size: Option<f64>) -> Result<(), SceneError> {
-    if nodes.iter().all(|node| node.punctual_light.is_none()) {
-        return Ok(());
-    }
-    let document = &loader.document;
-    let root = document.root.extensions.as_ref().and_then(|e| e.others.get(NAME));
-    let root = root.cloned().ok_or_else(|| document.invalid(format!("extensions.{NAME}"), "is missing"))?;
-    let root = Root::deserialize(root);
-    let root = root.map_err(|e| document.invalid(format!("extensions.{NAME}"), e.to_string()))?;
-    for node in nodes {
-        let Some(reference) = &node.punctual_light else { continue };
-        let field = format!("nodes[{}].extensions.{NAME}", node.index);
-        let reference = Reference::deserialize(reference);
-        let reference = reference.map_err(|e| loader.document.invalid(&field, e.to_string()))?;
-        let light = root.lights.get(reference.light).ok_or_else(|| {
-            let problem = format!("light {} of {}", reference.light, root.lights.len());
-            loader.document.invalid(field, problem)
-        })?;
+    let lights = node_lights::referenced(&loader.document, NAME, nodes, |node| node.punctual_light.as_ref())?;
+    for (node, place, light) in lights {
+        let light: &PunctualLight = &light;
         let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size) else {
             loader.warn(
                 NAME,
@@ -77,8 +53,7 @@ pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode], size: Option<f64>) 
             );
             continue;
         };
-        let name = [&node.name, &light.name].into_iter().flatten().find(|name| !name.is_empty());
-        let name = name.map_or_else(|| format!("punctual light {}", reference.light), Clone::clone);
+        let name = node_lights::name(node, light.name.as_ref(), "punctual light", place);
         match make(loader, light, node, radius, &name) {
             Ok(light) => loader.scene.lights.push(light),
             Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),

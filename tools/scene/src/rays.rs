@@ -71,7 +71,17 @@ pub fn intersect(
     origin: DVec3,
     direction: DVec3,
 ) -> Option<(f64, [f64; 2])> {
-    let [p0, p1, p2] = [triangle.p0, triangle.p1, triangle.p2].map(|p| Vec3::from_array(p).as_dvec3());
+    let vertices = [triangle.p0, triangle.p1, triangle.p2].map(|p| Vec3::from_array(p).as_dvec3());
+    intersect_vertices(vertices, double_sided, origin, direction)
+}
+
+/// As [`intersect`], of a triangle by its vertices.
+pub fn intersect_vertices(
+    [p0, p1, p2]: [DVec3; 3],
+    double_sided: bool,
+    origin: DVec3,
+    direction: DVec3,
+) -> Option<(f64, [f64; 2])> {
     let (edge1, edge2) = (p1 - p0, p2 - p0);
     // Möller and Trumbore 1997; the determinant is positive where the ray comes from the front
     let across = direction.cross(edge2);

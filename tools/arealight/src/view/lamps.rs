@@ -1,7 +1,8 @@
 //! Lamps that are picked and moved: their lights, and the triangles that look like them.
 
 use arealight::LightShape;
-use arealight_scene::{Camera, Scene, Triangle};
+use arealight_scene::rays::intersect_vertices;
+use arealight_scene::{Camera, Scene};
 use glam::DVec3;
 
 /// How near to the middle of a lamp that no mesh is a click picks it, in heights of the picture.
@@ -16,7 +17,8 @@ pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize,
     let mut first: Option<(usize, f64)> = None;
     for (index, triangle) in scene.triangles.iter().enumerate() {
         let two_sided = scene.materials.get(triangle.material as usize).is_some_and(|m| m.double_sided);
-        if let Some(distance) = distance(triangle, two_sided, camera.position, direction)
+        if let Some((distance, _)) =
+            intersect_vertices(triangle.positions, two_sided, camera.position, direction)
             && first.is_none_or(|(_, nearest)| distance < nearest)
         {
             first = Some((index, distance));
@@ -38,23 +40,6 @@ pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize,
     let (triangle, distance) = first?;
     let lamp = scene.lamps.iter().position(|lamp| lamp.triangles.contains(&triangle))?;
     Some((lamp, distance))
-}
-
-/// How far a triangle is along a ray, in lengths of its direction: Möller and Trumbore 1997.
-fn distance(triangle: &Triangle, two_sided: bool, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let [a, b, c] = triangle.positions;
-    let (edge1, edge2) = (b - a, c - a);
-    let across = direction.cross(edge2);
-    let determinant = edge1.dot(across);
-    if determinant == 0.0 || (determinant < 0.0 && !two_sided) {
-        return None;
-    }
-    let from = origin - a;
-    let u = from.dot(across) / determinant;
-    let along = from.cross(edge1);
-    let v = direction.dot(along) / determinant;
-    let distance = edge2.dot(along) / determinant;
-    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 0.0).then_some(distance)
 }
 
 /// Moves each lamp of a scene by an offset of its own.

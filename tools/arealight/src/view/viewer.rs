@@ -80,6 +80,8 @@ pub struct Viewer<'a> {
     size: [u32; 2],
     /// Of the renderers' cameras.
     looks: Option<Orbit>,
+    /// Our renderer has found the surfaces, and nothing was shaded since: its radiance is what lamps emit.
+    is_unshaded: bool,
     visibility: Option<Duration>,
     emission: Vec<DVec3>,
     ours: Option<Drawn>,
@@ -150,6 +152,7 @@ impl<'a> Viewer<'a> {
             shadowed: None,
             size,
             looks: None,
+            is_unshaded: false,
             visibility: None,
             emission: vec![],
             ours: None,
@@ -240,6 +243,15 @@ impl<'a> Viewer<'a> {
         self.visibility = self.renderer.visibility()?;
         self.emission = radiance(&mut self.renderer)?;
         self.looks = Some(orbit);
+        self.is_unshaded = true;
+        Ok(())
+    }
+
+    /// Takes back what our renderer has shaded, before it shades again.
+    fn begin(&mut self) -> Result<(), EngineError> {
+        if !std::mem::take(&mut self.is_unshaded) {
+            self.renderer.visibility()?;
+        }
         Ok(())
     }
 
@@ -254,7 +266,7 @@ impl<'a> Viewer<'a> {
         if self.ours.as_ref().is_some_and(|drawn| drawn.of == of) {
             return Ok(());
         }
-        self.renderer.visibility()?;
+        self.begin()?;
         let time = if seen.shadows { self.shade_with_shadows(level)? } else { self.shade(level)? };
         self.ours = Some(Drawn { of, radiance: radiance(&mut self.renderer)?, time });
         Ok(())
@@ -308,7 +320,7 @@ impl<'a> Viewer<'a> {
         if truth.samples() < MOST_SAMPLES {
             let coupled = self.surfaces().contains(Effects::COUPLED);
             let reference = Reference { samples, seed: truth.samples(), shadows: seen.shadows, coupled };
-            self.renderer.visibility()?;
+            self.begin()?;
             self.renderer.reference(reference, |_| {})?;
             truth.add(&radiance(&mut self.renderer)?, samples);
         }
@@ -344,7 +356,7 @@ impl<'a> Viewer<'a> {
     ) -> Result<Tried, EngineError> {
         let mut fastest: Option<Duration> = None;
         for _ in 0..COST_RUNS {
-            self.renderer.visibility()?;
+            self.begin()?;
             let took = self.renderer.shade(surfaces, quality)?;
             fastest = fastest.into_iter().chain(took).min();
         }

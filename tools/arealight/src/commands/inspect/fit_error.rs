@@ -14,19 +14,16 @@ pub struct FitErrors<'a> {
 /// What is measured, and the numbers of each level: `what; one lobe: 4e-4 at F0 = 0.02, 5e-4 at F0 = 0.04; ...`. None of words of another kind.
 pub fn parse(text: &str) -> Option<(&str, Vec<FitErrors<'_>>)> {
     let (what, levels) = text.split_once("; ")?;
-    let level = |part: &'_ str| {
-        let (level, errors) = part.split_once(": ")?;
-        let error = |error: &str| {
-            let (mean, f0) = error.split_once(" at F0 = ")?;
-            Some((f0.parse().ok()?, mean.parse().ok()?))
-        };
-        Some((level.len(), errors.split(", ").map(error).collect::<Option<Vec<(f64, f64)>>>()?))
+    Some((what, levels.split("; ").map(parse_level).collect::<Option<_>>()?))
+}
+
+fn parse_level(text: &str) -> Option<FitErrors<'_>> {
+    let (level, errors) = text.split_once(": ")?;
+    let error = |error: &str| {
+        let (mean, f0) = error.split_once(" at F0 = ")?;
+        Some((f0.parse().ok()?, mean.parse().ok()?))
     };
-    let parsed = levels.split("; ").map(|part| {
-        let (length, errors) = level(part)?;
-        Some(FitErrors { level: &part[..length], errors })
-    });
-    Some((what, parsed.collect::<Option<_>>()?))
+    Some(FitErrors { level, errors: errors.split(", ").map(error).collect::<Option<_>>()? })
 }
 
 /// The words as lines: what is measured, and one for each level.
