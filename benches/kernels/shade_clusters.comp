@@ -43,7 +43,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 // In front: columns, rows and slices; where the first slice begins; slices over ln(far / near); the unit view direction. From CLUSTERS on two words a
 // cluster, where its lights are and how many. Then the lights of all: indices of records.
 const uint CLUSTERS = 8u;
-layout(set = 0, binding = 15, std430) readonly buffer ClusterLists {
+layout(set = 0, binding = 17, std430) readonly buffer ClusterLists {
     uint cluster_lists[];
 };
 

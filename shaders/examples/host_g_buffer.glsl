@@ -5,7 +5,7 @@
 layout(set = 0, binding = 4) uniform utexture2D packed_surfaces;
 
 ArealightSurface arealight_bridge_surface(ivec2 pixel) {
-    uvec4 words = texelFetch(packed_surfaces, pixel, 0);
+    uvec4 words = texelFetch(packed_surfaces, pixel, g_buffer_sample); // 0, but of multisampled images
     vec2 z_roughness = unpackSnorm2x16(words.y);
     vec4 base_color_metalness = unpackUnorm4x8(words.z);
     ArealightSurface surface; // the kernel sets position and view

@@ -17,17 +17,22 @@ layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 14) const uint CULL = 0u;
 layout(constant_id = 19) const uint VIEW = 0u;
+layout(constant_id = 20) const bool LIGHT_COUNTS = false;
+layout(constant_id = 21) const int SAMPLES = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
 #define G_BUFFER_LAYOUT LAYOUT
+#define G_BUFFER_SAMPLES SAMPLES
 #define SHAPES_BINDING 9
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
-#define TILE_LISTS_BINDING 15
+#define STENCIL_BINDING 15
+#define LIGHT_COUNTS_BINDING 16
+#define TILE_LISTS_BINDING 17
 #define TILE_LISTS_ACCESS
-#define LOBE_HORIZONS_BINDING 16
+#define LOBE_HORIZONS_BINDING 18
 #define AREALIGHT_DIFFERENCE 0
 #define AREALIGHT_FOOTPRINT 0
 #include "effects.glsl"
@@ -36,6 +41,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "g_buffer.glsl"
 #include "light_records.glsl"
 #include "tiles.glsl"
+#include "light_counts.glsl"
 #include "position.glsl"
 #include "view.glsl"
 
@@ -145,10 +151,10 @@ uvec3 list_lights(uint list, float limit) {
         uint place = counts.z + listed_below(bits, invocation);
         uint index = first + invocation;
         if (contributes && place < constants.capacity) {
-            tile_lists[list + place] = index < constants.light_count ? index : index - constants.light_count;
+            tile_lists[list + place] = index < light_count() ? index : index - light_count();
         }
-        counts += uvec3(listed_below(bits, before(first, constants.quad_count)),
-                        listed_below(bits, before(first, constants.light_count)), listed_below(bits, TILE_PIXELS));
+        counts += uvec3(listed_below(bits, before(first, quad_count())),
+                        listed_below(bits, before(first, light_count())), listed_below(bits, TILE_PIXELS));
         group = next;
     }
     return counts;
@@ -166,7 +172,7 @@ uint write_record(uvec2 tile) {
         tile_lists[record + 2u] = is_listed ? counts.z - counts.y : TILE_ALL_LIGHTS;
     }
     if (!is_listed) {
-        return constants.quad_count < light_total() ? CLASS_ANY : CLASS_QUADS;
+        return quad_count() < light_total() ? CLASS_ANY : CLASS_QUADS;
     }
     return counts.z == 0u ? CLASS_EMPTY : (counts.x == counts.z ? CLASS_QUADS : CLASS_ANY);
 }

@@ -16,7 +16,7 @@ const float MARGIN = 1e-5;
 
 // The lights of a frame, polygons and then shapes.
 uint light_total() {
-    return constants.light_count + (HAS_SHAPES ? constants.shape_count : 0u);
+    return light_count() + (HAS_SHAPES ? shape_count() : 0u);
 }
 
 float sum_of(vec3 radiance) {
@@ -71,10 +71,10 @@ TileLight shape_light(uint index) {
 // A light of the frame, as the pixels of the tile have it before them.
 TileLight tile_light(uint index) {
     TileLight light;
-    if (!HAS_SHAPES || index < constants.light_count) {
+    if (!HAS_SHAPES || index < light_count()) {
         light = polygon_light(index);
     } else {
-        light = shape_light(index - constants.light_count);
+        light = shape_light(index - light_count());
     }
     light.center -= IS_ORTHOGRAPHIC ? vec3(0.0) : constants.camera;
     light.distance = sqrt(dot(light.center, light.center)) + tile_distance();

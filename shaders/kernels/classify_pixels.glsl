@@ -135,13 +135,13 @@ void reduce_coat(inout ArealightSurface surface, inout vec2 part, vec3 normal, v
     tile_reduce(COAT_REFLECTION_PAIR, has_coat ? reflection : vec4(-TILE_FAR), vec4(-TILE_FAR));
 }
 
-// Finds the bounds. They are there after the next barrier.
-void reduce_pixels(ivec2 pixel) {
+// Finds the bounds over the sample that is read, and those before.
+void reduce_sample(ivec2 pixel) {
     vec3 position;
     bool is_inside = all(lessThan(pixel, ivec2(constants.size)));
     pixel = min(pixel, ivec2(constants.size) - 1);
     ivec2 texel = g_buffer_texel(pixel);
-    bool has_surface = load_position_of(texel, pixel, ivec2(constants.size), position) && is_inside;
+    bool has_surface = load_position_of(texel, pixel, ivec2(constants.size), position) && is_inside && passes_stencil(texel);
     ArealightSurface surface = load_seen_surface(texel, position);
     vec3 normal = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
     position = IS_ORTHOGRAPHIC ? position : -surface.view;
@@ -190,6 +190,18 @@ void reduce_pixels(ivec2 pixel) {
         vec2 diffuse = vec2(-min(albedo.r, min(albedo.g, albedo.b)), arealight_max_component(albedo)) * part;
         tile_reduce(REFLECTION_PAIR, has_surface ? vec4(is_diffuse, reflection) : vec4(-TILE_FAR),
                     has_surface ? vec4(diffuse, 0.0, 0.0) : vec4(-TILE_FAR));
+    }
+}
+
+// Finds the bounds. They are there after the next barrier.
+void reduce_pixels(ivec2 pixel) {
+    reduce_sample(pixel);
+    // The first has a call of its own: within a loop, compilers would unroll less of what it calls
+    if (G_BUFFER_SAMPLES > 1) {
+        for (int index = 1; index < G_BUFFER_SAMPLES; index++) {
+            g_buffer_sample = index;
+            reduce_sample(pixel);
+        }
     }
 }
 

@@ -24,6 +24,13 @@ const int G_BUFFER_OCTAHEDRAL = 3;
 #define AREALIGHT_HOST_G_BUFFER 0
 #endif
 
+// How many samples its texels have. The module says 1; with more the recorder makes its images multisampled ones, Kernel::words_for.
+#ifndef G_BUFFER_SAMPLES
+#define G_BUFFER_SAMPLES 1
+#endif
+// The sample that is read; of one the level, which is 0.
+int g_buffer_sample = 0;
+
 layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
@@ -31,7 +38,8 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 // Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING and ANISOTROPY_BINDING as it likes, and defines
 // arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its
 // sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY, its diffuse roughness with
-// AREALIGHT_HAS_ROUGH_DIFFUSE alone. It lies in an include folder of the host's compiler.
+// AREALIGHT_HAS_ROUGH_DIFFUSE alone. It reads g_buffer_sample, so that images may have several samples. It lies in an include folder of the host's
+// compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -62,7 +70,7 @@ ArealightCoat load_coat(ivec2 pixel) {
     ArealightCoat coat = ArealightCoat(vec3(0.0), 0.0, 0.0);
 #ifdef COAT_BINDING
     if (AREALIGHT_HAS_COAT) {
-        vec4 texel = texelFetch(g_coat, pixel, 0);
+        vec4 texel = texelFetch(g_coat, pixel, g_buffer_sample);
         coat = ArealightCoat(AREALIGHT_HAS_COAT_NORMAL ? from_octahedron(texel.ba) : vec3(0.0), texel.r, texel.g);
     }
 #endif
@@ -74,7 +82,7 @@ ArealightSheen load_sheen(ivec2 pixel) {
     ArealightSheen sheen = ArealightSheen(vec3(0.0), 0.0);
 #ifdef SHEEN_BINDING
     if (AREALIGHT_HAS_SHEEN) {
-        vec4 texel = texelFetch(g_sheen, pixel, 0);
+        vec4 texel = texelFetch(g_sheen, pixel, g_buffer_sample);
         sheen = ArealightSheen(texel.rgb, texel.a);
     }
 #endif
@@ -88,7 +96,7 @@ void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
     surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
 #ifdef ANISOTROPY_BINDING
     if (AREALIGHT_HAS_ANISOTROPY || AREALIGHT_HAS_ROUGH_DIFFUSE) {
-        vec4 texel = texelFetch(g_anisotropy, pixel, 0);
+        vec4 texel = texelFetch(g_anisotropy, pixel, g_buffer_sample);
         surface.diffuse_roughness = texel.a;
         surface.anisotropy = ArealightAnisotropy(from_octahedron(texel.rg), texel.b > 0.0 ? texel.b : surface.roughness);
     }
@@ -97,11 +105,11 @@ void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
 
 // The surface that a pixel sees from `camera`, at `position`.
 ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
-    vec4 normal = texelFetch(g_normal, pixel, 0);
-    vec4 base_color = texelFetch(g_base_color, pixel, 0);
+    vec4 normal = texelFetch(g_normal, pixel, g_buffer_sample);
+    vec4 base_color = texelFetch(g_base_color, pixel, g_buffer_sample);
     vec4 specular = vec4(0.04, 0.04, 0.04, 1.0);
     if (G_BUFFER_LAYOUT != G_BUFFER_AREALIGHT || HAS_SPECULAR_INPUT) {
-        specular = texelFetch(g_specular, pixel, 0);
+        specular = texelFetch(g_specular, pixel, g_buffer_sample);
     }
     ArealightSurface surface;
     surface.position = position;

@@ -33,8 +33,8 @@ void add_light(inout PixelRadiance sum, vec3 radiance, ArealightReflected reflec
     }
 }
 
-// Stores what a pixel reflects; `hit`: it has a surface.
-void store_radiance(ivec2 pixel, bool hit, PixelRadiance sum) {
+// Stores what a pixel reflects; `hit`: it has a surface, and `coverage` is the part of it that has.
+void store_radiance(ivec2 pixel, bool hit, float coverage, PixelRadiance sum) {
 #if RADIANCE_IS_READ
     if ((OUTPUT & OUTPUT_ADD) != 0) {
         if (!hit) {
@@ -46,9 +46,9 @@ void store_radiance(ivec2 pixel, bool hit, PixelRadiance sum) {
         }
     }
 #endif
-    imageStore(radiance_image, pixel, output_texel(sum.radiance, hit));
+    imageStore(radiance_image, pixel, output_texel(sum.radiance, hit, coverage));
     if ((OUTPUT & OUTPUT_APART) != 0) {
-        imageStore(glossy_image, pixel, output_texel(sum.glossy, hit));
+        imageStore(glossy_image, pixel, output_texel(sum.glossy, hit, coverage));
     }
 }
 

@@ -11,13 +11,13 @@ const int OUTPUT_ADD = 1;   // to what is there; pixels without a surface stay a
 const int OUTPUT_APART = 2; // the glossy lobe's radiance goes to an image of its own
 const int OUTPUT_HALF = 4;  // the images are rgba16f: so the recorder writes it into the module, Kernel::words_for
 
-// A texel as it is stored. What sixteen bits cannot hold becomes the largest number that they can: an infinite texel
+// A texel as it is stored, of which `coverage` is the part that has a surface, if it has any. What sixteen bits cannot hold becomes the largest number that they can: an infinite texel
 // would spread over the picture in whatever filter comes next.
-vec4 output_texel(vec3 radiance, bool hit) {
+vec4 output_texel(vec3 radiance, bool hit, float coverage) {
     if ((OUTPUT & OUTPUT_HALF) != 0) {
         radiance = round_to_half(min(radiance, vec3(LARGEST_HALF)));
     }
-    return hit ? vec4(radiance, 1.0) : vec4(0.0);
+    return hit ? vec4(radiance, coverage) : vec4(0.0);
 }
 
 #endif

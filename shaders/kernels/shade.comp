@@ -23,10 +23,13 @@ layout(constant_id = 12) const uint CLASS = 3u;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 15) const int SHADOW_RAYS = 0;
 layout(constant_id = 19) const uint VIEW = 0u;
+layout(constant_id = 20) const bool LIGHT_COUNTS = false;
+layout(constant_id = 21) const int SAMPLES = 1;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
 #define G_BUFFER_LAYOUT LAYOUT
+#define G_BUFFER_SAMPLES SAMPLES
 #define RADIANCE_BINDING 7
 #define LIGHT_TEXTURES_BINDING 8
 #define SHAPES_BINDING 9
@@ -35,7 +38,9 @@ layout(constant_id = 19) const uint VIEW = 0u;
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
 #define PICKS_BINDING 14
-#define TILE_LISTS_BINDING 15
+#define STENCIL_BINDING 15
+#define LIGHT_COUNTS_BINDING 16
+#define TILE_LISTS_BINDING 17
 #define TILE_LISTS_ACCESS readonly
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
@@ -45,6 +50,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "g_buffer.glsl"
 #include "output.glsl"
 #include "tiles.glsl"
+#include "light_counts.glsl"
 
 const bool BY_TILES = CLASS != CLASS_FRAME;
 const bool HAS_LIGHTS = CLASS != CLASS_EMPTY;
@@ -74,15 +80,14 @@ uint shape_at(LightList list, uint index) {
 #include "shade_pixel.glsl"
 
 LightList lights_of_frame() {
-    uint quad_count = HAS_POLYGONS ? constants.quad_count : constants.light_count;
-    return LightList(quad_count, constants.light_count, constants.shape_count, false, 0u);
+    return LightList(HAS_POLYGONS ? quad_count() : light_count(), light_count(), shape_count(), false, 0u);
 }
 
 LightList lights_of_tile(uvec2 tile) {
     uint record = tile_record(tile);
     uvec3 counts = uvec3(tile_lists[record], tile_lists[record + 1u], tile_lists[record + 2u]);
     bool is_listed = counts.x != TILE_ALL_LIGHTS;
-    counts = is_listed ? counts : uvec3(constants.quad_count, constants.light_count, constants.shape_count);
+    counts = is_listed ? counts : uvec3(quad_count(), light_count(), shape_count());
     return LightList(counts.x, counts.y, counts.z, is_listed, record + TILE_RECORD_HEADER);
 }
 

@@ -19,6 +19,7 @@ layout(push_constant, std430) uniform ShadeConstants {
     uint horizon_cells;   // of tiles alone, as the next
     float cull_threshold;
     uvec2 offset; // of the frame's rectangle in the radiance image
+    uint stencil; // view.glsl
 } constants;
 
 #endif

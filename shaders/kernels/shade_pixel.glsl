@@ -60,12 +60,12 @@ void shade_shape(inout PixelRadiance sum, ArealightPoint point, uint index) {
     }
 }
 
-PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
+PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList list) {
 #if AREALIGHT_HOST_VISIBILITY
     visibility_pixel = radiance_texel(pixel);
-    visibility_position = position;
+    visibility_position = surface.position;
 #endif
-    ArealightPoint point = arealight_point(load_seen_surface(g_buffer_texel(pixel), position));
+    ArealightPoint point = arealight_point(surface);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_QUADS) {
         for (uint index = 0u; index < list.quad_count; index++) {
@@ -87,25 +87,91 @@ PixelRadiance shade_surface(ivec2 pixel, vec3 position, LightList list) {
     return sum;
 }
 
-// Shades a pixel of the frame, if it is one, and stores it.
+// Takes those out of the bits `samples` of a texel that hold `surface`, too: the same but for a position that is no farther from its plane than
+// half the samples' distance across the view. How many. So are the samples that a fragment wrote, whose normal leans from its triangle's.
+int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout uint samples) {
+    int count = 0;
+    for (int index = 1; index < G_BUFFER_SAMPLES; index++) {
+        g_buffer_sample = index;
+        vec3 position;
+        if ((samples & (1u << index)) == 0u || !load_position_of(texel, pixel, ivec2(constants.size), position)) {
+            continue;
+        }
+        vec3 offset = position - surface.position;
+        float height = dot(offset, surface.normal);
+        vec3 across = cross(offset, surface.view);
+        bool is_near = 4.0 * height * height * dot(surface.view, surface.view)
+                    <= dot(across, across) * dot(surface.normal, surface.normal);
+        if (is_near && load_seen_surface(texel, surface.position) == surface) {
+            samples &= ~(1u << index);
+            count++;
+        }
+    }
+    return count;
+}
+
+// The samples of a texel that have a surface, a bit each; whether any passes the stencil test.
+uint find_samples(ivec2 texel, ivec2 pixel, out bool any_passes) {
+    uint samples = 0u;
+    any_passes = false;
+    for (int index = 0; index < G_BUFFER_SAMPLES; index++) {
+        g_buffer_sample = index;
+        vec3 position;
+        bool passes = passes_stencil(texel);
+        any_passes = any_passes || passes;
+        if (passes && load_position_of(texel, pixel, ivec2(constants.size), position)) {
+            samples |= 1u << index;
+        }
+    }
+    return samples;
+}
+
+// Shades the first surface of a texel's samples, and takes its samples out of them.
+PixelRadiance shade_samples(ivec2 texel, ivec2 pixel, LightList list, inout uint samples) {
+    g_buffer_sample = G_BUFFER_SAMPLES > 1 ? findLSB(samples) : 0;
+    samples &= samples - 1u;
+    vec3 position;
+    load_position_of(texel, pixel, ivec2(constants.size), position);
+    ArealightSurface surface = load_seen_surface(texel, position);
+    PixelRadiance one = shade_surface(pixel, surface, list);
+    if (G_BUFFER_SAMPLES > 1) {
+        float part = float(1 + take_samples_of(texel, pixel, surface, samples)) / float(G_BUFFER_SAMPLES);
+        one.radiance *= part;
+        one.glossy *= part;
+    }
+    return one;
+}
+
+// Shades a pixel of the frame, if it is one that passes the stencil test, and stores it. Of several samples that is their mean; each surface of
+// them is shaded once.
 void shade_pixel(ivec2 pixel, LightList list) {
     ivec2 size = ivec2(constants.size);
     if (any(greaterThanEqual(pixel, size))) {
         return;
     }
-    vec3 position;
-    bool hit = load_position_of(g_buffer_texel(pixel), pixel, size, position);
+    ivec2 texel = g_buffer_texel(pixel);
+    bool any_passes;
+    uint samples = find_samples(texel, pixel, any_passes);
+    if (!any_passes) {
+        return;
+    }
+    bool hit = samples != 0u;
+    float coverage = float(bitCount(samples)) / float(G_BUFFER_SAMPLES);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
     if (HAS_SHADOWS) {
         begin_picks(pixel);
     }
     if (HAS_LIGHTS && hit) {
-        sum = shade_surface(pixel, position, list);
+        do {
+            PixelRadiance one = shade_samples(texel, pixel, list, samples);
+            sum.radiance += one.radiance;
+            sum.glossy += one.glossy;
+        } while (G_BUFFER_SAMPLES > 1 && samples != 0u);
     }
     if (HAS_SHADOWS) {
         store_picks(pixel, size);
     }
-    store_radiance(radiance_texel(pixel), hit, sum);
+    store_radiance(radiance_texel(pixel), hit, G_BUFFER_SAMPLES > 1 ? coverage : 1.0, sum);
 }
 
 #endif

@@ -159,5 +159,5 @@ void main() {
         }
         radiance += imageLoad(radiance_image, pixel).rgb;
     }
-    imageStore(radiance_image, pixel, output_texel(radiance, unshadowed.a != 0.0));
+    imageStore(radiance_image, pixel, output_texel(radiance, unshadowed.a != 0.0, 1.0));
 }

@@ -13,7 +13,8 @@ shared float tile_parts[TILE_PIXELS];
 const int TILE_PAIRS = AREALIGHT_HAS_COAT ? 8 : 5;
 shared vec4 tile_maxima[2 * TILE_PAIRS];
 
-// Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after the next barrier.
+// Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after the next barrier. With several samples a
+// pixel, of those from the first to the one that is read.
 void tile_reduce(int pair, vec4 first, vec4 second) {
     uint invocation = gl_LocalInvocationIndex;
     tile_scratch[invocation] = first;
@@ -29,11 +30,12 @@ void tile_reduce(int pair, vec4 first, vec4 second) {
     tile_parts[invocation] = largest;
     barrier();
     if (invocation < 8u) {
-        largest = -TILE_FAR;
+        int place = 2 * pair + int(invocation >> 2u);
+        largest = g_buffer_sample > 0 ? tile_maxima[place][invocation & 3u] : -TILE_FAR;
         for (uint step = 0u; step < 8u; step++) {
             largest = max(tile_parts[8u * invocation + step], largest);
         }
-        tile_maxima[2 * pair + int(invocation >> 2u)][invocation & 3u] = largest;
+        tile_maxima[place][invocation & 3u] = largest;
     }
 }
 

@@ -10,12 +10,13 @@ use arealight_capi::{
     ArealightMemory, ArealightPackedLights, ArealightPass, ArealightPassOptions, ArealightResources,
     ArealightResult, ArealightSetLayout, ArealightUpload, ArealightViewport, arealight_create,
     arealight_destroy, arealight_last_error, arealight_pack_lights, arealight_pass_create,
-    arealight_pass_record, arealight_pass_set_layout, arealight_pass_write_set, arealight_table_bind_memory,
-    arealight_table_memory, arealight_table_upload,
+    arealight_pass_record, arealight_pass_record_pushed, arealight_pass_set_layout, arealight_pass_write_set,
+    arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_engine::host::{Buffer, DescriptorPool, Image, Location, Usage};
 use ash::vk::{self, Handle as _};
 use glam::{Vec3, Vec4};
+use std::cell::Cell;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
 
@@ -93,6 +94,23 @@ pub fn c_lamp(light: &Light) -> ArealightLight {
     }
 }
 
+/// A frame of no pixels and no light.
+pub const NO_FRAME: ArealightFrame = ArealightFrame {
+    width: 0,
+    height: 0,
+    camera: [0.0; 3],
+    lights: ArealightLightSummary { light_count: 0, quad_count: 0, shape_count: 0, effects: 0 },
+    seed: 0,
+    position_from_clip: null(),
+    tile_lists: ArealightBuffer { buffer: 0, offset: 0, range: 0 },
+    viewport: ArealightViewport { x: 0.0, y: 0.0, width: 0.0, height: 0.0, min_depth: 0.0, max_depth: 0.0 },
+    offset: [0; 2],
+    rows: [0; 2],
+    stencil_compare_mask: 0,
+    stencil_reference: 0,
+    light_offsets: [0; 3],
+};
+
 /// To ask for the sizes alone.
 pub const NO_ARRAYS: ArealightPackedLights = ArealightPackedLights {
     lights: null_mut(),
@@ -111,6 +129,8 @@ pub struct CLibrary<'a> {
     _entry: ash::Entry,
     /// Null is not destroyed.
     pub arealight: *mut Arealight,
+    /// Whether frames are recorded by what is pushed, of passes that are made so.
+    pub is_pushed: Cell<bool>,
 }
 
 impl<'a> CLibrary<'a> {
@@ -144,7 +164,7 @@ impl<'a> CLibrary<'a> {
         let mut arealight = null_mut();
         // SAFETY: the handles are the engine's, which outlives the library's object.
         good(unsafe { arealight_create(&raw const info, null(), &raw mut arealight) });
-        Self { engine, _entry: entry, arealight }
+        Self { engine, _entry: entry, arealight, is_pushed: Cell::new(false) }
     }
 
     /// A pass for surfaces.
@@ -152,10 +172,17 @@ impl<'a> CLibrary<'a> {
     /// # Panics
     /// Where the library refuses.
     pub fn pass(&self, surfaces: u32) -> *mut ArealightPass {
-        let options = ArealightPassOptions { surfaces, ..ArealightPassOptions::default() };
+        self.pass_with(&ArealightPassOptions { surfaces, ..ArealightPassOptions::default() })
+    }
+
+    /// A pass of these options.
+    ///
+    /// # Panics
+    /// Where the library refuses.
+    pub fn pass_with(&self, options: &ArealightPassOptions) -> *mut ArealightPass {
         let mut pass = null_mut();
         // SAFETY: the pointers are valid.
-        good(unsafe { arealight_pass_create(self.arealight, &raw const options, &raw mut pass) });
+        good(unsafe { arealight_pass_create(self.arealight, options, &raw mut pass) });
         pass
     }
 
@@ -246,7 +273,6 @@ impl<'a> CLibrary<'a> {
     ///
     /// # Panics
     /// Where the library or the device refuses.
-    #[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
     pub fn shade(
         &self,
         pass: *mut ArealightPass,
@@ -305,23 +331,31 @@ impl<'a> CLibrary<'a> {
             height: 1,
             camera: camera.to_array(),
             lights: packed.summary,
-            seed: 0,
-            position_from_clip: null(),
-            tile_lists: ArealightBuffer::default(),
-            viewport: ArealightViewport::default(),
-            offset: [0; 2],
-            rows: [0; 2],
+            ..NO_FRAME
         };
-        let (set, _pool) = self.set(&set_layout(pass));
-        // SAFETY: the set is new, and what it points to lives until the submission was waited for.
-        good(unsafe { arealight_pass_write_set(pass, self.arealight, set.as_raw(), &raw const resources) });
-        let recorded = host.submit(|commands| {
-            let commands = commands.as_raw() as *mut c_void;
-            // SAFETY: the commands are being recorded, with a set of the frame's size.
-            good(unsafe { arealight_pass_record(pass, commands, set.as_raw(), &raw const frame) });
-        });
-        recorded.expect("a submission");
+        self.submit(pass, &resources, &frame);
         one_pixel::read(&radiance, format)
+    }
+
+    /// Records a frame with a new set, or with what is pushed, and waits for it.
+    fn submit(&self, pass: *mut ArealightPass, resources: &ArealightResources, frame: &ArealightFrame) {
+        let (arealight, host) = (self.arealight, self.engine.host());
+        let raw = |commands: vk::CommandBuffer| commands.as_raw() as *mut c_void;
+        let recorded = if self.is_pushed.get() {
+            // SAFETY: the commands are being recorded, and what they use lives until they were waited for.
+            host.submit(|commands| unsafe {
+                good(arealight_pass_record_pushed(pass, arealight, raw(commands), resources, frame));
+            })
+        } else {
+            let (set, _pool) = self.set(&set_layout(pass));
+            // SAFETY: the set is new, and what it points to lives until the submission was waited for.
+            good(unsafe { arealight_pass_write_set(pass, arealight, set.as_raw(), resources) });
+            // SAFETY: the commands are being recorded, with a set of the frame's size.
+            host.submit(|commands| unsafe {
+                good(arealight_pass_record(pass, raw(commands), set.as_raw(), frame));
+            })
+        };
+        recorded.expect("a submission");
     }
 }
 
@@ -338,13 +372,7 @@ impl Drop for CLibrary<'_> {
 /// Where the library refuses.
 #[expect(clippy::not_unsafe_ptr_arg_deref, reason = "the library refuses a pass that is none")]
 pub fn set_layout(pass: *const ArealightPass) -> ArealightSetLayout {
-    let mut layout = ArealightSetLayout {
-        layout: 0,
-        sampled_images: 0,
-        combined_image_samplers: 0,
-        storage_images: 0,
-        storage_buffers: 0,
-    };
+    let mut layout = ArealightSetLayout::default();
     // SAFETY: the pointers are valid.
     good(unsafe { arealight_pass_set_layout(pass, &raw mut layout) });
     layout

@@ -47,6 +47,21 @@ pub static BRANCHES: Kernel = Kernel {
     constants: &[0, 1, 2],
 };
 
+/// How far lights of records are of any matter; seven numbers a light.
+pub static LIGHT_REACH: Kernel = Kernel {
+    name: "light_reach",
+    spirv: include_bytes!("../spirv/light_reach.spv"),
+    local_size: [8, 1, 1],
+    push_constant_size: 4,
+    bindings: &[
+        arealight::kernels::LIGHTS,
+        arealight::kernels::SHAPES,
+        Binding::storage_buffer("asked", Access::Read, "two counts, threshold and density"),
+        Binding::storage_buffer("results", Access::Write, "radius, low and high a light"),
+    ],
+    constants: &[],
+};
+
 /// The example of a host's shader that says whether its table is right.
 pub static SELF_TEST: Kernel = Kernel {
     name: "self_test",

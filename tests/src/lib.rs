@@ -4,11 +4,13 @@
 pub mod c_library;
 mod cases;
 mod compare;
+pub mod floor;
 pub mod frame;
 pub mod kernel;
 mod levels;
 pub mod lobe;
 pub mod materials;
+pub mod multisampled;
 pub mod one_pixel;
 mod points;
 mod property;
@@ -61,10 +63,22 @@ impl TestEngine {
     /// # Panics
     /// As [`TestEngine::new`].
     pub fn with_format(format: TableFormat) -> Option<Self> {
-        let host = arealight_engine::host::testing::device_or_skip()?;
+        Some(Self::of_host(arealight_engine::host::testing::device_or_skip()?, format))
+    }
+
+    /// As [`TestEngine::new`], on a device with `VK_KHR_push_descriptor`; `None` where it has none, too.
+    ///
+    /// # Panics
+    /// As [`TestEngine::new`].
+    pub fn with_push_descriptors() -> Option<Self> {
+        let host = arealight_engine::host::testing::device_with_push_descriptors()?;
+        Some(Self::of_host(host, TableFormat::default()))
+    }
+
+    fn of_host(host: TestHost, format: TableFormat) -> Self {
         let engine =
             Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
-        Some(Self { engine, host })
+        Self { engine, host }
     }
 
     /// As [`TestEngine::new`], with modules handed to the driver as they are.

@@ -5,7 +5,7 @@
 use crate::ladder::methods::SHADE_YARDSTICK;
 use crate::school::School;
 use arealight::kernels::{self, BindingKind, Kernel};
-use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::plan::{self, Output, RadianceFormat, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{
     Effects, Footprint, FormFactor, Horizon, LightSummary, Lobes, Quality, SpecularLobes, TileClass,
 };
@@ -63,7 +63,7 @@ impl Row {
     pub fn shader(&self) -> ComputeShader {
         match &self.source {
             Source::Kernel(kernel, specialization) => ComputeShader {
-                words: prune(&kernel.words(), specialization),
+                words: prune(&words_of(kernel, specialization), specialization),
                 specialization: specialization.clone(),
                 bindings: kernel.bindings.iter().map(|binding| (descriptor(binding.kind), 1)).collect(),
                 push_constant_size: kernel.push_constant_size,
@@ -165,6 +165,14 @@ pub fn rows() -> Vec<Row> {
         shade("quads and disks", "exact", LOBES | disk, true, exact),
         shade("every kind", "exact", LOBES | every_kind, true, exact),
         shade("every kind", "exact, coat with its own normal", LOBES | COATS | every_kind, true, exact),
+        // What a host's frames and images are
+        frames("quads", "exact, stencil test", ShadeOptions { stencil: true, ..ShadeOptions::default() }),
+        frames(
+            "quads",
+            "exact, lights counted by the GPU",
+            ShadeOptions { light_counts: true, ..ShadeOptions::default() },
+        ),
+        frames("quads", "exact, 4 samples a pixel", ShadeOptions { samples: 4, ..ShadeOptions::default() }),
         // Tiles
         classify("quads", "no culling", none, 0.0),
         classify("quads", "culling", none, 0.01),
@@ -235,6 +243,19 @@ fn shade(lights: &'static str, level: &'static str, effects: Effects, quads: boo
     let frame = LightSummary { quad_count: u32::from(quads), effects, ..LightSummary::default() };
     let specialization = plan::shade_specialization(options, frame);
     row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+}
+
+/// The shade pass of quads with other options.
+fn frames(lights: &'static str, level: &'static str, options: ShadeOptions) -> Row {
+    let frame = LightSummary { quad_count: 1, ..LightSummary::default() };
+    let specialization = plan::shade_specialization(options, frame);
+    row(&kernels::SHADE, lights, level, Some(YARDSTICK), specialization)
+}
+
+/// A kernel's module as the recorder has it for this specialisation.
+fn words_of(kernel: &Kernel, specialization: &[(u32, u32)]) -> Vec<u32> {
+    let samples = specialization.iter().find(|(id, _)| *id == kernels::constant::SAMPLES);
+    kernel.words_for(RadianceFormat::default(), samples.map_or(1, |(_, samples)| *samples))
 }
 
 /// The shade pass that picks lights and lobes for shadow rays; `kinds` of lights beside quads.

@@ -128,6 +128,16 @@
 // It is the direction to the camera, of any length but 0: an orthographic one.
 #define AREALIGHT_CAMERA_ORTHOGRAPHIC 1
 
+// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set, arealight_pass_record.
+#define AREALIGHT_DESCRIPTORS_SETS 0
+
+// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with ArealightFrame.light_offsets, and their
+// ArealightBuffer.range is given.
+#define AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS 1
+
+// Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
+#define AREALIGHT_DESCRIPTORS_PUSHED 2
+
 // What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
 // F0 and F90.
 #define AREALIGHT_G_BUFFER_AREALIGHT 0
@@ -395,6 +405,18 @@ typedef struct ArealightPackedLights {
     struct ArealightLightSummary summary;
 } ArealightPackedLights;
 
+// How far a light is of any matter: arealight_light_reach.
+typedef struct ArealightReach {
+    // The light's middle, in world positions.
+    double center[3];
+    // How far from there it may reflect more than the threshold; infinite where nothing bounds it.
+    double radius;
+    // The corners of a box outside of which it does not either: smaller for flat lights that shine to one side.
+    double low[3];
+    // Likewise.
+    double high[3];
+} ArealightReach;
+
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
@@ -437,6 +459,15 @@ typedef struct ArealightPassOptions {
     // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
     // rays. 0 is 1.
     uint32_t texels_per_pixel;
+    // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance is the mean over them. Not with shadow rays or
+    // half resolution. 0 is 1.
+    uint32_t samples;
+    // 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are; without shadow rays. Else 0.
+    uint32_t stencil;
+    // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run; ArealightFrame.lights says the most. Else 0.
+    uint32_t light_counts;
+    // One of AREALIGHT_DESCRIPTORS_*.
+    uint32_t descriptors;
 } ArealightPassOptions;
 
 // What a descriptor set is made with.
@@ -451,6 +482,10 @@ typedef struct ArealightSetLayout {
     uint32_t storage_images;
     // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
     uint32_t storage_buffers;
+    // VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC
+    uint32_t dynamic_storage_buffers;
+    // 0
+    uint32_t reserved;
 } ArealightSetLayout;
 
 // A range of a buffer of the host, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT.
@@ -513,6 +548,11 @@ typedef struct ArealightResources {
     struct ArealightBuffer tile_lists;
     // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     struct ArealightBuffer shadow_picks;
+    // A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint). Without ArealightPassOptions.stencil 0.
+    struct ArealightImage stencil;
+    // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are convex quads without a texture. Without
+    // ArealightPassOptions.light_counts 0.
+    struct ArealightBuffer light_counts;
 } ArealightResources;
 
 // The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
@@ -567,6 +607,12 @@ typedef struct ArealightFrame {
     // The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
     // watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
     uint32_t rows[2];
+    // With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and every pixel is shaded.
+    uint32_t stencil_compare_mask;
+    // What those bits must be, at most 255.
+    uint32_t stencil_reference;
+    // With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else 0.
+    uint32_t light_offsets[3];
 } ArealightFrame;
 
 // Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
@@ -725,6 +771,16 @@ enum ArealightResult arealight_table_bind_memory(struct Arealight *arealight,
 enum ArealightResult arealight_table_upload(struct Arealight *arealight,
                                             const struct ArealightUpload *upload);
 
+// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness: for arealight_light_reach. Ask
+// once.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_lobe_density(const struct Arealight *arealight,
+                                            uint32_t specular_lobes,
+                                            double roughness,
+                                            double *out);
+
 // Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
 // `specular_lobes`: what the passes are made with, one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
 //
@@ -755,6 +811,17 @@ enum ArealightResult arealight_pack_lights(const struct ArealightLight *lights,
                                            uint32_t light_count,
                                            const double *origin,
                                            struct ArealightPackedLights *packed);
+
+// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface reflects more of it than `threshold`, in
+// W/(m² sr), in any channel. `density`, a steradian, is of the surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without
+// specular lobe, else that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
+//
+// The host sees to it:
+// Pointers are null or valid.
+enum ArealightResult arealight_light_reach(const struct ArealightLight *light,
+                                           double threshold,
+                                           double density,
+                                           struct ArealightReach *out);
 
 // Makes a pass. Its pipelines are made when the first frame is recorded whose lights need them, or ahead by
 // arealight_pass_prepare. `*out` is the host's to destroy.
@@ -813,6 +880,17 @@ enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
                                            void *command_buffer,
                                            uint64_t set,
                                            const struct ArealightFrame *frame);
+
+// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of `arealight`, are pushed, and no descriptor set
+// is needed.
+//
+// The host sees to it:
+// As arealight_pass_record. The resources outlive the commands.
+enum ArealightResult arealight_pass_record_pushed(const struct ArealightPass *pass,
+                                                  const struct Arealight *arealight,
+                                                  void *command_buffer,
+                                                  const struct ArealightResources *resources,
+                                                  const struct ArealightFrame *frame);
 
 // Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
 // would take a moment for otherwise.
@@ -1034,7 +1112,7 @@ AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_size) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_buffer) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, staging_offset) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightUpload, command_buffer) == 32);
-AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 72);
+AREALIGHT_ASSERT(sizeof(ArealightPassOptions) == 88);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, surfaces) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, form_factor) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, horizon) == 8);
@@ -1053,12 +1131,18 @@ AREALIGHT_ASSERT(offsetof(ArealightPassOptions, shadow_rays) == 56);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, camera) == 60);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, rectangle) == 64);
 AREALIGHT_ASSERT(offsetof(ArealightPassOptions, texels_per_pixel) == 68);
-AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, samples) == 72);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, stencil) == 76);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, light_counts) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightPassOptions, descriptors) == 84);
+AREALIGHT_ASSERT(sizeof(ArealightSetLayout) == 32);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, layout) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, sampled_images) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, combined_image_samplers) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_images) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightSetLayout, storage_buffers) == 20);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, dynamic_storage_buffers) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightSetLayout, reserved) == 28);
 AREALIGHT_ASSERT(sizeof(ArealightLight) == 168);
 AREALIGHT_ASSERT(offsetof(ArealightLight, name) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLight, kind) == 8);
@@ -1079,6 +1163,11 @@ AREALIGHT_ASSERT(offsetof(ArealightLight, axis_v) == 128);
 AREALIGHT_ASSERT(offsetof(ArealightLight, radius) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightLight, ends) == 160);
 AREALIGHT_ASSERT(offsetof(ArealightLight, reserved) == 164);
+AREALIGHT_ASSERT(sizeof(ArealightReach) == 80);
+AREALIGHT_ASSERT(offsetof(ArealightReach, center) == 0);
+AREALIGHT_ASSERT(offsetof(ArealightReach, radius) == 24);
+AREALIGHT_ASSERT(offsetof(ArealightReach, low) == 32);
+AREALIGHT_ASSERT(offsetof(ArealightReach, high) == 56);
 AREALIGHT_ASSERT(sizeof(ArealightLightSummary) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightLightSummary, light_count) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightLightSummary, quad_count) == 4);
@@ -1096,7 +1185,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 304);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 344);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -1113,6 +1202,8 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 216);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 232);
 AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 256);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 280);
+AREALIGHT_ASSERT(offsetof(ArealightResources, stencil) == 304);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_counts) == 320);
 AREALIGHT_ASSERT(sizeof(ArealightViewport) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, x) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, y) == 4);
@@ -1120,7 +1211,7 @@ AREALIGHT_ASSERT(offsetof(ArealightViewport, width) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, height) == 12);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, min_depth) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, max_depth) == 20);
-AREALIGHT_ASSERT(sizeof(ArealightFrame) == 112);
+AREALIGHT_ASSERT(sizeof(ArealightFrame) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, camera) == 8);
@@ -1131,6 +1222,9 @@ AREALIGHT_ASSERT(offsetof(ArealightFrame, tile_lists) == 48);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, viewport) == 72);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, offset) == 96);
 AREALIGHT_ASSERT(offsetof(ArealightFrame, rows) == 104);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_compare_mask) == 112);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, stencil_reference) == 116);
+AREALIGHT_ASSERT(offsetof(ArealightFrame, light_offsets) == 120);
 AREALIGHT_ASSERT(sizeof(ArealightTileMemory) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, size) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTileMemory, usage) == 8);
@@ -1161,12 +1255,12 @@ AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, width) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, height) == 4);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, layers) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightTextureOptions, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 88);
+AREALIGHT_ASSERT(sizeof(ArealightTextureNeeds) == 104);
 AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, memory) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set) == 32);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, source_set) == 56);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set_count) == 80);
-AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, reserved) == 84);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, source_set) == 64);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, level_set_count) == 96);
+AREALIGHT_ASSERT(offsetof(ArealightTextureNeeds, reserved) == 100);
 AREALIGHT_ASSERT(sizeof(ArealightTextureSetup) == 40);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightTextureSetup, memory_offset) == 8);

@@ -77,6 +77,14 @@ pub const AREALIGHT_CAMERA_PERSPECTIVE: u32 = 0;
 /// It is the direction to the camera, of any length but 0: an orthographic one.
 pub const AREALIGHT_CAMERA_ORTHOGRAPHIC: u32 = 1;
 
+/// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set, arealight_pass_record.
+pub const AREALIGHT_DESCRIPTORS_SETS: u32 = 0;
+/// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with ArealightFrame.light_offsets, and their
+/// ArealightBuffer.range is given.
+pub const AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS: u32 = 1;
+/// Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
+pub const AREALIGHT_DESCRIPTORS_PUSHED: u32 = 2;
+
 /// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
 /// F0 and F90.
 pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;

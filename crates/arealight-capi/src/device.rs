@@ -1,19 +1,23 @@
 //! From the host's handles to a table on its device.
 
-use crate::constants::{AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F};
+use crate::constants::{
+    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_DESCRIPTORS_SETS,
+    AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F,
+};
 use crate::failure::{ArealightResult, Failure, call};
 use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
 use arealight::table::LobeHorizon;
 use arealight::{LightTable, SpecularLobes};
 use arealight_table::TableFile;
-use arealight_vk::ash::vk::{self, Handle as _};
+use arealight_vk::ash::{self, vk, vk::Handle as _};
 use arealight_vk::{Context, TableFormat, TableImage};
 use std::ffi::c_void;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The library on a device of the host, with a light table.
 pub struct Arealight {
+    instance: ash::Instance,
     context: Context,
     format: TableFormat,
     table: LightTable,
@@ -29,6 +33,21 @@ struct Image {
 impl Arealight {
     pub(crate) fn context(&self) -> &Context {
         &self.context
+    }
+
+    /// The context of passes with one of AREALIGHT_DESCRIPTORS_*.
+    ///
+    /// # Safety
+    /// With AREALIGHT_DESCRIPTORS_PUSHED the device was made with `VK_KHR_push_descriptor`.
+    pub(crate) unsafe fn context_with(&self, descriptors: u32) -> Result<Context, Failure> {
+        let context = self.context.clone();
+        match descriptors {
+            AREALIGHT_DESCRIPTORS_SETS => Ok(context),
+            AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS => Ok(context.with_light_offsets()),
+            // SAFETY: the same contract; the instance is the device's.
+            AREALIGHT_DESCRIPTORS_PUSHED => Ok(unsafe { context.with_push_descriptors(&self.instance) }),
+            other => Err(Failure::argument(format!("options.descriptors: {other} must be from 0 to 2"))),
+        }
     }
 
     /// Nodes a side of the table.
@@ -89,7 +108,7 @@ pub unsafe extern "C" fn arealight_create(
             let context = Context::new(&instance, physical_device, &device)?
                 .with_pipeline_cache(vk::PipelineCache::from_raw(host.pipeline_cache));
             let image = Image { table: TableImage::new(&context, &table, format)?, memory: None };
-            Arealight { context, format, table, image: Mutex::new(image) }
+            Arealight { instance, context, format, table, image: Mutex::new(image) }
         };
         // SAFETY: as above.
         unsafe { arguments::write(out, handles::give(arealight), "out") }
@@ -227,6 +246,32 @@ pub unsafe extern "C" fn arealight_table_upload(
             );
         }
         Ok(())
+    })
+}
+
+/// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness: for arealight_light_reach. Ask
+/// once.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_lobe_density(
+    arealight: *const Arealight,
+    specular_lobes: u32,
+    roughness: f64,
+    out: *mut f64,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let arealight = unsafe { handles::borrow(arealight, "arealight") }?;
+        let specular_lobes =
+            crate::pass::level(specular_lobes, &[SpecularLobes::One, SpecularLobes::Two], "specular_lobes")?;
+        if !(0.0..=1.0).contains(&roughness) {
+            return Err(Failure::argument(format!("roughness: {roughness} must be from 0 to 1")));
+        }
+        let density = arealight.table.lobe_density(specular_lobes, roughness);
+        // SAFETY: as above.
+        unsafe { arguments::write(out, density, "out") }
     })
 }
 

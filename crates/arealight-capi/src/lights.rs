@@ -6,8 +6,10 @@ use crate::constants::{
     AREALIGHT_LIGHT_TUBE, AREALIGHT_TUBE_FLAT, AREALIGHT_TUBE_OPEN, AREALIGHT_TUBE_ROUND,
 };
 use crate::failure::{ArealightResult, Failure, call};
-use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights};
-use arealight::{Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, TubeEnds};
+use crate::types::{ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightReach};
+use arealight::{
+    Effects, Light, LightError, LightShape, LightSummary, LightTexture, PackedLights, TubeEnds, reach,
+};
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
 
@@ -58,6 +60,41 @@ pub unsafe extern "C" fn arealight_pack_lights(
         for ((to, ..), bytes) in arrays() {
             // SAFETY: as above; there is room.
             unsafe { copy(bytes, to) };
+        }
+        Ok(())
+    })
+}
+
+/// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface reflects more of it than `threshold`, in
+/// W/(m² sr), in any channel. `density`, a steradian, is of the surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without
+/// specular lobe, else that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
+///
+/// # Safety
+/// Pointers are null or valid.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_light_reach(
+    light: *const ArealightLight,
+    threshold: f64,
+    density: f64,
+    out: *mut ArealightReach,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let lights = unsafe { read_lights(arguments::array(light, 1, "light")?) }?;
+        for light in &lights {
+            light.validate().map_err(|fault| LightError { index: 0, name: light.name.clone(), fault })?;
+            for (value, field) in [(threshold, "threshold"), (density, "density")] {
+                if !(value >= 0.0 && value.is_finite()) {
+                    return Err(Failure::argument(format!(
+                        "{field}: {value} must be finite and not negative"
+                    )));
+                }
+            }
+            let radius = reach::radius(light, threshold, density);
+            let [low, high] = reach::bounds(light, radius).map(|corner| corner.to_array());
+            let found = ArealightReach { center: light.shape.center().to_array(), radius, low, high };
+            // SAFETY: as above.
+            unsafe { arguments::write(out, found, "out") }?;
         }
         Ok(())
     })

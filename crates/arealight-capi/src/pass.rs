@@ -11,7 +11,7 @@ use crate::{arguments, handles};
 use arealight::plan::{GBufferLayout, Output, RadianceFormat, ShadeOptions, TileOptions};
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use arealight_vk::ash::vk::{self, Handle as _};
-use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, Viewport};
+use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources, StencilTest, Viewport};
 use glam::{Mat4, Vec3};
 use std::ffi::c_void;
 
@@ -39,8 +39,7 @@ pub unsafe extern "C" fn arealight_pass_create(
 ) -> ArealightResult {
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe {
-        create(arealight, options, out, |arealight, options, tiles| {
-            let context = arealight.context();
+        create(arealight, options, out, |arealight, context, options, tiles| {
             Ok(match tiles {
                 None => ShadePass::new(context, options)?,
                 Some(tiles) => ShadePass::with_tiles(context, options, tiles, arealight.table_size())?,
@@ -63,7 +62,7 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
     size: usize,
     out: *mut *mut ArealightPass,
 ) -> ArealightResult {
-    let make = |arealight: &Arealight, options, tiles: Option<TileOptions>| {
+    let make = |_: &Arealight, context: &Context, options, tiles: Option<TileOptions>| {
         if tiles.is_some() {
             return Err(Failure::argument(
                 "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the host's own",
@@ -75,7 +74,7 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
         // SAFETY: the same contract, here and below.
         let words = unsafe { arguments::array(words, size / 4, "words") }?;
         // SAFETY: as above.
-        Ok(unsafe { ShadePass::with_module(arealight.context(), options, words.to_vec()) }?)
+        Ok(unsafe { ShadePass::with_module(context, options, words.to_vec()) }?)
     };
     // SAFETY: the same contract; the pass is the host's to destroy.
     call(|| unsafe { create(arealight, options, out, make) })
@@ -87,14 +86,16 @@ unsafe fn create(
     arealight: *const Arealight,
     options: *const ArealightPassOptions,
     out: *mut *mut ArealightPass,
-    make: impl FnOnce(&Arealight, ShadeOptions, Option<TileOptions>) -> Result<ShadePass, Failure>,
+    make: impl FnOnce(&Arealight, &Context, ShadeOptions, Option<TileOptions>) -> Result<ShadePass, Failure>,
 ) -> Result<(), Failure> {
     // SAFETY: the same contract, here and below.
     let (arealight, options) = unsafe {
         arguments::write(out, std::ptr::null_mut(), "out")?;
         (handles::borrow(arealight, "arealight")?, arguments::read(options, "options")?)
     };
-    let pass = make(arealight, shade_options(options)?, tile_options(options))?;
+    // SAFETY: the host says that its device has the extension.
+    let context = unsafe { arealight.context_with(options.descriptors) }?;
+    let pass = make(arealight, &context, shade_options(options)?, tile_options(options))?;
     // SAFETY: as above.
     unsafe { arguments::write(out, handles::give(ArealightPass { pass }), "out") }
 }
@@ -161,6 +162,9 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
         orthographic: level(options.camera, &[false, true], "options.camera")?,
         rectangle: level(options.rectangle, &[false, true], "options.rectangle")?,
         texels_per_pixel: options.texels_per_pixel.max(1),
+        samples: options.samples.max(1),
+        stencil: level(options.stencil, &[false, true], "options.stencil")?,
+        light_counts: level(options.light_counts, &[false, true], "options.light_counts")?,
     })
 }
 
@@ -205,6 +209,8 @@ pub(crate) fn set_layout(
         combined_image_samplers: count(vk::DescriptorType::COMBINED_IMAGE_SAMPLER),
         storage_images: count(vk::DescriptorType::STORAGE_IMAGE),
         storage_buffers: count(vk::DescriptorType::STORAGE_BUFFER),
+        dynamic_storage_buffers: count(vk::DescriptorType::STORAGE_BUFFER_DYNAMIC),
+        reserved: 0,
     }
 }
 
@@ -230,13 +236,22 @@ pub unsafe extern "C" fn arealight_pass_write_set(
             )
         };
         arguments::refuse_null([(set == 0, "set")])?;
-        let resources = ShadeResources {
-            lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
-            tile_lists: pass.tiles().map(|_| buffer(resources.tile_lists)),
-            ..read_resources(arealight, resources)?
-        };
+        let resources = resources_of(pass, arealight, resources)?;
         // SAFETY: the caller vouches for the set and the resources.
         Ok(unsafe { pass.write_set(vk::DescriptorSet::from_raw(set), &resources) }?)
+    })
+}
+
+/// The host's resources of a pass.
+fn resources_of(
+    pass: &ShadePass,
+    arealight: &Arealight,
+    resources: &ArealightResources,
+) -> Result<ShadeResources, Failure> {
+    Ok(ShadeResources {
+        lobe_horizons: pass.tiles().map(|_| buffer(resources.lobe_horizons)),
+        tile_lists: pass.tiles().map(|_| buffer(resources.tile_lists)),
+        ..read_resources(arealight, resources)?
     })
 }
 
@@ -259,6 +274,7 @@ pub(crate) fn read_resources(
         (resources.light_textures, "light_textures"),
         (resources.radiance, "radiance"),
         (resources.glossy, "glossy"),
+        (resources.stencil, "stencil"),
     ] {
         arguments::refuse_reserved(image.reserved, &format!("resources.{field}.reserved"))?;
     }
@@ -277,6 +293,8 @@ pub(crate) fn read_resources(
         anisotropy: (resources.anisotropy.view != 0).then(|| sampled(resources.anisotropy)),
         radiance: stored(resources.radiance),
         glossy: (resources.glossy.view != 0).then(|| stored(resources.glossy)),
+        stencil: (resources.stencil.view != 0).then(|| sampled(resources.stencil)),
+        light_counts: (resources.light_counts.buffer != 0).then(|| buffer(resources.light_counts)),
         picks: (resources.shadow_picks.buffer != 0).then(|| buffer(resources.shadow_picks)),
         ..ShadeResources::default()
     })
@@ -352,6 +370,37 @@ pub unsafe extern "C" fn arealight_pass_record(
     })
 }
 
+/// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of `arealight`, are pushed, and no descriptor set
+/// is needed.
+///
+/// # Safety
+/// As arealight_pass_record. The resources outlive the commands.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn arealight_pass_record_pushed(
+    pass: *const ArealightPass,
+    arealight: *const Arealight,
+    command_buffer: *mut c_void,
+    resources: *const ArealightResources,
+    frame: *const ArealightFrame,
+) -> ArealightResult {
+    call(|| {
+        // SAFETY: the caller vouches for the pointers, here and below.
+        let (pass, arealight, resources, frame) = unsafe {
+            (
+                &handles::borrow(pass, "pass")?.pass,
+                handles::borrow(arealight, "arealight")?,
+                arguments::read(resources, "resources")?,
+                read_frame(arguments::read(frame, "frame")?)?,
+            )
+        };
+        arguments::refuse_null([(command_buffer.is_null(), "command_buffer")])?;
+        let resources = resources_of(pass, arealight, resources)?;
+        let command_buffer = vk::CommandBuffer::from_raw(command_buffer as u64);
+        // SAFETY: the caller vouches for the command buffer and the resources.
+        Ok(unsafe { pass.record_pushed(command_buffer, &resources, None, &frame) }?)
+    })
+}
+
 /// # Safety
 /// The frame's pointer is null or valid.
 pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Failure> {
@@ -369,7 +418,17 @@ pub(crate) unsafe fn read_frame(frame: &ArealightFrame) -> Result<ShadeFrame, Fa
         offset: frame.offset,
         rows: (frame.rows != [0, 0]).then_some(frame.rows),
         viewport: (frame.viewport != ArealightViewport::default()).then(|| viewport(frame.viewport)),
+        stencil: StencilTest {
+            compare_mask: byte(frame.stencil_compare_mask, "frame.stencil_compare_mask")?,
+            reference: byte(frame.stencil_reference, "frame.stencil_reference")?,
+        },
+        light_offsets: frame.light_offsets,
     })
+}
+
+/// Eight bits of a stencil.
+fn byte(number: u32, field: &str) -> Result<u8, Failure> {
+    u8::try_from(number).map_err(|_| Failure::argument(format!("{field}: {number} must be from 0 to 255")))
 }
 
 fn viewport(viewport: ArealightViewport) -> Viewport {

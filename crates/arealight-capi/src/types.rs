@@ -125,11 +125,20 @@ pub struct ArealightPassOptions {
     /// How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
     /// rays. 0 is 1.
     pub texels_per_pixel: u32,
+    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance is the mean over them. Not with shadow rays or
+    /// half resolution. 0 is 1.
+    pub samples: u32,
+    /// 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are; without shadow rays. Else 0.
+    pub stencil: u32,
+    /// 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run; ArealightFrame.lights says the most. Else 0.
+    pub light_counts: u32,
+    /// One of AREALIGHT_DESCRIPTORS_*.
+    pub descriptors: u32,
 }
 
 /// What a descriptor set is made with.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightSetLayout {
     /// VkDescriptorSetLayout, the library's own.
     pub layout: u64,
@@ -141,6 +150,10 @@ pub struct ArealightSetLayout {
     pub storage_images: u32,
     /// VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
     pub storage_buffers: u32,
+    /// VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC
+    pub dynamic_storage_buffers: u32,
+    /// 0
+    pub reserved: u32,
 }
 
 /// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its kind.
@@ -188,6 +201,20 @@ pub struct ArealightLight {
     pub ends: u32,
     /// 0
     pub reserved: u32,
+}
+
+/// How far a light is of any matter: arealight_light_reach.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct ArealightReach {
+    /// The light's middle, in world positions.
+    pub center: [f64; 3],
+    /// How far from there it may reflect more than the threshold; infinite where nothing bounds it.
+    pub radius: f64,
+    /// The corners of a box outside of which it does not either: smaller for flat lights that shine to one side.
+    pub low: [f64; 3],
+    /// Likewise.
+    pub high: [f64; 3],
 }
 
 /// What a frame needs to know of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
@@ -290,6 +317,11 @@ pub struct ArealightResources {
     pub tile_lists: ArealightBuffer,
     /// Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     pub shadow_picks: ArealightBuffer,
+    /// A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint). Without ArealightPassOptions.stencil 0.
+    pub stencil: ArealightImage,
+    /// Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are convex quads without a texture. Without
+    /// ArealightPassOptions.light_counts 0.
+    pub light_counts: ArealightBuffer,
 }
 
 /// The rectangle of a G-buffer's texels that clip space was drawn to: VkViewport.
@@ -337,6 +369,12 @@ pub struct ArealightFrame {
     /// The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
     /// watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
     pub rows: [u32; 2],
+    /// With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and every pixel is shaded.
+    pub stencil_compare_mask: u32,
+    /// What those bits must be, at most 255.
+    pub stencil_reference: u32,
+    /// With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else 0.
+    pub light_offsets: [u32; 3],
 }
 
 /// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host

@@ -19,6 +19,29 @@ pub struct Context {
     pub(crate) whole_modules: bool,
     pub(crate) names: DebugNames,
     pub(crate) written_sets: WrittenSets,
+    pub(crate) descriptors: Descriptors,
+}
+
+/// How shade passes get at the host's resources.
+#[derive(Clone, Default)]
+pub(crate) enum Descriptors {
+    /// By descriptor sets that the host allocates.
+    #[default]
+    Sets,
+    /// Likewise, with an offset for each buffer of lights when they are bound.
+    LightOffsets,
+    /// By what is pushed when commands are recorded.
+    Pushed(ash::khr::push_descriptor::Device),
+}
+
+impl std::fmt::Debug for Descriptors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Sets => "Sets",
+            Self::LightOffsets => "LightOffsets",
+            Self::Pushed(_) => "Pushed",
+        })
+    }
 }
 
 /// The largest image of a kind.
@@ -28,12 +51,14 @@ pub(crate) struct ImageLimits {
     pub(crate) layers: u32,
 }
 
-/// How many descriptors of a kind a compute stage may use.
+/// How many descriptors of a kind a compute stage may use, and where they may begin.
 #[derive(Clone, Copy)]
 pub(crate) struct DescriptorLimits {
     pub(crate) sampled_images: u32,
     pub(crate) storage_images: u32,
     pub(crate) storage_buffers: u32,
+    /// `minStorageBufferOffsetAlignment`.
+    pub(crate) storage_buffer_alignment: vk::DeviceSize,
 }
 
 impl std::fmt::Debug for Context {
@@ -73,11 +98,13 @@ impl Context {
                 sampled_images: properties.limits.max_per_stage_descriptor_sampled_images,
                 storage_images: properties.limits.max_per_stage_descriptor_storage_images,
                 storage_buffers: properties.limits.max_per_stage_descriptor_storage_buffers,
+                storage_buffer_alignment: properties.limits.min_storage_buffer_offset_alignment,
             },
             light_texture_limits: light_texture_limits(instance, physical_device)?,
             whole_modules: false,
             names: DebugNames::default(),
             written_sets: WrittenSets::default(),
+            descriptors: Descriptors::Sets,
         })
     }
 
@@ -93,7 +120,7 @@ impl Context {
     }
 
     /// Hands modules to the driver as they are, without [`prune`](crate::prune()): for a debugger of shaders, or to compare. On Mesa
-    /// a pipeline then takes from 8 to 150 times as long to make. Sets have every binding then, six storage buffers among them.
+    /// a pipeline then takes from 8 to 150 times as long to make. Sets have every binding then, seven storage buffers among them.
     #[must_use = "the context is returned"]
     pub fn with_whole_modules(mut self) -> Self {
         self.whole_modules = true;
@@ -108,6 +135,26 @@ impl Context {
     #[must_use = "the context is returned"]
     pub unsafe fn with_debug_utils(mut self, instance: &ash::Instance) -> Self {
         self.names = DebugNames::new(ash::ext::debug_utils::Device::new(instance, &self.device));
+        self
+    }
+
+    /// Has shade passes take their resources when they are recorded, by [`ShadePass::record_pushed`](crate::ShadePass::record_pushed), in the place of
+    /// descriptor sets.
+    ///
+    /// # Safety
+    /// The instance is the device's, and the device was made with `VK_KHR_push_descriptor`.
+    #[must_use = "the context is returned"]
+    pub unsafe fn with_push_descriptors(mut self, instance: &ash::Instance) -> Self {
+        let functions = ash::khr::push_descriptor::Device::new(instance, &self.device);
+        self.descriptors = Descriptors::Pushed(functions);
+        self
+    }
+
+    /// Has the buffers of lights, their vertices and shapes in the sets of shade passes be dynamic ones (`STORAGE_BUFFER_DYNAMIC`), whose offsets each frame
+    /// says: [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are written with the range of a frame.
+    #[must_use = "the context is returned"]
+    pub fn with_light_offsets(mut self) -> Self {
+        self.descriptors = Descriptors::LightOffsets;
         self
     }
 

@@ -1,9 +1,9 @@
 //! What the pipelines of a kernel have in common: the layout of its descriptor sets, and how those are written.
 
-use crate::context::Context;
+use crate::context::{Context, Descriptors};
 use crate::error::{Error, VulkanCall};
 use crate::pass::Resource;
-use arealight::kernels::{Binding, BindingKind, Kernel};
+use arealight::kernels::{Binding, BindingKind, Kernel, LIGHT_VERTICES, LIGHTS, SHAPES};
 use ash::vk;
 use std::sync::Arc;
 
@@ -29,6 +29,8 @@ pub(crate) struct Layouts {
     bindings: &'static [Binding],
     /// Of set 1, where a module of the host's reads what is the host's.
     host_set: Option<vk::DescriptorSetLayout>,
+    /// How set 0 gets at resources.
+    descriptors: Descriptors,
     sampler: vk::Sampler,
     set_layout: vk::DescriptorSetLayout,
     pipeline_layout: vk::PipelineLayout,
@@ -39,11 +41,11 @@ impl Layouts {
     /// They are dropped before the device is destroyed, when no recorded use of them is pending.
     pub(crate) unsafe fn new(context: &Context, kernel: &'static Kernel) -> Result<Arc<Self>, Error> {
         // SAFETY: the same contract.
-        unsafe { Self::with(context, kernel, kernel.bindings, None) }
+        unsafe { Self::with(context, kernel, kernel.bindings, (Descriptors::Sets, None)) }
     }
 
-    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, and with the layout of a second set, which is the
-    /// host's.
+    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, with how set 0 gets at resources, and with the layout of
+    /// a second set, which is the host's.
     ///
     /// # Safety
     /// As [`Layouts::new`]; the layout is valid until they are dropped.
@@ -51,7 +53,7 @@ impl Layouts {
         context: &Context,
         kernel: &'static Kernel,
         bindings: &'static [Binding],
-        host_set: Option<vk::DescriptorSetLayout>,
+        (descriptors, host_set): (Descriptors, Option<vk::DescriptorSetLayout>),
     ) -> Result<Arc<Self>, Error> {
         check_limits(context, kernel, bindings)?;
         // Handles that were made before a later call fails are destroyed with these half-made layouts
@@ -60,6 +62,7 @@ impl Layouts {
             kernel,
             bindings,
             host_set,
+            descriptors,
             sampler: vk::Sampler::null(),
             set_layout: vk::DescriptorSetLayout::null(),
             pipeline_layout: vk::PipelineLayout::null(),
@@ -88,7 +91,7 @@ impl Layouts {
             .map(|(number, binding)| {
                 let layout = vk::DescriptorSetLayoutBinding::default()
                     .binding(number)
-                    .descriptor_type(descriptor_type(binding.kind))
+                    .descriptor_type(self.descriptor_type(binding))
                     .descriptor_count(1)
                     .stage_flags(vk::ShaderStageFlags::COMPUTE);
                 match binding.kind {
@@ -97,7 +100,11 @@ impl Layouts {
                 }
             })
             .collect();
-        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+        let flags = match self.descriptors {
+            Descriptors::Pushed(_) => vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR,
+            Descriptors::Sets | Descriptors::LightOffsets => vk::DescriptorSetLayoutCreateFlags::empty(),
+        };
+        let info = vk::DescriptorSetLayoutCreateInfo::default().flags(flags).bindings(&bindings);
         // SAFETY: the device is valid by the contract of Context::new; the info outlives the call.
         self.set_layout = unsafe { device.create_descriptor_set_layout(&info, None) }
             .call("vkCreateDescriptorSetLayout")?;
@@ -146,16 +153,33 @@ impl Layouts {
     }
 
     pub(crate) fn pool_sizes(&self, sets: u32) -> Vec<vk::DescriptorPoolSize> {
-        BindingKind::ALL
+        let types = [
+            vk::DescriptorType::SAMPLED_IMAGE,
+            vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+            vk::DescriptorType::STORAGE_IMAGE,
+            vk::DescriptorType::STORAGE_BUFFER,
+            vk::DescriptorType::STORAGE_BUFFER_DYNAMIC,
+        ];
+        types
             .into_iter()
-            .filter_map(|kind| {
-                let count = self.bindings.iter().filter(|b| b.kind == kind).count() as u32;
-                (count > 0).then(|| vk::DescriptorPoolSize {
-                    ty: descriptor_type(kind),
-                    descriptor_count: count * sets,
-                })
+            .filter_map(|ty| {
+                let count = self.bindings.iter().filter(|b| self.descriptor_type(b) == ty).count() as u32;
+                (count > 0).then(|| vk::DescriptorPoolSize { ty, descriptor_count: count * sets })
             })
             .collect()
+    }
+
+    fn descriptor_type(&self, binding: &Binding) -> vk::DescriptorType {
+        let is_dynamic = matches!(self.descriptors, Descriptors::LightOffsets);
+        match binding.kind {
+            BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
+            BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+            BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+            BindingKind::StorageBuffer if is_dynamic && is_of_lights(binding) => {
+                vk::DescriptorType::STORAGE_BUFFER_DYNAMIC
+            }
+            BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
+        }
     }
 
     /// # Safety
@@ -179,53 +203,150 @@ impl Layouts {
         resources: &[Resource],
         absent: &[&'static str],
     ) -> Result<(), Error> {
-        let bindings = self.bindings;
-        if resources.len() != bindings.len() {
-            return Err(Error::InvalidArgument {
-                field: "resources",
-                message: format!(
-                    "{} given, but kernel '{}' has {} bindings",
-                    resources.len(),
-                    self.kernel.name,
-                    bindings.len()
-                ),
-            });
+        self.check_takes_sets()?;
+        self.check_resources(resources)?;
+        self.with_writes(set, resources, |writes| {
+            // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
+            unsafe { self.context.device.update_descriptor_sets(writes, &[]) };
+        });
+        self.context.written_sets.write(set, self.kernel, resources, absent);
+        Ok(())
+    }
+
+    /// Whether resources are what the bindings hold.
+    pub(crate) fn check_resources(&self, resources: &[Resource]) -> Result<(), Error> {
+        let wrong = |field, message| Err(Error::InvalidArgument { field, message });
+        let (name, count) = (self.kernel.name, self.bindings.len());
+        if resources.len() != count {
+            let message = format!("{} given, but kernel '{name}' has {count} bindings", resources.len());
+            return wrong("resources", message);
         }
-        for (binding, resource) in bindings.iter().zip(resources) {
+        for (binding, resource) in self.bindings.iter().zip(resources) {
             if resource.is_null() {
-                return Err(Error::InvalidArgument {
-                    field: binding.name,
-                    message: format!("is a null handle; it must hold {}", binding.content),
-                });
+                return wrong(binding.name, format!("is a null handle; it must hold {}", binding.content));
             }
             if resource.kind() != binding.kind {
                 let message = format!("is a {:?}, but must be a {:?}", resource.kind(), binding.kind);
-                return Err(Error::InvalidArgument { field: binding.name, message });
+                return wrong(binding.name, message);
+            }
+            let is_dynamic = self.descriptor_type(binding) == vk::DescriptorType::STORAGE_BUFFER_DYNAMIC;
+            if is_dynamic && matches!(resource, Resource::StorageBuffer { range: vk::WHOLE_SIZE, .. }) {
+                let message =
+                    "is the whole buffer, but with offsets that differ by frame its range must be given";
+                return wrong(binding.name, message.into());
             }
         }
+        Ok(())
+    }
 
+    /// What writes resources to a set.
+    fn with_writes(
+        &self,
+        set: vk::DescriptorSet,
+        resources: &[Resource],
+        act: impl FnOnce(&[vk::WriteDescriptorSet<'_>]),
+    ) {
         // The infos are collected first, since the writes point into them
         let images: Vec<[vk::DescriptorImageInfo; 1]> = resources.iter().map(|r| [image_info(*r)]).collect();
         let buffers: Vec<[vk::DescriptorBufferInfo; 1]> =
             resources.iter().map(|r| [buffer_info(*r)]).collect();
         let writes: Vec<_> = (0u32..)
-            .zip(bindings)
+            .zip(self.bindings)
             .zip(images.iter().zip(&buffers))
             .map(|((number, binding), (image, buffer))| {
                 let write = vk::WriteDescriptorSet::default()
                     .dst_set(set)
                     .dst_binding(number)
-                    .descriptor_type(descriptor_type(binding.kind));
+                    .descriptor_type(self.descriptor_type(binding));
                 match binding.kind {
                     BindingKind::StorageBuffer => write.buffer_info(buffer),
                     _ => write.image_info(image),
                 }
             })
             .collect();
-        // SAFETY: the caller vouches for the set and the resources; kinds were checked above.
-        unsafe { self.context.device.update_descriptor_sets(&writes, &[]) };
-        self.context.written_sets.write(set, self.kernel, resources, absent);
-        Ok(())
+        act(&writes);
+    }
+
+    /// Binds descriptor sets from 0 on.
+    ///
+    /// # Safety
+    /// `command_buffer` is recording; the sets were made with the layouts, and written.
+    pub(crate) unsafe fn bind_sets(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        sets: &[vk::DescriptorSet],
+        light_offsets: [u32; 3],
+    ) {
+        let offsets: &[u32] =
+            if matches!(self.descriptors, Descriptors::LightOffsets) { &light_offsets } else { &[] };
+        let (point, layout) = (vk::PipelineBindPoint::COMPUTE, self.pipeline_layout);
+        // SAFETY: the same contract.
+        unsafe {
+            self.context.device.cmd_bind_descriptor_sets(command_buffer, point, layout, 0, sets, offsets);
+        }
+    }
+
+    /// Pushes what set 0 holds, and binds the host's set.
+    ///
+    /// # Safety
+    /// `command_buffer` is recording, and the resources are valid until its commands have run; they passed [`Layouts::check_resources`].
+    pub(crate) unsafe fn push(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        resources: &[Resource],
+        host_set: Option<vk::DescriptorSet>,
+    ) {
+        let Descriptors::Pushed(functions) = &self.descriptors else { return };
+        let (point, layout) = (vk::PipelineBindPoint::COMPUTE, self.pipeline_layout);
+        self.with_writes(vk::DescriptorSet::null(), resources, |writes| {
+            // SAFETY: the same contract.
+            unsafe { functions.cmd_push_descriptor_set(command_buffer, point, layout, 0, writes) };
+        });
+        if let Some(set) = host_set {
+            // SAFETY: the same contract.
+            unsafe {
+                self.context.device.cmd_bind_descriptor_sets(command_buffer, point, layout, 1, &[set], &[]);
+            }
+        }
+    }
+
+    /// Refuses sets where resources are pushed.
+    pub(crate) fn check_takes_sets(&self) -> Result<(), Error> {
+        match self.descriptors {
+            Descriptors::Pushed(_) => Err(Error::InvalidArgument {
+                field: "set",
+                message: "is given, but passes of a context with push descriptors take resources: ShadePass::record_pushed".into(),
+            }),
+            Descriptors::Sets | Descriptors::LightOffsets => Ok(()),
+        }
+    }
+
+    /// Refuses pushed resources where there are sets.
+    pub(crate) fn check_takes_resources(&self) -> Result<(), Error> {
+        match self.descriptors {
+            Descriptors::Pushed(_) => Ok(()),
+            Descriptors::Sets | Descriptors::LightOffsets => Err(Error::InvalidArgument {
+                field: "resources",
+                message:
+                    "are given, but the pass was made of a context without Context::with_push_descriptors"
+                        .into(),
+            }),
+        }
+    }
+
+    /// Whether offsets can be bound.
+    pub(crate) fn check_light_offsets(&self, offsets: [u32; 3]) -> Result<(), Error> {
+        let wrong = |message: String| Err(Error::InvalidArgument { field: "light_offsets", message });
+        if !matches!(self.descriptors, Descriptors::LightOffsets) && offsets != [0; 3] {
+            return wrong(
+                "are given, but the pass was made of a context without Context::with_light_offsets".into(),
+            );
+        }
+        let alignment = self.context.limits.storage_buffer_alignment;
+        match offsets.iter().find(|offset| !u64::from(**offset).is_multiple_of(alignment)) {
+            Some(offset) => wrong(format!("has {offset}, which is no multiple of {alignment}")),
+            None => Ok(()),
+        }
     }
 
     /// Checks that a set has what a frame needs.
@@ -234,13 +355,7 @@ impl Layouts {
     }
 
     /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they serve.
-    pub(crate) fn check(
-        &self,
-        kernel: &Kernel,
-        set: vk::DescriptorSet,
-        constants: &[u8],
-        groups: [u32; 3],
-    ) -> Result<(), Error> {
+    pub(crate) fn check(&self, kernel: &Kernel, constants: &[u8], groups: [u32; 3]) -> Result<(), Error> {
         if constants.len() != kernel.push_constant_size as usize {
             return Err(Error::InvalidArgument {
                 field: "constants",
@@ -261,6 +376,11 @@ impl Layouts {
                 ),
             });
         }
+        Ok(())
+    }
+
+    /// What [`ComputePass::record`] refuses of a set.
+    pub(crate) fn check_set(&self, set: vk::DescriptorSet) -> Result<(), Error> {
         self.context.written_sets.check(set)
     }
 }
@@ -295,13 +415,9 @@ fn check_limits(context: &Context, kernel: &'static Kernel, bindings: &[Binding]
     Ok(())
 }
 
-fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
-    match kind {
-        BindingKind::SampledImage => vk::DescriptorType::SAMPLED_IMAGE,
-        BindingKind::FilteredImage => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-        BindingKind::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
-        BindingKind::StorageBuffer => vk::DescriptorType::STORAGE_BUFFER,
-    }
+/// Whether it is a buffer of lights, which frames in a ring have each their own part of.
+fn is_of_lights(binding: &Binding) -> bool {
+    [LIGHTS.name, LIGHT_VERTICES.name, SHAPES.name].contains(&binding.name)
 }
 
 fn image_info(resource: Resource) -> vk::DescriptorImageInfo {

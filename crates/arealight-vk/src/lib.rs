@@ -24,7 +24,7 @@
 //! commands are being recorded.
 //!
 //! ```no_run
-//! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources};
+//! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources, StencilTest};
 //! use arealight::{plan::ShadeOptions, PackedLights};
 //!
 //! # unsafe fn frame(instance: &ash::Instance, physical_device: vk::PhysicalDevice, device: &ash::Device,
@@ -69,7 +69,7 @@ pub use layouts::filtered_image_sampler;
 pub use light_textures::{LightTextures, TextureUpdate};
 pub use pass::{ComputePass, Resource};
 pub use prune::{freeze, prune};
-pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources};
+pub use shade::{ResourceAccess, ShadeFrame, ShadePass, ShadeResources, StencilTest};
 pub use shadows::{BlockerResources, ShadowFrame, ShadowOptions, ShadowPass, ShadowResources, ShadowStage};
 pub use table_image::{TableFormat, TableImage};
 pub use tiles::TileMemory;

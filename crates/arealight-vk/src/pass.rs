@@ -215,7 +215,8 @@ impl ComputePass {
         constants: &[u8],
         groups: [u32; 3],
     ) -> Result<(), Error> {
-        self.layouts.check(self.kernel, set, constants, groups)?;
+        self.layouts.check_set(set)?;
+        self.layouts.check(self.kernel, constants, groups)?;
         // SAFETY: the same contract.
         unsafe { self.record_checked(command_buffer, &[set], constants, groups) };
         Ok(())
@@ -234,26 +235,26 @@ impl ComputePass {
     ) {
         // SAFETY: the same contract.
         unsafe {
-            self.bind(command_buffer, sets, constants);
+            self.layouts.bind_sets(command_buffer, sets, [0; 3]);
+            self.bind(command_buffer, constants);
             self.layouts.context().device.cmd_dispatch(command_buffer, groups[0], groups[1], groups[2]);
         }
     }
 
-    /// As [`ComputePass::record_checked`], of the workgroups in `rows` alone: of y from the first on to before the last.
+    /// As [`ComputePass::record_checked`], of the workgroups in `rows` alone: of y from the first on to before the last. Descriptor sets are bound already.
     ///
     /// # Safety
     /// As [`ComputePass::record`]; rows are among those of `groups`.
     pub(crate) unsafe fn record_rows(
         &self,
         command_buffer: vk::CommandBuffer,
-        sets: &[vk::DescriptorSet],
         constants: &[u8],
         (groups, rows): ([u32; 3], Range<u32>),
     ) {
         let count = rows.end - rows.start;
         // SAFETY: the same contract; the pipeline was made for any first workgroup.
         unsafe {
-            self.bind(command_buffer, sets, constants);
+            self.bind(command_buffer, constants);
             let device = &self.layouts.context().device;
             device.cmd_dispatch_base(command_buffer, 0, rows.start, 0, groups[0], count, groups[2]);
             if rows.start > 0 {
@@ -263,7 +264,7 @@ impl ComputePass {
         }
     }
 
-    /// As [`ComputePass::record_checked`], with the groups that are found in a buffer when the commands run.
+    /// As [`ComputePass::record_rows`], with the groups that are found in a buffer when the commands run.
     ///
     /// # Safety
     /// As [`ComputePass::record`]; `buffer` has the usage `INDIRECT_BUFFER`, and holds at `offset`, a multiple of 4, a
@@ -271,31 +272,22 @@ impl ComputePass {
     pub(crate) unsafe fn record_indirect(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
         constants: &[u8],
         (buffer, offset): (vk::Buffer, vk::DeviceSize),
     ) {
         // SAFETY: the same contract.
         unsafe {
-            self.bind(command_buffer, &[set], constants);
+            self.bind(command_buffer, constants);
             self.layouts.context().device.cmd_dispatch_indirect(command_buffer, buffer, offset);
         }
     }
 
-    /// Binds the pipeline, its descriptor sets and its push constants.
-    unsafe fn bind(&self, command_buffer: vk::CommandBuffer, sets: &[vk::DescriptorSet], constants: &[u8]) {
+    /// Binds the pipeline and its push constants.
+    unsafe fn bind(&self, command_buffer: vk::CommandBuffer, constants: &[u8]) {
         let (device, layout) = (&self.layouts.context().device, self.layouts.pipeline_layout());
-        // SAFETY: the caller vouches for the command buffer and the set; the pipeline is ours and live.
+        // SAFETY: the caller vouches for the command buffer; the pipeline is ours and live.
         unsafe {
             device.cmd_bind_pipeline(command_buffer, vk::PipelineBindPoint::COMPUTE, self.pipeline);
-            device.cmd_bind_descriptor_sets(
-                command_buffer,
-                vk::PipelineBindPoint::COMPUTE,
-                layout,
-                0,
-                sets,
-                &[],
-            );
             device.cmd_push_constants(command_buffer, layout, vk::ShaderStageFlags::COMPUTE, 0, constants);
         }
     }

@@ -4,7 +4,6 @@ use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::pass::ComputePass;
 use arealight::kernels::Kernel;
-use ash::vk;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -32,13 +31,8 @@ impl Pipelines {
     }
 
     /// What [`ComputePass::record`] refuses.
-    pub(crate) fn check(
-        &self,
-        set: vk::DescriptorSet,
-        constants: &[u8],
-        groups: [u32; 3],
-    ) -> Result<(), Error> {
-        self.layouts.check(self.kernel, set, constants, groups)
+    pub(crate) fn check(&self, constants: &[u8], groups: [u32; 3]) -> Result<(), Error> {
+        self.layouts.check(self.kernel, constants, groups)
     }
 
     /// Does something with the pipeline of these specialisation constants.

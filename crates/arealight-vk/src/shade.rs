@@ -14,12 +14,12 @@ use crate::pipelines::Pipelines;
 use crate::tiles::{TileMemory, TiledFrame, Tiles};
 use crate::view::{Viewport, check_view, view_of};
 use arealight::gpu::ShadeConstants;
-use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, SHADE, store_to};
+use arealight::kernels::{CLASSIFY, FRAME_BINDINGS, SHADE, read_samples, store_to};
 use arealight::plan::{self, Output, ShadeOptions, TileOptions};
 use arealight::{Effects, LightSummary};
 use ash::vk;
 use glam::{Mat4, Vec3};
-use resources::{LOBE_HORIZONS, TILE_LISTS, needed};
+use resources::{LIGHT_COUNTS, LOBE_HORIZONS, STENCIL, TILE_LISTS, needed};
 use std::ops::Range;
 
 /// What differs from frame to frame.
@@ -41,7 +41,8 @@ pub struct ShadeFrame {
     /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix that drew the depth, jitter
     /// included. Needed with [`ShadeOptions::from_depth`], else ignored.
     pub position_from_clip: Option<Mat4>,
-    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers.
+    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers; with [`ShadeOptions::light_counts`] the most that
+    /// there may be.
     pub lights: LightSummary,
     /// With tiles, [`ShadeResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
     pub tile_lists: Option<Resource>,
@@ -51,6 +52,19 @@ pub struct ShadeFrame {
     /// 8, or the second is the last row's end. A frame of more work than a driver's watchdog allows is recorded and submitted by
     /// [`ShadeFrame::parts`]. The picture is the same to the bit.
     pub rows: Option<[u32; 2]>,
+    /// With [`ShadeOptions::stencil`], which pixels are shaded. Else ignored.
+    pub stencil: StencilTest,
+    /// With [`Context::with_light_offsets`], where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else zero.
+    pub light_offsets: [u32; 3],
+}
+
+/// Pixels are shaded whose stencil is equal to the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`. By default all are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct StencilTest {
+    /// The bits that are compared.
+    pub compare_mask: u8,
+    /// What they must be.
+    pub reference: u8,
 }
 
 impl ShadeFrame {
@@ -118,9 +132,10 @@ impl ShadePass {
         check_options(options)?;
         // SAFETY: the same contract; the modules are the kernels'.
         unsafe {
-            let layouts = Layouts::new(context, &SHADE)?;
-            let tiles = Tiles::new(&layouts, tiles, table_size)?;
-            let pipelines = Pipelines::new(layouts, &SHADE, SHADE.words_for(options.format));
+            let descriptors = context.descriptors.clone();
+            let layouts = Layouts::with(context, &SHADE, SHADE.bindings, (descriptors, None))?;
+            let tiles = Tiles::new(&layouts, options, tiles, table_size)?;
+            let pipelines = Pipelines::new(layouts, &SHADE, SHADE.words_for(options.format, options.samples));
             Ok(Self { pipelines, tiles: Some(tiles), options })
         }
     }
@@ -172,11 +187,13 @@ impl ShadePass {
     ) -> Result<Self, Error> {
         check_options(options)?;
         store_to(options.format, &mut module);
+        read_samples(options.samples, &mut module);
         // Frames without tiles have none of their bindings
-        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..FRAME_BINDINGS] };
+        let needed = FRAME_BINDINGS + usize::from(options.light_counts);
+        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..needed] };
         // SAFETY: the same contract.
         unsafe {
-            let layouts = Layouts::with(context, &SHADE, bindings, host_set)?;
+            let layouts = Layouts::with(context, &SHADE, bindings, (context.descriptors.clone(), host_set))?;
             Ok(Self { pipelines: Pipelines::new(layouts, &SHADE, module), tiles: None, options })
         }
     }
@@ -217,7 +234,13 @@ impl ShadePass {
     /// for those stages, as for any buffer that is written again.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
         let mut accesses = accesses_of(&SHADE);
-        accesses.retain(|access| access.name != TILE_LISTS);
+        let is_used = |name| match name {
+            TILE_LISTS => false,
+            STENCIL => self.options.stencil,
+            LIGHT_COUNTS => self.options.light_counts,
+            _ => true,
+        };
+        accesses.retain(|access| is_used(access.name));
         if self.tiles.is_some() {
             accesses.extend(accesses_of(&CLASSIFY).into_iter().filter(|access| access.name == LOBE_HORIZONS));
         }
@@ -241,8 +264,7 @@ impl ShadePass {
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
     pub unsafe fn write_set(&self, set: vk::DescriptorSet, resources: &ShadeResources) -> Result<(), Error> {
-        let bindings = self.pipelines.layouts().bindings().len();
-        let (resources, absent) = resources.in_order(self.options, self.tiles.is_some(), bindings)?;
+        let (resources, absent) = self.in_order(resources)?;
         // SAFETY: the same contract.
         unsafe { self.pipelines.layouts().write_set_without(set, &resources, &absent) }
     }
@@ -278,7 +300,7 @@ impl ShadePass {
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
         // SAFETY: the same contract.
-        unsafe { self.record_sets(command_buffer, set, None, frame) }
+        unsafe { self.record_with(command_buffer, &Bound::Set(set), None, frame) }
     }
 
     /// As [`ShadePass::record`], of a pass made by [`ShadePass::with_module_and_set`]: `host_set` is bound as set 1.
@@ -296,40 +318,91 @@ impl ShadePass {
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
         // SAFETY: the same contract.
-        unsafe { self.record_sets(command_buffer, set, Some(host_set), frame) }
+        unsafe { self.record_with(command_buffer, &Bound::Set(set), Some(host_set), frame) }
     }
 
+    /// As [`ShadePass::record`], of a context [with push descriptors](Context::with_push_descriptors): the resources are pushed, and no set is needed. `host_set`
+    /// is bound as set 1, where the pass was made by [`ShadePass::with_module_and_set`].
+    ///
     /// # Safety
-    /// As [`ShadePass::record_with_set`].
-    unsafe fn record_sets(
+    /// As [`ShadePass::record`] and [`ShadePass::write_set`]: the resources outlive the recorded work.
+    ///
+    /// # Errors
+    /// As [`ShadePass::record`] and [`ShadePass::write_set`].
+    pub unsafe fn record_pushed(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
+        resources: &ShadeResources,
         host_set: Option<vk::DescriptorSet>,
         frame: &ShadeFrame,
     ) -> Result<(), Error> {
-        self.pipelines.layouts().check_host_set(host_set)?;
+        let layouts = self.pipelines.layouts();
+        layouts.check_takes_resources()?;
+        let (resources, absent) = self.in_order(resources)?;
+        layouts.check_resources(&resources)?;
+        if let Some(field) = needed(frame.lights).into_iter().find(|binding| absent.contains(binding)) {
+            let message = "is missing, but the frame's lights need it".into();
+            return Err(Error::InvalidArgument { field, message });
+        }
+        // SAFETY: the same contract.
+        unsafe { self.record_with(command_buffer, &Bound::Pushed(resources), host_set, frame) }
+    }
+
+    /// # Safety
+    /// As [`ShadePass::record_with_set`] or [`ShadePass::record_pushed`]; what is pushed was checked.
+    unsafe fn record_with(
+        &self,
+        command_buffer: vk::CommandBuffer,
+        bound: &Bound,
+        host_set: Option<vk::DescriptorSet>,
+        frame: &ShadeFrame,
+    ) -> Result<(), Error> {
+        // Check everything before anything is recorded
+        let layouts = self.pipelines.layouts();
+        layouts.check_host_set(host_set)?;
+        layouts.check_light_offsets(frame.light_offsets)?;
         let constants = self.constants(frame)?;
-        self.pipelines.layouts().check_present(set, &needed(frame.lights))?;
-        let names = &self.pipelines.layouts().context().names;
+        if let Bound::Set(set) = bound {
+            layouts.check_takes_sets()?;
+            layouts.check_present(*set, &needed(frame.lights))?;
+            layouts.check_set(*set)?;
+        }
+
+        // SAFETY: the same contract.
+        let bind = || unsafe {
+            match bound {
+                Bound::Set(set) => {
+                    let sets: Vec<_> = std::iter::once(*set).chain(host_set).collect();
+                    layouts.bind_sets(command_buffer, &sets, frame.light_offsets);
+                }
+                Bound::Pushed(resources) => layouts.push(command_buffer, resources, host_set),
+            }
+        };
+        let names = &layouts.context().names;
         if let Some((tiles, frame)) = self.tiled(frame, constants)? {
             // SAFETY: the same contract.
             return unsafe {
                 let _label = names.label(command_buffer, c"arealight tiles");
-                tiles.record(command_buffer, set, &self.pipelines, self.options, &frame)
+                tiles.record(command_buffer, bind, &self.pipelines, self.options, &frame)
             };
         }
         let groups = SHADE.groups_for([frame.size[0], frame.size[1], 1]);
         let rows = group_rows(frame)?;
-        self.pipelines.check(set, bytemuck::bytes_of(&constants), groups)?;
+        self.pipelines.check(bytemuck::bytes_of(&constants), groups)?;
         self.pipelines.with(plan::shade_specialization(self.options, frame.lights), |pass| {
             // SAFETY: the same contract.
             unsafe {
                 let _label = names.label(command_buffer, c"arealight shade");
-                let sets: Vec<_> = std::iter::once(set).chain(host_set).collect();
-                pass.record_rows(command_buffer, &sets, bytemuck::bytes_of(&constants), (groups, rows));
+                bind();
+                pass.record_rows(command_buffer, bytemuck::bytes_of(&constants), (groups, rows));
             }
         })
+    }
+
+    /// The resources as the pass's bindings have them; the bindings of those that are missing.
+    fn in_order(&self, resources: &ShadeResources) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
+        let bindings = self.pipelines.layouts().bindings().len();
+        resources.in_order(self.options, self.tiles.is_some(), bindings)
     }
 
     /// The tiles of a frame that is classified.
@@ -357,9 +430,16 @@ impl ShadePass {
             size: frame.size,
             offset: frame.offset,
             seed: frame.seed,
+            stencil: u32::from(frame.stencil.compare_mask) | u32::from(frame.stencil.reference) << 8,
             ..ShadeConstants::default()
         })
     }
+}
+
+/// What a frame's commands read.
+enum Bound {
+    Set(vk::DescriptorSet),
+    Pushed(Vec<Resource>),
 }
 
 /// The rows of workgroups that a record shades.

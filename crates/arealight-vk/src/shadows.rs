@@ -1,6 +1,6 @@
 //! Shadows: rays for the lights and lobes that the shade pass picked, and what their mean makes of its radiance.
 
-use crate::context::Context;
+use crate::context::{Context, Descriptors};
 use crate::error::Error;
 use crate::layouts::Layouts;
 use crate::module::check_module;
@@ -136,7 +136,12 @@ impl ShadowPass {
         check_module(&module, &SHADOW_RAYS)?;
         // SAFETY: the same contract.
         unsafe {
-            let layouts = Layouts::with(context, &SHADOW_RAYS, SHADOW_RAYS.bindings, Some(host_set))?;
+            let layouts = Layouts::with(
+                context,
+                &SHADOW_RAYS,
+                SHADOW_RAYS.bindings,
+                (Descriptors::Sets, Some(host_set)),
+            )?;
             Ok(Self::of(&layouts, options, shadows, module))
         }
     }
@@ -356,7 +361,8 @@ impl ShadowPass {
         let position_from_clip = view.position_from_clip.to_cols_array_2d();
         let constants = ShadowConstants { position_from_clip, camera: view.camera, seed, size };
         let groups = SHADOW_RAYS.groups_for([size[0], size[1], 1]);
-        self.rays.check(set, bytemuck::bytes_of(&constants), groups)?;
+        self.rays.layouts().check_set(set)?;
+        self.rays.check(bytemuck::bytes_of(&constants), groups)?;
         self.prepare(lights)?;
         let sets = std::iter::once(set).chain(frame.host_set).collect();
         Ok(ReadyFrame { sets, constants, groups, head, lights })

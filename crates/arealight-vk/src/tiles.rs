@@ -46,6 +46,7 @@ impl Tiles {
     /// As [`Pipelines::new`]; the layouts have every binding of the shade kernel.
     pub(crate) unsafe fn new(
         layouts: &Arc<Layouts>,
+        options: ShadeOptions,
         tiles: TileOptions,
         table_size: u32,
     ) -> Result<Self, Error> {
@@ -60,8 +61,9 @@ impl Tiles {
         if table_size < 2 {
             return wrong("table_size", format!("is {table_size}, but a table has at least 2 nodes a side"));
         }
+        let module = CLASSIFY.words_for(options.format, options.samples);
         // SAFETY: the same contract; the kernel has the shade kernel's bindings.
-        let classify = unsafe { Pipelines::new(Arc::clone(layouts), &CLASSIFY, CLASSIFY.words()) };
+        let classify = unsafe { Pipelines::new(Arc::clone(layouts), &CLASSIFY, module) };
         Ok(Self { classify, options: tiles, horizon_cells: table_size - 1 })
     }
 
@@ -123,14 +125,14 @@ impl Tiles {
         plan::classify_specialization(options, frame.lights, self.options)
     }
 
-    /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the barriers between.
+    /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the barriers between. `bind` binds what they read.
     ///
     /// # Safety
     /// As [`crate::ShadePass::record`].
     pub(crate) unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
-        set: vk::DescriptorSet,
+        bind: impl FnOnce(),
         shade: &Pipelines,
         options: ShadeOptions,
         frame: &TiledFrame,
@@ -138,7 +140,7 @@ impl Tiles {
         // Check everything, and make what is missing, before anything is recorded
         let [columns, rows] = tile_counts(frame.constants.size);
         let (bytes, groups) = (bytemuck::bytes_of(&frame.constants), [columns, rows, 1]);
-        self.classify.check(set, bytes, groups)?;
+        self.classify.check(bytes, groups)?;
         self.prepare(shade, options, frame)?;
 
         let (buffer, offset) = frame.lists;
@@ -148,13 +150,14 @@ impl Tiles {
         // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the classify kernel writes.
         unsafe {
             self.record_no_tiles(command_buffer, frame);
+            bind();
             context.record_barrier(
                 command_buffer,
                 (vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE),
                 (compute, read | write),
             );
             self.classify.with(self.classify_constants(options, frame), |pass| {
-                pass.record_rows(command_buffer, &[set], bytes, (groups, frame.rows.clone()));
+                pass.record_rows(command_buffer, bytes, (groups, frame.rows.clone()));
             })?;
             context.record_barrier(
                 command_buffer,
@@ -168,7 +171,7 @@ impl Tiles {
                 let place = offset + class as u64 * 4 * tiles::CLASS_WORDS as u64;
                 let specialization = plan::shade_tiles_specialization(options, frame.lights, class);
                 shade.with(specialization, |pass| {
-                    pass.record_indirect(command_buffer, set, bytes, (buffer, place));
+                    pass.record_indirect(command_buffer, bytes, (buffer, place));
                 })?;
             }
         }

@@ -125,6 +125,12 @@ pub(crate) fn check_view(options: ShadeOptions) -> Result<(), Error> {
         let message = format!("is {}, but must be from 1 to {most}", options.texels_per_pixel);
         return wrong("texels_per_pixel", message);
     }
+    if ![1, 2, 4, 8].contains(&options.samples) {
+        return wrong("samples", format!("is {}, but must be 1, 2, 4 or 8", options.samples));
+    }
+    if options.samples > 1 && options.texels_per_pixel > 1 {
+        return wrong("samples", "are several, but half resolution is of one sample a texel".into());
+    }
     if options.shadow_rays == 0 {
         return Ok(());
     }
@@ -132,11 +138,14 @@ pub(crate) fn check_view(options: ShadeOptions) -> Result<(), Error> {
         (options.orthographic, "orthographic"),
         (options.rectangle, "rectangle"),
         (options.texels_per_pixel != 1, "texels_per_pixel"),
+        (options.samples != 1, "samples"),
+        (options.stencil, "stencil"),
     ] {
         if is_set {
             return wrong(
                 field,
-                "is set, but shadow rays are of whole frames of a perspective camera".into(),
+                "is set, but shadow rays are of whole frames of a perspective camera with one sample a pixel"
+                    .into(),
             );
         }
     }

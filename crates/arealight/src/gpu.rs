@@ -104,6 +104,21 @@ pub struct ShadeConstants {
     pub cull_threshold: f32,
     /// Where the image's rectangle begins that is shaded; not read without [`crate::plan::ShadeOptions::rectangle`].
     pub offset: [u32; 2],
+    /// Of the stencil test: the compare mask, and the reference from bit 8 on. Not read without [`crate::plan::ShadeOptions::stencil`].
+    pub stencil: u32,
+}
+
+/// How many lights a frame has, where the GPU says so: [`crate::plan::ShadeOptions::light_counts`]. `LightCounts` in `shaders/kernels/light_counts.glsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
+pub struct LightCounts {
+    /// How many of the polygon lights are shaded, from the buffer's first on.
+    pub light_count: u32,
+    /// How many of the shapes.
+    pub shape_count: u32,
+    /// How many of the first polygon lights are convex quads without a texture; no other light may be before them. Not read where the frame's lights are all
+    /// such quads.
+    pub quad_count: u32,
 }
 
 /// Push constants of the kernels that trace shadow rays and filter them.

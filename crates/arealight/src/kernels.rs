@@ -4,11 +4,11 @@
 use crate::plan::RadianceFormat;
 
 pub use binding::{Access, Binding, BindingKind};
-pub use store_to::store_to;
+pub use images::{read_samples, store_to};
 
 mod binding;
 pub mod constant;
-mod store_to;
+mod images;
 
 /// A compute kernel.
 #[derive(Debug, PartialEq, Eq)]
@@ -49,11 +49,12 @@ impl Kernel {
         self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
     }
 
-    /// As [`Kernel::words`], with images of this format where the module stores to rgba32f: a word a type, so that one
-    /// module serves both.
-    pub fn words_for(&self, format: RadianceFormat) -> Vec<u32> {
+    /// As [`Kernel::words`], with images of this format where the module stores to rgba32f, and a G-buffer of so many samples: a word a type or a read,
+    /// so that one module serves all.
+    pub fn words_for(&self, format: RadianceFormat, samples: u32) -> Vec<u32> {
         let mut words = self.words();
         store_to(format, &mut words);
+        read_samples(samples, &mut words);
         words
     }
 }
@@ -167,6 +168,16 @@ const PICKS: Binding = write(
      buffer",
 );
 
+const STENCIL: Binding = read(
+    "g_stencil",
+    BindingKind::SampledImage,
+    "stencil in r, of which eight bits are compared (s8_uint, r8_uint); read only with ShadeOptions::stencil, else bind any image",
+);
+const LIGHT_COUNTS: Binding = read(
+    "light_counts",
+    BindingKind::StorageBuffer,
+    "LightCounts; read only with ShadeOptions::light_counts, else bind any buffer",
+);
 const LOBE_HORIZONS: Binding =
     read("lobe_horizons", BindingKind::StorageBuffer, "LightTable::lobe_horizons: twelve floats per cell");
 const TILE_LISTS: Binding = write(
@@ -179,8 +190,8 @@ const TILE_LISTS: Binding = write(
 /// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by [`constant::CLASS`]. Push constants:
 /// [`crate::gpu::ShadeConstants`].
 ///
-/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone. A module that was pruned for them has no other, so that its pipeline
-/// layout needs no more; the module as it is has `tile_lists`, too.
+/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone, and the next with [`ShadeOptions::light_counts`](crate::plan::ShadeOptions::light_counts). A
+/// module that was pruned for them has no other, so that its pipeline layout needs no more; the module as it is has `tile_lists`, too.
 pub static SHADE: Kernel = Kernel {
     name: "shade",
     spirv: include_bytes!("../spirv/shade.spv"),
@@ -202,6 +213,8 @@ pub static SHADE: Kernel = Kernel {
         G_SHEEN,
         G_ANISOTROPY,
         PICKS,
+        STENCIL,
+        LIGHT_COUNTS,
         Binding { access: Access::Read, ..TILE_LISTS },
         LOBE_HORIZONS.unused(),
     ],
@@ -219,11 +232,13 @@ pub static SHADE: Kernel = Kernel {
         constant::LAYOUT,
         constant::SHADOW_RAYS,
         constant::VIEW,
+        constant::LIGHT_COUNTS,
+        constant::SAMPLES,
     ],
 };
 
 /// How many of the first bindings of [`SHADE`] whole frames use.
-pub const FRAME_BINDINGS: usize = 15;
+pub const FRAME_BINDINGS: usize = 16;
 
 /// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
 /// [`crate::gpu::ShadeConstants`].
@@ -248,6 +263,8 @@ pub static CLASSIFY: Kernel = Kernel {
         G_SHEEN,
         G_ANISOTROPY,
         PICKS.unused(),
+        STENCIL,
+        LIGHT_COUNTS,
         TILE_LISTS,
         LOBE_HORIZONS,
     ],
@@ -260,6 +277,8 @@ pub static CLASSIFY: Kernel = Kernel {
         constant::LAYOUT,
         constant::CULL,
         constant::VIEW,
+        constant::LIGHT_COUNTS,
+        constant::SAMPLES,
     ],
 };
 
@@ -470,13 +489,32 @@ mod tests {
     #[test]
     fn one_word_makes_the_shade_kernel_store_to_half_floats() {
         let words = SHADE.words();
-        assert_eq!(SHADE.words_for(RadianceFormat::Rgba32Float), words);
-        let half = SHADE.words_for(RadianceFormat::Rgba16Float);
+        assert_eq!(SHADE.words_for(RadianceFormat::Rgba32Float, 1), words);
+        let half = SHADE.words_for(RadianceFormat::Rgba16Float, 1);
         let changed: Vec<_> = words.iter().zip(&half).filter(|(from, to)| from != to).collect();
         // Both images have one type
         assert_eq!(changed, [(&1, &2)]);
         // A module that is cut off is left as it is from there on, without a panic
         let end = words.iter().zip(&half).position(|(from, to)| from != to).unwrap();
         store_to(RadianceFormat::Rgba16Float, &mut words[..end].to_vec());
+    }
+
+    #[test]
+    fn a_few_words_make_kernels_read_samples() {
+        for kernel in [&SHADE, &CLASSIFY] {
+            let words = kernel.words();
+            let samples = kernel.words_for(RadianceFormat::Rgba32Float, 4);
+            let mut changed: Vec<_> = words
+                .iter()
+                .zip(&samples)
+                .filter(|(from, to)| from != to)
+                .map(|(from, to)| (*from, *to))
+                .collect();
+            // The images of floats have one type, the stencil another; each image is read once, or more often in code that is there twice
+            let types = changed.extract_if(.., |change| *change == (0, 1)).count();
+            assert_eq!(types, 2, "{}", kernel.name);
+            assert!(changed.len() >= 8, "{}: {} reads", kernel.name, changed.len());
+            assert!(changed.iter().all(|change| *change == (0x2, 0x40)), "{}: {changed:?}", kernel.name);
+        }
     }
 }

@@ -80,6 +80,14 @@ pub struct ShadeOptions {
     /// How many texels of the G-buffer a pixel of radiance has to a side, from 1 to [`ShadeOptions::MOST_TEXELS_PER_PIXEL`]; of them the first is shaded. 2 is half
     /// resolution. Without shadow rays, unless it is 1.
     pub texels_per_pixel: u32,
+    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. A pixel's radiance is the mean over its samples, of which those with
+    /// the same surface in the same plane are shaded once; `a` is the part that has a surface. Without shadow rays and half resolution, unless it is 1.
+    pub samples: u32,
+    /// Whether frames have a stencil test: pixels that fail it stay as they are, with either [`Output`]. Without shadow rays.
+    pub stencil: bool,
+    /// Whether how many lights a frame has is read from a buffer, [`LightCounts`](crate::gpu::LightCounts), when the commands run: for lights that the
+    /// GPU culled or made. What [`LightSummary`] says is the most then. Costs a storage buffer more.
+    pub light_counts: bool,
 }
 
 impl Default for ShadeOptions {
@@ -97,6 +105,9 @@ impl Default for ShadeOptions {
             orthographic: false,
             rectangle: false,
             texels_per_pixel: 1,
+            samples: 1,
+            stencil: false,
+            light_counts: false,
         }
     }
 }
@@ -138,10 +149,12 @@ impl ShadeOptions {
         self.output as u32 | u32::from(self.separate_lobes) << 1 | self.format as u32
     }
 
-    /// [`ShadeOptions::orthographic`], [`ShadeOptions::rectangle`] and [`ShadeOptions::texels_per_pixel`] as the bits `VIEW_*`.
+    /// [`ShadeOptions::orthographic`], [`ShadeOptions::rectangle`], [`ShadeOptions::stencil`] and [`ShadeOptions::texels_per_pixel`] as the bits
+    /// `VIEW_*`.
     pub fn view_bits(self) -> u32 {
         u32::from(self.orthographic)
             | u32::from(self.rectangle) << 1
+            | u32::from(self.stencil) << 2
             | self.texels_per_pixel.saturating_sub(1) << 8
     }
 }
@@ -171,6 +184,8 @@ fn specialization_of_class(options: ShadeOptions, lights: LightSummary, class: u
         (kernels::constant::CLASS, class),
         (kernels::constant::SHADOW_RAYS, options.shadow_rays),
         (kernels::constant::VIEW, options.view_bits()),
+        (kernels::constant::LIGHT_COUNTS, u32::from(options.light_counts)),
+        (kernels::constant::SAMPLES, options.samples),
     ]);
     values
 }
@@ -294,6 +309,8 @@ pub fn classify_specialization(
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::CULL, u32::from(tiles.cull_threshold > 0.0)),
         (kernels::constant::VIEW, options.view_bits()),
+        (kernels::constant::LIGHT_COUNTS, u32::from(options.light_counts)),
+        (kernels::constant::SAMPLES, options.samples),
     ]
 }
 

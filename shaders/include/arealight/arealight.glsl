@@ -25,6 +25,7 @@
 //   light_kind.glsl                the loop over lobes
 //   textures/*                     what a lobe sees of a light's image
 //   shadows/*                      rays drawn from the lobes, for hosts that trace: shadow_sampling.glsl, included by itself
+//   reach.glsl                     how far a light is of any matter, for clusters, included by itself
 //   self_test.glsl                 whether a host's table is loaded as it should be, included by itself
 #include "arealight/material.glsl"
 #if AREALIGHT_QUADS

@@ -3,16 +3,19 @@
 use arealight_capi::{
     AREALIGHT_ABI_VERSION, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_EFFECT_SPECULAR_INPUT,
     AREALIGHT_EFFECT_SPHERE, AREALIGHT_EFFECT_TWO_SIDED, AREALIGHT_LIGHT_DISK, AREALIGHT_LIGHT_MESH,
-    AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, Arealight, ArealightBuffer, ArealightFrame, ArealightHost,
-    ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightPass, ArealightPassOptions,
-    ArealightResources, ArealightResult, ArealightTable, ArealightTileMemory, ArealightUpload,
-    ArealightViewport, arealight_abi_version, arealight_create, arealight_destroy, arealight_lobe_horizons,
-    arealight_pack_lights, arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy,
-    arealight_pass_prepare, arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory,
-    arealight_pass_write_set, arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
+    AREALIGHT_LIGHT_SPHERE, AREALIGHT_LIGHT_TUBE, AREALIGHT_SPECULAR_LOBES_ONE, Arealight, ArealightFrame,
+    ArealightHost, ArealightLight, ArealightLightSummary, ArealightPackedLights, ArealightPass,
+    ArealightPassOptions, ArealightReach, ArealightResources, ArealightResult, ArealightTable,
+    ArealightTileMemory, ArealightUpload, arealight_abi_version, arealight_create, arealight_destroy,
+    arealight_light_reach, arealight_lobe_density, arealight_lobe_horizons, arealight_pack_lights,
+    arealight_pass_create, arealight_pass_create_with_module, arealight_pass_destroy, arealight_pass_prepare,
+    arealight_pass_record, arealight_pass_set_layout, arealight_pass_tile_memory, arealight_pass_write_set,
+    arealight_table_bind_memory, arealight_table_memory, arealight_table_upload,
 };
 use arealight_tests::TestEngine;
-use arealight_tests::c_library::{CLibrary, NO_ARRAYS, NO_LIGHT, good, no_host, refused, set_layout};
+use arealight_tests::c_library::{
+    CLibrary, NO_ARRAYS, NO_FRAME, NO_LIGHT, good, no_host, refused, set_layout,
+};
 use ash::vk;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
@@ -245,18 +248,7 @@ fn holes_and_faces_that_cannot_be_are_named() {
 
 /// A frame of this width, of eight rows and no light.
 fn dark_frame(width: u32) -> ArealightFrame {
-    ArealightFrame {
-        width,
-        height: 8,
-        camera: [0.0; 3],
-        lights: ArealightLightSummary::default(),
-        seed: 0,
-        position_from_clip: null(),
-        tile_lists: ArealightBuffer::default(),
-        viewport: ArealightViewport::default(),
-        offset: [0; 2],
-        rows: [0; 2],
-    }
+    ArealightFrame { width, height: 8, ..NO_FRAME }
 }
 
 #[test]
@@ -299,6 +291,10 @@ fn calls_out_of_order_are_refused() {
         refused(record(commands, 8, &unknown), ErrorArgument, "frame.lights.effects: 0x40000000");
         let cut = ArealightFrame { rows: [0, 4], ..dark_frame(8) };
         refused(record(commands, 8, &cut), ErrorArgument, "rows: 0 to 4 cut workgroups");
+        let masked = ArealightFrame { stencil_compare_mask: 256, ..dark_frame(8) };
+        refused(record(commands, 8, &masked), ErrorArgument, "frame.stencil_compare_mask: 256");
+        let moved = ArealightFrame { light_offsets: [0, 0, 256], ..dark_frame(8) };
+        refused(record(commands, 8, &moved), ErrorArgument, "light_offsets: are given");
         // A pipeline ahead
         refused(arealight_pass_prepare(pass, &raw const blind), ErrorArgument, "camera");
         let right = dark_frame(8);
@@ -312,6 +308,23 @@ fn calls_out_of_order_are_refused() {
     // SAFETY: the pointers are valid; nothing is made where an error is returned.
     let made = unsafe { arealight_pass_create(arealight, &raw const lobeless, &raw mut black) };
     refused(made, ErrorArgument, "surfaces: have no lobe");
+
+    for (wrong, words) in [
+        (ArealightPassOptions { samples: 3, ..ArealightPassOptions::default() }, "samples: is 3"),
+        (
+            ArealightPassOptions { descriptors: 3, ..ArealightPassOptions::default() },
+            "options.descriptors: 3",
+        ),
+        (ArealightPassOptions { stencil: 2, ..ArealightPassOptions::default() }, "options.stencil: 2"),
+        (
+            ArealightPassOptions { light_counts: 2, ..ArealightPassOptions::default() },
+            "options.light_counts: 2",
+        ),
+    ] {
+        // SAFETY: as above.
+        let made = unsafe { arealight_pass_create(arealight, &raw const wrong, &raw mut black) };
+        refused(made, ErrorArgument, words);
+    }
 
     // An upload that lacks something
     let memory = library.table_memory();
@@ -418,4 +431,37 @@ fn passes_with_tiles_ask_for_their_buffers() {
         good(arealight_pass_destroy(pass));
         good(arealight_pass_destroy(plain));
     }
+}
+
+#[test]
+fn c_lights_reach_as_far_as_rust_says() {
+    use ArealightResult::{ErrorArgument, ErrorLight};
+    let Some(engine) = TestEngine::new() else { return };
+    let library = CLibrary::new(&engine);
+    let (mut density, mut reach) = (0.0, ArealightReach::default());
+    // SAFETY: the pointers are valid, here and below.
+    let asked = |roughness, density: &mut f64| unsafe {
+        arealight_lobe_density(library.arealight, AREALIGHT_SPECULAR_LOBES_ONE, roughness, density)
+    };
+    good(asked(0.3, &mut density));
+    let table = arealight_table::ggx();
+    assert_eq!(density.to_bits(), table.lobe_density(arealight::SpecularLobes::One, 0.3).to_bits());
+    refused(asked(1.5, &mut density), ErrorArgument, "roughness: 1.5 must be from 0 to 1");
+    // SAFETY: as above.
+    let found = |light: &ArealightLight, threshold, reach: &mut ArealightReach| unsafe {
+        arealight_light_reach(light, threshold, density, reach)
+    };
+    let moon = moon();
+    good(found(&moon, 0.01, &mut reach));
+    let shape = arealight::LightShape::Sphere { center: moon.center.into(), radius: moon.radius };
+    let radiance = moon.radiance.into();
+    let light = arealight::Light { radiance, shape, ..arealight::Light::default() };
+    let radius = arealight::reach::radius(&light, 0.01, density);
+    let [low, high] = arealight::reach::bounds(&light, radius).map(|corner| corner.to_array());
+    assert_eq!(reach, ArealightReach { center: moon.center, radius, low, high });
+    assert!(radius > moon.radius && radius.is_finite());
+    // What cannot be answered
+    refused(found(&moon, f64::NAN, &mut reach), ErrorArgument, "threshold: NaN must be finite");
+    let flat = ArealightLight { radius: -1.0, ..moon };
+    refused(found(&flat, 0.01, &mut reach), ErrorLight, "radius: -1 must be above zero");
 }

@@ -4,18 +4,19 @@
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, Light, LightFault, LightShape, LightTexture, TexturePart, Wrap};
 use arealight_capi::{
-    AREALIGHT_EFFECT_COAT, AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH,
-    AREALIGHT_WRAP_MIRROR, ArealightImage, ArealightLight, ArealightMemory, ArealightResult,
-    ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions, ArealightTextureSetup,
-    ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy, arealight_textures_check_lights,
-    arealight_textures_create, arealight_textures_destroy, arealight_textures_image,
-    arealight_textures_needs, arealight_textures_setup, arealight_textures_update,
-    arealight_textures_write_source_set,
+    AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_EFFECT_COAT,
+    AREALIGHT_EFFECT_COAT_NORMAL, AREALIGHT_EFFECT_DIFFUSE, AREALIGHT_LIGHT_MESH, AREALIGHT_WRAP_MIRROR,
+    ArealightFrame, ArealightImage, ArealightLight, ArealightMemory, ArealightPassOptions,
+    ArealightResources, ArealightResult, ArealightSetLayout, ArealightTextureNeeds, ArealightTextureOptions,
+    ArealightTextureSetup, ArealightTextureUpdate, ArealightTextures, arealight_pass_destroy,
+    arealight_pass_record_pushed, arealight_textures_check_lights, arealight_textures_create,
+    arealight_textures_destroy, arealight_textures_image, arealight_textures_needs, arealight_textures_setup,
+    arealight_textures_update, arealight_textures_write_source_set,
 };
 use arealight_engine::host::{DescriptorPool, HostError, Image, ImageDescription, Usage};
 use arealight_engine::{SourceImage, SourceTexels};
 use arealight_tests::TestEngine;
-use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_LIGHT, good, refused};
+use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_FRAME, NO_LIGHT, good, refused, set_layout};
 use arealight_tests::one_pixel::{OnePixel, lamp, sampled};
 use ash::vk::{self, Handle as _};
 use glam::{DVec2, DVec3, Vec3, Vec4};
@@ -128,6 +129,8 @@ const NO_SET: ArealightSetLayout = ArealightSetLayout {
     combined_image_samplers: 0,
     storage_images: 0,
     storage_buffers: 0,
+    dynamic_storage_buffers: 0,
+    reserved: 0,
 };
 
 impl<'a> CTextures<'a> {
@@ -342,4 +345,47 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     good(unsafe { arealight_pass_destroy(pass) });
     // SAFETY: likewise.
     good(unsafe { arealight_pass_destroy(coating) });
+}
+
+#[test]
+fn c_pushes_what_sets_hold() {
+    let Some(engine) = TestEngine::with_push_descriptors() else { return };
+    let pixel = OnePixel::new(&engine, Vec4::new(0.1, 0.2, 0.0, 1.0), 0.5);
+    let library = CLibrary::new(&engine);
+    let memory = DeviceMemory::new(&engine, &library.table_memory());
+    library.upload(&memory);
+    let textures = CTextures::new(&engine, &library);
+    let given = CLights::new(HOLES);
+    let shade =
+        |library: &CLibrary<'_>, pass| library.shade(pass, &pixel, &given.lights, textures.image(), CAMERA);
+    let plain = library.pass(AREALIGHT_EFFECT_DIFFUSE);
+    let by_set = shade(&library, plain);
+    let options =
+        ArealightPassOptions { surfaces: AREALIGHT_EFFECT_DIFFUSE, ..ArealightPassOptions::default() };
+    let [pushing, by_offsets] = [AREALIGHT_DESCRIPTORS_PUSHED, AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS]
+        .map(|descriptors| library.pass_with(&ArealightPassOptions { descriptors, ..options }));
+    library.is_pushed.set(true);
+    assert_eq!(shade(&library, pushing), by_set);
+    // The twin: a pass with sets takes no pushed resources, and offsets need dynamic buffers
+    let (resources, frame) =
+        (ArealightResources::default(), ArealightFrame { width: 1, height: 1, ..NO_FRAME });
+    let commands = null_mut::<c_void>().wrapping_add(8);
+    // SAFETY: the pointers are valid, and nothing is recorded where an error is returned.
+    let pushed = unsafe {
+        arealight_pass_record_pushed(
+            by_offsets,
+            library.arealight,
+            commands,
+            &raw const resources,
+            &raw const frame,
+        )
+    };
+    refused(pushed, ArealightResult::ErrorArgument, "resources: are given");
+    let layout = set_layout(by_offsets);
+    assert_eq!(layout.dynamic_storage_buffers, 3);
+    assert_eq!(set_layout(plain).dynamic_storage_buffers, 0);
+    for pass in [plain, pushing, by_offsets] {
+        // SAFETY: nothing is pending.
+        good(unsafe { arealight_pass_destroy(pass) });
+    }
 }

@@ -5,16 +5,18 @@ use arealight_capi::{
     AREALIGHT_SHADOW_FILTER_GATHER, AREALIGHT_WHOLE_SIZE, ArealightBlockerArrays, ArealightBuffer,
     ArealightFrame, ArealightImage, ArealightPass, ArealightPassOptions, ArealightResources, ArealightResult,
     ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowPass,
-    ArealightShadowResources, ArealightViewport, arealight_blockers_create, arealight_blockers_destroy,
-    arealight_blockers_read, arealight_pack_lights, arealight_pass_create, arealight_pass_destroy,
-    arealight_pass_record, arealight_pass_shadow_picks_size, arealight_pass_write_set,
-    arealight_shadow_pass_create, arealight_shadow_pass_destroy, arealight_shadow_pass_prepare,
-    arealight_shadow_pass_record, arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
+    ArealightShadowResources, arealight_blockers_create, arealight_blockers_destroy, arealight_blockers_read,
+    arealight_pack_lights, arealight_pass_create, arealight_pass_destroy, arealight_pass_record,
+    arealight_pass_shadow_picks_size, arealight_pass_write_set, arealight_shadow_pass_create,
+    arealight_shadow_pass_destroy, arealight_shadow_pass_prepare, arealight_shadow_pass_record,
+    arealight_shadow_pass_set_layout, arealight_shadow_pass_write_set,
 };
 use arealight_engine::host::{Buffer, Image, Usage};
 use arealight_oracle::material::Material;
 use arealight_tests::TestEngine;
-use arealight_tests::c_library::{CLibrary, DeviceMemory, NO_ARRAYS, c_lamp, good, refused, set_layout};
+use arealight_tests::c_library::{
+    CLibrary, DeviceMemory, NO_ARRAYS, NO_FRAME, c_lamp, good, refused, set_layout,
+};
 use arealight_tests::one_pixel::lamp;
 use arealight_tests::shadow_patch::{PatchPasses, SIDE, ShadowPatch, filled, stored};
 use arealight_vk::ShadowPass;
@@ -153,11 +155,7 @@ impl<'a> CPasses<'a> {
             camera: patch.view.to_array(),
             lights: packed.summary,
             seed,
-            position_from_clip: std::ptr::null(),
-            tile_lists: ArealightBuffer::default(),
-            viewport: ArealightViewport::default(),
-            offset: [0; 2],
-            rows: [0; 2],
+            ..NO_FRAME
         };
         let shadow_frame = ArealightShadowFrame {
             frame: &raw const frame,

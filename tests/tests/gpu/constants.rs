@@ -45,6 +45,7 @@ const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl
 const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_texel.glsl");
 const SHADOW_HISTORY_GLSL: &str = include_str!("../../../shaders/kernels/shadow_history.glsl");
 const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_picks.glsl");
+const VIEW_GLSL: &str = include_str!("../../../shaders/kernels/view.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
 
@@ -179,6 +180,14 @@ fn choices_have_the_same_numbers_in_glsl() {
         ("HALF", number(RadianceFormat::Rgba16Float as u32)),
     ];
     assert_constants(OUTPUT_TEXEL_GLSL, "OUTPUT_", &output);
+    let plain = ShadeOptions::default();
+    let view = [
+        ("ORTHOGRAPHIC", number(ShadeOptions { orthographic: true, ..plain }.view_bits())),
+        ("RECTANGLE", number(ShadeOptions { rectangle: true, ..plain }.view_bits())),
+        ("STENCIL", number(ShadeOptions { stencil: true, ..plain }.view_bits())),
+        ("TEXELS_SHIFT", f64::from(ShadeOptions { texels_per_pixel: 2, ..plain }.view_bits().ilog2())),
+    ];
+    assert_constants(VIEW_GLSL, "VIEW_", &view);
     let most = number(ShadeOptions::MOST_SHADOW_RAYS);
     assert_constants(SHADOW_PICKS_GLSL, "MOST_SHADOW_RAYS", &[("", most)]);
     let history = [

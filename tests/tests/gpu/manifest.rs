@@ -103,6 +103,7 @@ fn a_pruned_module_binds_what_its_frames_use() {
         surfaces: Effects::all(),
         separate_lobes: true,
         shadow_rays: 1,
+        stencil: true,
         ..ShadeOptions::default()
     };
     let lights = LightSummary { quad_count: 1, effects: Effects::all(), ..LightSummary::default() };
@@ -112,9 +113,12 @@ fn a_pruned_module_binds_what_its_frames_use() {
     };
     let of_frames: Vec<u32> = (0..kernels::FRAME_BINDINGS as u32).collect();
     assert_eq!(bound(shade_specialization(options, lights)), of_frames);
+    let counted = ShadeOptions { light_counts: true, ..options };
+    let of_counted = bound(shade_specialization(counted, lights));
+    assert_eq!(of_counted, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32]].concat());
     // Tiles have their lists, too; a frame of quads without shadows has no more than quads need
     let of_tiles = bound(shade_tiles_specialization(options, lights, TileClass::Any));
-    assert_eq!(of_tiles, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32]].concat());
+    assert_eq!(of_tiles, [of_frames.as_slice(), &[kernels::FRAME_BINDINGS as u32 + 1]].concat());
     let quads = LightSummary { effects: Effects::empty(), ..lights };
     assert_eq!(bound(shade_specialization(ShadeOptions::default(), quads)), [0, 1, 2, 3, 4, 5, 7]);
 }

@@ -1,10 +1,14 @@
 //! How far lights are of any matter, by points outside.
 
 use arealight::reach::{self, DIFFUSE_DENSITY};
-use arealight::{Light, LightShape, LightTable, Quality, SpecularLobes, TubeEnds};
+use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLobes, TubeEnds};
 use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on};
 use arealight_oracle::stream::Stream;
+use arealight_tests::TestEngine;
+use arealight_tests::floor::seen_from;
+use arealight_tests::kernel::LIGHT_REACH;
+use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 use std::sync::LazyLock;
 
@@ -53,20 +57,8 @@ fn reflected(light: &Light, surface: &Surface, position: DVec3, normal: DVec3, v
                 sum + ltc(table, surface, normal, view, &RelativeLight::new(&face, position))
             })
         }
-        shape => {
-            let shape = match shape.clone() {
-                LightShape::Disk { center, axis_u, axis_v } => {
-                    LightShape::Disk { center: center - position, axis_u, axis_v }
-                }
-                LightShape::Sphere { center, radius } => {
-                    LightShape::Sphere { center: center - position, radius }
-                }
-                LightShape::Tube { p0, p1, radius, ends } => {
-                    LightShape::Tube { p0: p0 - position, p1: p1 - position, radius, ends }
-                }
-                polygonal => polygonal,
-            };
-            let there = Light { shape, ..light.clone() };
+        _ => {
+            let there = seen_from(light, position);
             shape_ltc_on(Quality::default(), table, surface, normal, view, &there).unwrap()
         }
     };
@@ -163,4 +155,60 @@ fn what_nothing_bounds_reaches_everywhere_and_dark_lights_nowhere() {
     let [far, near] = [THRESHOLD / 4.0, THRESHOLD].map(|threshold| reach::radius(light, threshold, 1.0));
     let size = light.shape.vertices()[0].distance(light.shape.center());
     assert!((far - size - 2.0 * (near - size)).abs() < 1e-9);
+}
+
+/// What the GPU says of lights: radius, low and high, in their order.
+fn reaches_on_gpu(engine: &TestEngine, lights: &[Light], density: f64) -> Vec<(f64, [DVec3; 2])> {
+    let packed = PackedLights::new(lights, DVec3::ZERO).unwrap();
+    let summary = packed.summary();
+    let asked =
+        [summary.light_count, summary.shape_count, (THRESHOLD as f32).to_bits(), (density as f32).to_bits()];
+    let host = engine.host();
+    let buffers = [
+        host.storage_buffer("lights", &packed.lights).unwrap(),
+        host.storage_buffer("shapes", &packed.shapes).unwrap(),
+        host.storage_buffer("asked", &asked).unwrap(),
+    ];
+    let inputs = [0, 1, 2].map(|index: usize| Resource::buffer(buffers[index].handle()));
+    let results: Vec<[f32; 7]> = engine.dispatch(&LIGHT_REACH, &[], &inputs, lights.len());
+    let mut reaches = vec![(0.0, [DVec3::ZERO; 2]); lights.len()];
+    for (place, [radius, low @ .., x, y, z]) in packed.order.iter().chain(&packed.shape_order).zip(results) {
+        let corners = [Vec3::from_array(low), Vec3::new(x, y, z)].map(Vec3::as_dvec3);
+        reaches[*place as usize] = (f64::from(radius), corners);
+    }
+    reaches
+}
+
+#[test]
+fn the_gpu_reaches_as_far_as_rust_says() {
+    let Some(engine) = TestEngine::new() else { return };
+    let density = DIFFUSE_DENSITY + TABLE.lobe_density(SpecularLobes::default(), LEAST_ROUGHNESS);
+    let mut lights = lights();
+    let dark = Light { radiance: Vec3::ZERO, ..lights[0].clone() };
+    lights.push(dark);
+    for (index, (light, (radius, [low, high]))) in
+        lights.iter().zip(reaches_on_gpu(&engine, &lights, density)).enumerate()
+    {
+        let expected = reach::radius(light, THRESHOLD, density);
+        let is_bent = light.shape.is_polygonal() && !light.shape.is_flat();
+        if is_bent {
+            // By the sphere that covers it, in the place of its faces' areas
+            let mut random = Stream::new("reach on the GPU", index as u64, 0);
+            let beyond = most(light, radius, 1.0, &mut random);
+            assert!(beyond <= THRESHOLD, "light {index}: {beyond} beyond {radius}");
+            assert!(radius < 3.0 * expected, "light {index}: {radius} for {expected}");
+            continue;
+        }
+        // No nearer, and farther by no more than float32's rounding is allowed for
+        let within =
+            |found: f64, expected: f64| found >= expected && found <= expected + 1e-5 * expected.abs();
+        assert!(within(radius, expected), "light {index}: {radius} for {expected}");
+        let bounds = reach::bounds(light, radius);
+        let far = 3e-5 * radius + 1e-6;
+        assert!((low - bounds[0]).abs().max_element() <= far, "light {index}: {low} for {}", bounds[0]);
+        assert!((high - bounds[1]).abs().max_element() <= far, "light {index}: {high} for {}", bounds[1]);
+    }
+    // The twin: another density is another reach
+    let far = reaches_on_gpu(&engine, &lights[..1], 4.0 * density)[0].0;
+    assert!(far > 1.5 * reach::radius(&lights[0], THRESHOLD, density));
 }

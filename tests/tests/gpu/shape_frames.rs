@@ -11,6 +11,7 @@ use arealight_oracle::material::Material;
 use arealight_oracle::shading::shape_ltc_on;
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};
+use arealight_tests::floor::seen_from;
 use arealight_tests::scenes::{lambert, scene_of, without_textures};
 use arealight_tests::{Comparison, Random, TestEngine, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -111,22 +112,6 @@ fn shapes() -> Vec<Light> {
 fn of_kinds(effects: Effects) -> Vec<Light> {
     let kind = |shape: &Light| shape.effects() - Effects::TWO_SIDED;
     shapes().into_iter().filter(|shape| effects.contains(kind(shape))).collect()
-}
-
-/// The shape as it is seen from a point.
-fn seen_from(light: &Light, point: DVec3) -> Light {
-    let moved = |p: DVec3| p - point;
-    let shape = match light.shape.clone() {
-        LightShape::Disk { center, axis_u, axis_v } => {
-            LightShape::Disk { center: moved(center), axis_u, axis_v }
-        }
-        LightShape::Sphere { center, radius } => LightShape::Sphere { center: moved(center), radius },
-        LightShape::Tube { p0, p1, radius, ends } => {
-            LightShape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
-        }
-        polygonal => polygonal,
-    };
-    Light { shape, ..light.clone() }
 }
 
 /// What float64 says that every pixel shows.

@@ -199,7 +199,7 @@ impl<'a> SceneRenderer<'a> {
         lists: Option<&Buffer>,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, _] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = self.g_buffer.sampled();
         let resources = [
             self.engine.table(),
             Resource::buffer(self.light_buffer.handle()),
@@ -215,7 +215,9 @@ impl<'a> SceneRenderer<'a> {
             coat,
             sheen,
             anisotropy,
-            // Picks of shadow rays, lists, and horizons of lobes: no frame of these has the first and the last
+            // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of these has others than lists
+            Resource::buffer(self.light_buffer.handle()),
+            film,
             Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(lists.unwrap_or(&self.light_buffer).handle()),
             Resource::buffer(self.light_buffer.handle()),

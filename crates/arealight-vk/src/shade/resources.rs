@@ -7,7 +7,10 @@ use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary};
 use ash::vk;
 
-/// The names of bindings of tiles, in the manifest.
+/// The names of bindings that options ask for, in the manifest.
+pub(super) const STENCIL: &str = "g_stencil";
+pub(super) const LIGHT_COUNTS: &str = "light_counts";
+/// And of those of tiles.
 pub(super) const TILE_LISTS: &str = "tile_lists";
 pub(super) const LOBE_HORIZONS: &str = "lobe_horizons";
 
@@ -61,6 +64,10 @@ pub struct ShadeResources {
     /// With [`ShadeOptions::shadow_rays`], a buffer of [`crate::ShadePass::picks_size`] bytes, which the pass writes and a
     /// [`crate::ShadowPass`] reads. Else none.
     pub picks: Option<Resource>,
+    /// Stencils, in the aspect of stencils or an image of unsigned integers, for each texel of the G-buffer; none without [`ShadeOptions::stencil`].
+    pub stencil: Option<Resource>,
+    /// A buffer of [`arealight::gpu::LightCounts`]; none without [`ShadeOptions::light_counts`].
+    pub light_counts: Option<Resource>,
     /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
     pub lobe_horizons: Option<Resource>,
     /// With tiles, a buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each. Else none.
@@ -75,22 +82,19 @@ impl ShadeResources {
         has_tiles: bool,
         bindings: usize,
     ) -> Result<(Vec<Resource>, Vec<&'static str>), Error> {
-        let read = [
-            ("specular", self.specular, options.reads_specular()),
-            ("coat", self.coat, options.reads_coat()),
-            ("sheen", self.sheen, options.reads_sheen()),
-            ("anisotropy", self.anisotropy, options.reads_anisotropy()),
-        ];
-        if let Some((field, ..)) =
-            read.into_iter().find(|(_, resource, is_read)| *is_read && resource.is_none())
-        {
-            let message = format!("is missing, but the pass reads it: see ShadeOptions::reads_{field}");
-            return Err(Error::InvalidArgument { field, message });
-        }
-        if self.picks.is_none() && options.shadow_rays > 0 {
-            let message =
-                "is missing, but the pass picks lights for shadow rays: see ShadeOptions::shadow_rays".into();
-            return Err(Error::InvalidArgument { field: "picks", message });
+        for (field, resource, is_used, option) in [
+            ("specular", self.specular, options.reads_specular(), "reads_specular"),
+            ("coat", self.coat, options.reads_coat(), "reads_coat"),
+            ("sheen", self.sheen, options.reads_sheen(), "reads_sheen"),
+            ("anisotropy", self.anisotropy, options.reads_anisotropy(), "reads_anisotropy"),
+            ("picks", self.picks, options.shadow_rays > 0, "shadow_rays"),
+            ("stencil", self.stencil, options.stencil, "stencil"),
+            ("light_counts", self.light_counts, options.light_counts, "light_counts"),
+        ] {
+            if is_used && resource.is_none() {
+                let message = format!("is missing, but the pass uses it: see ShadeOptions::{option}");
+                return Err(Error::InvalidArgument { field, message });
+            }
         }
         let textures_place = match self.table {
             Resource::SampledImage { view, layout } => Resource::FilteredImage { view, layout },
@@ -112,7 +116,11 @@ impl ShadeResources {
             self.sheen.unwrap_or(self.base_color),
             self.anisotropy.unwrap_or(self.base_color),
             self.picks.unwrap_or(self.lights),
+            self.stencil.unwrap_or(self.base_color),
         ];
+        if has_tiles || options.light_counts {
+            all.push(self.light_counts.unwrap_or(self.lights));
+        }
         if has_tiles {
             for (resource, field) in [(self.tile_lists, TILE_LISTS), (self.lobe_horizons, LOBE_HORIZONS)] {
                 let message = "is missing, but the pass was made with tiles".into();

@@ -14,12 +14,6 @@ pub enum BindingKind {
     StorageBuffer,
 }
 
-impl BindingKind {
-    /// Every kind.
-    pub const ALL: [Self; 4] =
-        [Self::SampledImage, Self::FilteredImage, Self::StorageImage, Self::StorageBuffer];
-}
-
 /// What a kernel does to a binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {

@@ -40,3 +40,7 @@ pub const SHADOW_MOTION: u32 = 17;
 pub const SHADOW_HISTORY: u32 = 18;
 /// [`crate::plan::ShadeOptions::view_bits`].
 pub const VIEW: u32 = 19;
+/// [`crate::plan::ShadeOptions::light_counts`].
+pub const LIGHT_COUNTS: u32 = 20;
+/// [`crate::plan::ShadeOptions::samples`].
+pub const SAMPLES: u32 = 21;

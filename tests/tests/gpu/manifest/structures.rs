@@ -216,6 +216,11 @@ fn the_structures_of_tiles_have_the_same_offsets() {
         (&classify, "ShadeConstants", &shade_constants()),
         (&classify, "ArealightGpuLobeHorizon", &horizon),
         (&classify, "ArealightGpuLight", &light_layout()),
+        (
+            &classify,
+            "ArealightGpuLightCounts",
+            &layout!(gpu::LightCounts, light_count, shape_count, quad_count),
+        ),
     ] {
         assert_offsets(kernel, structure, expected);
     }

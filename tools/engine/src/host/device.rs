@@ -22,6 +22,8 @@ pub struct HostOptions {
     /// Enables `robustBufferAccess`: accesses out of a buffer's bounds do no harm, and hide from
     /// [`Validation::GpuAssisted`].
     pub robust_buffer_access: bool,
+    /// Enables `VK_KHR_push_descriptor`.
+    pub push_descriptors: bool,
     /// How long [`Host::submit`] waits for the GPU; 10 minutes by default, for slow dispatches on a CPU.
     pub timeout: Duration,
 }
@@ -32,6 +34,7 @@ impl Default for HostOptions {
             device: None,
             validation: Validation::Off,
             robust_buffer_access: false,
+            push_descriptors: false,
             timeout: Duration::from_secs(600),
         }
     }
@@ -73,7 +76,8 @@ impl Host {
     /// Says what is missing and how to get it: the loader, a driver, the device that was asked for, the
     /// validation layer, a feature.
     pub fn new(options: HostOptions) -> Result<Self, HostError> {
-        let HostOptions { device: wanted, validation, robust_buffer_access, timeout } = options;
+        let HostOptions { device: wanted, validation, robust_buffer_access, push_descriptors, timeout } =
+            options;
         let instance = Instance::new(validation)?;
         let candidate = choose(candidates(&instance)?, wanted.as_deref())?;
         let (physical_device, queue_family) = (candidate.physical_device, candidate.queue_family);
@@ -93,7 +97,7 @@ impl Host {
         // Make the device with one queue
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&[1.0])];
-        let extensions = required_extensions(&instance, physical_device)?;
+        let extensions = extensions(&instance, physical_device, push_descriptors)?;
         let info = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_features(&enabled_features)
@@ -332,17 +336,28 @@ fn rank(kind: vk::PhysicalDeviceType) -> u32 {
     }
 }
 
-/// Extensions that must be enabled where the device has them: only the one that marks a non-conformant device.
-fn required_extensions(
+/// Extensions that are enabled: what was asked for, and what must be where the device has it, which is only the one that marks a non-conformant device.
+fn extensions(
     instance: &Instance,
     physical_device: vk::PhysicalDevice,
+    push_descriptors: bool,
 ) -> Result<Vec<*const std::ffi::c_char>, HostError> {
     // SAFETY: The physical device is of this instance, which is alive.
     let offered = unsafe { instance.raw.enumerate_device_extension_properties(physical_device) };
     let offered = offered.named("vkEnumerateDeviceExtensionProperties")?;
-    let name = vk::KHR_PORTABILITY_SUBSET_NAME;
-    let is_there = offered.iter().any(|one| one.extension_name_as_c_str() == Ok(name));
-    Ok(if is_there { vec![name.as_ptr()] } else { vec![] })
+    let is_there =
+        |name: &std::ffi::CStr| offered.iter().any(|one| one.extension_name_as_c_str() == Ok(name));
+    let mut enabled = vec![];
+    if is_there(vk::KHR_PORTABILITY_SUBSET_NAME) {
+        enabled.push(vk::KHR_PORTABILITY_SUBSET_NAME.as_ptr());
+    }
+    if push_descriptors {
+        if !is_there(vk::KHR_PUSH_DESCRIPTOR_NAME) {
+            return Err(HostError::MissingFeature("VK_KHR_push_descriptor"));
+        }
+        enabled.push(vk::KHR_PUSH_DESCRIPTOR_NAME.as_ptr());
+    }
+    Ok(enabled)
 }
 
 #[cfg(test)]

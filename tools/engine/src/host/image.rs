@@ -46,8 +46,21 @@ impl Host {
     /// [`HostError::InvalidArgument`] where the device has no such image: a dimension is 0 or beyond its
     /// limits, or it cannot use the format so. [`HostError::OutOfMemory`].
     pub fn image(&self, description: &ImageDescription<'_>) -> Result<Image, HostError> {
+        self.multisampled_image(description, 1)
+    }
+
+    /// As [`Host::image`], with several samples a texel: 2, 4 or 8.
+    ///
+    /// # Errors
+    /// As [`Host::image`].
+    pub fn multisampled_image(
+        &self,
+        description: &ImageDescription<'_>,
+        samples: u32,
+    ) -> Result<Image, HostError> {
         let usage = description.usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
-        self.check_image(description, usage)?;
+        let samples = vk::SampleCountFlags::from_raw(samples);
+        self.check_image(description, usage, samples)?;
         let [width, height] = description.extent;
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
@@ -55,7 +68,7 @@ impl Host {
             .extent(vk::Extent3D { width, height, depth: 1 })
             .mip_levels(1)
             .array_layers(description.layers)
-            .samples(vk::SampleCountFlags::TYPE_1)
+            .samples(samples)
             .tiling(vk::ImageTiling::OPTIMAL)
             .usage(usage);
         // SAFETY: The device is alive, and offers such an image.
@@ -89,7 +102,12 @@ impl Host {
     }
 
     /// Whether the device offers such an image.
-    fn check_image(&self, image: &ImageDescription<'_>, usage: vk::ImageUsageFlags) -> Result<(), HostError> {
+    fn check_image(
+        &self,
+        image: &ImageDescription<'_>,
+        usage: vk::ImageUsageFlags,
+        samples: vk::SampleCountFlags,
+    ) -> Result<(), HostError> {
         let refuse = |message| Err(HostError::InvalidArgument { name: image.name.to_owned(), message });
         let [width, height] = image.extent;
         if width == 0 || height == 0 || image.layers == 0 {
@@ -112,6 +130,12 @@ impl Host {
             }
             properties => {
                 let limit = properties.named("vkGetPhysicalDeviceImageFormatProperties")?;
+                if !limit.sample_counts.contains(samples) {
+                    return refuse(format!(
+                        "the device has {:?} images of {:?}",
+                        image.format, limit.sample_counts
+                    ));
+                }
                 let most = [limit.max_extent.width, limit.max_extent.height];
                 if width > most[0] || height > most[1] || image.layers > limit.max_array_layers {
                     return refuse(format!(
@@ -304,7 +328,7 @@ fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
 /// Bytes a texel, of the formats that the tools use.
 fn texel_size(format: vk::Format) -> Option<u64> {
     Some(match format {
-        vk::Format::R8_UNORM => 1,
+        vk::Format::R8_UNORM | vk::Format::R8_UINT => 1,
         vk::Format::R16_SFLOAT | vk::Format::D16_UNORM => 2,
         vk::Format::R8G8B8A8_UNORM
         | vk::Format::R8G8B8A8_SNORM

@@ -119,10 +119,28 @@ fn validation_asked_for() -> Validation {
 /// # Panics
 /// As [`device_or_skip`].
 pub fn device_with(validation: Validation) -> Option<TestHost> {
-    let options =
-        HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() };
-    let host = made_or_skip(Host::new(options))?;
+    let host = made_or_skip(Host::new(test_options(validation)))?;
     Some(TestHost { log: host.message_log(), host: Some(host) })
+}
+
+/// As [`device_or_skip`], with `VK_KHR_push_descriptor`. None where the device has none, too.
+///
+/// # Panics
+/// As [`device_or_skip`].
+pub fn device_with_push_descriptors() -> Option<TestHost> {
+    let options = HostOptions { push_descriptors: true, ..test_options(validation_asked_for()) };
+    let made = Host::new(options);
+    if let Err(HostError::MissingFeature(feature)) = made {
+        println!("skipped: the device has no {feature}");
+        record("skipped");
+        return None;
+    }
+    let host = made_or_skip(made)?;
+    Some(TestHost { log: host.message_log(), host: Some(host) })
+}
+
+fn test_options(validation: Validation) -> HostOptions {
+    HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() }
 }
 
 /// The file of the driver whose compiler a test asks ([`crate::host::null_hardware`]). `None` where it is not installed: return then.

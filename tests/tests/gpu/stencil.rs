@@ -1,0 +1,75 @@
+//! Stencil tests: pixels that fail stay as they are, whatever a frame does to others.
+
+use arealight::plan::{Output, ShadeOptions};
+use arealight_tests::TestEngine;
+use arealight_tests::floor::{Floor, image, lamps, pixels, read};
+use arealight_tests::one_pixel::BEFORE;
+use arealight_vk::{Error, ShadeFrame, ShadePass, ShadeResources, StencilTest};
+use ash::vk;
+use glam::DVec3;
+
+/// The kernels' own rounding.
+const BOUND: f64 = 1e-4;
+
+/// A stencil with all eight bits in use, of whole tiles and of single pixels.
+fn stencil([x, y]: [u32; 2]) -> u8 {
+    let blocks = u32::from(x < 16 && y < 8) << 7;
+    (blocks | ((x * 7 + y * 3) % 128)) as u8
+}
+
+#[test]
+fn pixels_that_fail_the_stencil_test_stay_as_they_are() {
+    let Some(engine) = TestEngine::new() else { return };
+    let floor = Floor::new(&engine, &lamps());
+    let stencils: Vec<u8> = pixels().map(stencil).collect();
+    let image = image(&engine, vk::Format::R8_UINT, vk::ImageUsageFlags::SAMPLED, &stencils);
+    let resources = ShadeResources { stencil: Some(read(&image)), ..floor.resources() };
+    for (tiles, output, compare_mask, reference) in [
+        (false, Output::Overwrite, 0x83, 0x02),
+        (false, Output::Add, 0x80, 0x80),
+        // Tiles of which no pixel passes are there, and those of which some do
+        (true, Output::Overwrite, 0x80, 0x80),
+        (true, Output::Add, 0xc1, 0x41),
+    ] {
+        let options = ShadeOptions { stencil: true, output, ..ShadeOptions::default() };
+        let test = StencilTest { compare_mask, reference };
+        let frame = ShadeFrame { stencil: test, ..floor.frame() };
+        let found = floor.shade(engine.context(), options, tiles, (&resources, &frame, false));
+        let mut passed = 0;
+        for (pixel, found) in pixels().zip(found) {
+            if stencil(pixel) & compare_mask != reference & compare_mask {
+                assert_eq!(found, BEFORE, "{pixel:?} fails {test:?}");
+                continue;
+            }
+            passed += 1;
+            let before = if output == Output::Add { BEFORE.truncate().as_dvec3() } else { DVec3::ZERO };
+            let expected = before + floor.expected(pixel, |_| true);
+            let error = (found.truncate().as_dvec3() - expected).abs().max_element();
+            assert!(error < BOUND, "{pixel:?}, {test:?}, tiles {tiles}: {found} is not {expected}");
+            assert!((found.w - 1.0).abs() < f32::EPSILON);
+        }
+        assert!((20..pixels().count() / 2).contains(&passed), "{passed} pixels pass {test:?}");
+    }
+    // The twin: a mask of no bits passes everything
+    let options = ShadeOptions { stencil: true, ..ShadeOptions::default() };
+    let found = floor.shade(engine.context(), options, false, (&resources, &floor.frame(), false));
+    assert!(found.iter().all(|texel| *texel != BEFORE));
+}
+
+#[test]
+fn a_stencil_that_is_not_there_is_named() {
+    let Some(engine) = TestEngine::new() else { return };
+    let floor = Floor::new(&engine, &lamps());
+    let options = ShadeOptions { stencil: true, ..ShadeOptions::default() };
+    // SAFETY: Nothing is recorded; the pass and the pool are dropped before the engine.
+    unsafe {
+        let pass = ShadePass::new(engine.context(), options).unwrap();
+        let pool = engine.host().descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
+        let set = pool.allocate(pass.set_layout()).unwrap();
+        let error = pass.write_set(set, &floor.resources()).unwrap_err();
+        assert!(matches!(error, Error::InvalidArgument { field: "stencil", .. }), "{error}");
+        let rays = ShadeOptions { shadow_rays: 1, ..options };
+        let error = ShadePass::new(engine.context(), rays).unwrap_err();
+        assert!(matches!(error, Error::InvalidArgument { field: "stencil", .. }), "{error}");
+    }
+}
