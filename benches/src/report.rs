@@ -86,10 +86,10 @@ impl Row {
         }
         let samples = self.tally.samples;
         let broken = self.tally.shortfalls.iter().map(|(promise, shortfall)| {
-            let by = if shortfall.ratio.is_finite() {
-                format!(" at {:.3} of the bound", shortfall.ratio)
-            } else {
-                String::new()
+            let by = match shortfall.ratio {
+                ratio if !ratio.is_finite() => String::new(),
+                ratio if ratio >= 1000.0 => format!(" at {ratio:.1e} of the bound"),
+                ratio => format!(" at {ratio:.3} of the bound"),
             };
             format!("{promise} {} of {samples}, worst #{}{by}", shortfall.count, shortfall.index)
         });
@@ -120,12 +120,18 @@ impl Stability {
         format!("{told}{whose}; {polygons} polygons, {not_finite} results not finite")
     }
 
-    /// One table a method, for a terminal.
-    pub fn to_text(&self) -> String {
+    /// A summary of each method, and a table of the families where one of ours falls short; or of every family. For a terminal.
+    pub fn to_text(&self, has_every_family: bool) -> String {
         let mut text = String::new();
-        for (method, rows) in self.by_method() {
+        for (method, mut rows) in self.by_method() {
             let _ =
                 writeln!(text, "{}: {}\n  {}", method.name, method.description, Self::summary(method, &rows));
+            if !has_every_family {
+                rows.retain(|row| !method.is_yardstick && !row.is_kept());
+            }
+            if rows.is_empty() {
+                continue;
+            }
             let heads = HEADS.map(str::to_owned);
             for [family, error, backward, small, not_finite, verdict] in
                 std::iter::once(heads).chain(rows.iter().map(|row| row.cells()))

@@ -12,6 +12,7 @@ mod picture;
 mod progress;
 mod quality;
 mod shadows;
+mod verdict;
 mod view;
 mod visible;
 
@@ -25,6 +26,9 @@ struct CommandLine {
     /// Say nothing of progress.
     #[arg(short, long, global = true)]
     quiet: bool,
+    /// Say which device and table are used, and print every table of a report.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    verbose: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -61,9 +65,12 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let CommandLine { quiet, command } = CommandLine::parse();
+    let CommandLine { quiet, verbose, command } = CommandLine::parse();
     if quiet {
         progress::be_quiet();
+    }
+    if verbose {
+        progress::be_verbose();
     }
     let result = match command {
         Command::Render(arguments) => commands::render::run(&arguments),

@@ -13,6 +13,25 @@ pub fn be_quiet() {
     IS_QUIET.store(true, Ordering::Relaxed);
 }
 
+static IS_VERBOSE: AtomicBool = AtomicBool::new(false);
+
+/// From now on [`say`] says what it is given.
+pub fn be_verbose() {
+    IS_VERBOSE.store(true, Ordering::Relaxed);
+}
+
+/// Whether it does.
+pub fn is_verbose() -> bool {
+    IS_VERBOSE.load(Ordering::Relaxed)
+}
+
+/// With `--verbose`, writes a line to the error stream.
+pub fn say(line: impl FnOnce() -> String) {
+    if is_verbose() {
+        eprintln!("{}", line());
+    }
+}
+
 /// The time until the first line of a log: what is done by then has none.
 const FIRST: Duration = Duration::from_secs(10);
 /// The time from line to line.

@@ -433,3 +433,43 @@ fn shells_and_man_know_the_program() {
     }
     refuse(folder.path(), &["man", "missing"], 5, &["missing"]);
 }
+
+#[test]
+fn verdicts_have_colours_where_they_are_wanted_and_tables_with_verbose() {
+    if !device() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let run = |arguments: &[&str], environment: &[(&str, &str)]| {
+        Command::new(env!("CARGO_BIN_EXE_arealight"))
+            .args([
+                "bench",
+                "stability",
+                "--samples",
+                "4",
+                "--family",
+                "crossing",
+                "--level",
+                "polygon-exact",
+            ])
+            .args(arguments)
+            .env_remove("NO_COLOR")
+            .envs(environment.iter().copied())
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let plain = run(&[], &[]);
+    assert_eq!(plain.status.code(), Some(0), "{}", text(&plain.stderr));
+    let (said, green) = (text(&plain.stdout), "\u{1b}[32mEvery promise of ours is kept\u{1b}[0m");
+    assert!(said.contains("Every promise of ours is kept") && !said.contains('\u{1b}'), "{said}");
+    assert!(!said.contains("  crossing ") && plain.stderr.is_empty(), "{said}");
+    assert!(text(&run(&[], &[("CLICOLOR_FORCE", "1")]).stdout).contains(green));
+    let without = run(&[], &[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "1")]);
+    assert_eq!(text(&without.stdout), said);
+    // Every table, and on what it ran
+    let verbose = run(&["--verbose"], &[]);
+    assert!(text(&verbose.stdout).contains("  crossing "), "{}", text(&verbose.stdout));
+    assert!(text(&verbose.stderr).contains("device: "), "{}", text(&verbose.stderr));
+    refuse(folder.path(), &["-q", "-v", "devices"], 2, &["--quiet", "--verbose"]);
+}

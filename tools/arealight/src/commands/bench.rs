@@ -13,10 +13,10 @@ mod stability;
 mod textures;
 
 use crate::failure::Failure;
-use crate::gpu;
 use crate::output::{self, print};
+use crate::{gpu, verdict};
 use arealight_benches::sections::{Markers, replace_section};
-use arealight_engine::{Host, HostOptions};
+use arealight_engine::Host;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -83,8 +83,7 @@ impl Ends {
     /// The device, when it is known that every file can be written.
     fn host(&self) -> Result<Host, Failure> {
         self.save.as_deref().into_iter().chain(self.markdown.as_deref()).try_for_each(output::check)?;
-        let options = HostOptions { device: self.device.device.clone(), ..HostOptions::default() };
-        Host::new(options).map_err(|error| Failure::Device(error.to_string()))
+        gpu::host(self.device.device.as_deref())
     }
 
     /// Writes the tables where they were asked for, and prints them, or JSON where that goes to standard output.
@@ -97,7 +96,7 @@ impl Ends {
         if let Some(path) = &self.save {
             write(path, &json())?;
         }
-        if self.json { print(&json()) } else { print(text) }.map(drop)
+        if self.json { print(&json()) } else { print(&verdict::for_stdout(text)) }.map(drop)
     }
 }
 

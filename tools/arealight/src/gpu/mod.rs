@@ -4,8 +4,10 @@ pub mod eval;
 pub mod eval_shapes;
 
 use crate::failure::Failure;
+use crate::progress;
 use arealight::LightTable;
 use arealight_engine::{Engine, EngineError, Host, HostOptions};
+use ash::vk;
 use std::path::Path;
 
 /// Which device a command runs on.
@@ -16,12 +18,26 @@ pub struct DeviceArgument {
     pub device: Option<String>,
 }
 
-/// An engine on the device of that name, or on the best one.
-pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failure> {
+/// The device of that name, or the best one.
+pub fn host(device: Option<&str>) -> Result<Host, Failure> {
     let options = HostOptions { device: device.map(str::to_owned), ..HostOptions::default() };
     let host = Host::new(options).map_err(|error| Failure::Device(error.to_string()))?;
-    Engine::new(host, table, arealight_vk::TableFormat::default())
-        .map_err(|error| Failure::Device(error.to_string()))
+    progress::say(|| {
+        let properties = host.properties();
+        let [major, minor] =
+            [vk::api_version_major, vk::api_version_minor].map(|part| part(properties.api_version));
+        let kind = properties.device_type;
+        format!("device: {}, {kind:?}, Vulkan {major}.{minor}", host.device_name())
+    });
+    Ok(host)
+}
+
+/// An engine on the device of that name, or on the best one.
+pub fn engine(device: Option<&str>, table: &LightTable) -> Result<Engine, Failure> {
+    let host = host(device)?;
+    let (size, format) = (table.size(), arealight_vk::TableFormat::default());
+    progress::say(|| format!("table: {}, {size} x {size}, {format:?}", table.description().brdf));
+    Engine::new(host, table, format).map_err(|error| Failure::Device(error.to_string()))
 }
 
 /// An engine that is made when the first case needs it: without work no device is needed.

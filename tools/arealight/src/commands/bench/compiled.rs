@@ -6,6 +6,7 @@ mod model;
 use super::{document, write};
 use crate::failure::Failure;
 use crate::output::{self, print};
+use crate::verdict;
 use arealight_benches::compiled::{Check, Compiled, matching, rows};
 use arealight_benches::sections::Markers;
 use arealight_engine::host::null_hardware::driver_file;
@@ -120,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Some(file) = file else { return Ok(printed) };
     let check = Check::new(&found, &file, arguments.only.is_none())
         .map_err(|error| Failure::NoCompiler(error.to_string()))?;
-    eprint!("{}", check.to_text(UPDATE));
+    eprint!("{}", verdict::for_stderr(&check.to_text(UPDATE)));
     Ok(if check.passes() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

@@ -16,10 +16,10 @@ pub struct LadderArguments {
     /// Fewer points and rounds, and pipelines made anew once: a third of the time.
     #[arg(long)]
     quick: bool,
-    /// Points whose error is measured.
+    /// Points whose error is measured [default: 512; 128 with --quick].
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=100_000))]
     points: Option<u32>,
-    /// Rounds in which time is taken.
+    /// Rounds in which time is taken [default: 15; 5 with --quick].
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: Option<u32>,
     /// Another seed makes other points.

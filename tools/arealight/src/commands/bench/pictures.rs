@@ -8,7 +8,6 @@ use crate::failure::Failure;
 use crate::gpu;
 use crate::{output, progress};
 use arealight_benches::ladder::{STEPS_BESIDE_THE_TRUTH, View, beside_the_truth};
-use arealight_engine::{Host, HostOptions};
 use arealight_scene::Scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -96,8 +95,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let crop = arguments.crop()?;
     let scene = Scene::load(&arguments.scene).map_err(|error| Failure::Scene(error.to_string()))?;
     output::check(&arguments.output)?;
-    let options = HostOptions { device: arguments.device.device.clone(), ..HostOptions::default() };
-    let host = Host::new(options).map_err(|error| Failure::Device(error.to_string()))?;
+    let host = gpu::host(arguments.device.device.as_deref())?;
 
     let scenes = match format {
         Format::Strip => vec![scene],
