@@ -36,6 +36,7 @@ has_layer() { [[ -n "${VK_LAYER_PATH:-}" ]] || vulkan_file explicit_layer.d '*kh
 # The validator is a program, whichever library the compiler is linked with.
 has_spirv_tools() { has_program spirv-val && has_library libSPIRV-Tools-opt.a; }
 has_header() { any_file "/usr/include/$1" "/usr/local/include/$1"; }
+has_matplotlib() { python3 -c "import matplotlib" 2>/dev/null || /usr/bin/python3 -c "import matplotlib" 2>/dev/null; }
 has_c_library() { any_file "/usr/lib/$(uname -m)-linux-gnu/crt1.o" /usr/lib64/crt1.o /usr/lib/crt1.o; }
 has_library() {
     [[ -n "${SHADERC_LIB_DIR:-}" ]] || any_file "/usr/lib/$(uname -m)-linux-gnu/$1" "/usr/lib64/$1" "/usr/lib/$1"
@@ -88,7 +89,8 @@ if [[ "$mode" == test ]]; then
     need cmake "finds it too" has_program cmake
     need make "builds what CMake says" has_program make
     need chromium "runs the exported WGSL" has_program chromium
-    need python3 "tests what of the Blender add-on needs no Blender" has_program python3
+    need python3 "tests the Python module, and what of the Blender add-on needs no Blender" has_program python3
+    need python3-matplotlib "draws what the Python module's notebook shows" has_matplotlib
 fi
 
 if [[ ${#missing[@]} -eq 0 ]]; then

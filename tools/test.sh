@@ -139,6 +139,8 @@ step "WGSL in a browser answers as the oracle" env AREALIGHT="$programs/arealigh
 wgpu_example=(--manifest-path examples/wgpu/Cargo.toml --locked --quiet --target-dir "${CARGO_TARGET_DIR:-target}/wgpu")
 step "format of the example on wgpu" cargo fmt --manifest-path examples/wgpu/Cargo.toml --check
 step "a host on wgpu draws what the Rust example does" env RUSTFLAGS="-D warnings" cargo test "${wgpu_example[@]}"
+step "Python module and its notebook" tools/test-python.sh
+step "archives of a release" tools/test-release.sh
 step "Blender add-on, without Blender" python3 -B tools/blender/test_lamps.py
 step "packages" "$xtask" packages
 

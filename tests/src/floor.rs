@@ -6,7 +6,7 @@ use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLobes};
 use arealight_engine::host::{Buffer, Image, ImageDescription, Location, Usage};
 use arealight_oracle::material::{Material, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on};
+use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
 use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
@@ -194,25 +194,9 @@ pub fn one_light(
     light: &Light,
 ) -> DVec3 {
     let view = CAMERA - position;
-    let shape = seen_from(light, position);
+    let shape = shape_seen_from(light, position);
     shape_ltc_on(Quality::default(), table, surface, normal, view, &shape)
         .unwrap_or_else(|| ltc(table, surface, normal, view, &RelativeLight::new(light, position)))
-}
-
-/// The shape as it is seen from a point.
-pub fn seen_from(light: &Light, point: DVec3) -> Light {
-    let moved = |p: DVec3| p - point;
-    let shape = match light.shape.clone() {
-        LightShape::Disk { center, axis_u, axis_v } => {
-            LightShape::Disk { center: moved(center), axis_u, axis_v }
-        }
-        LightShape::Sphere { center, radius } => LightShape::Sphere { center: moved(center), radius },
-        LightShape::Tube { p0, p1, radius, ends } => {
-            LightShape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
-        }
-        polygonal => polygonal,
-    };
-    Light { shape, ..light.clone() }
 }
 
 /// An image with these texels, to be read or stored to.

@@ -244,7 +244,13 @@ fn balance(brdf: &dyn Brdf, description: &TableDescription, size: u32, stored: &
         .collect();
     for (x, last) in columns.into_iter().enumerate() {
         for (row, node) in last.into_iter().flatten().enumerate() {
-            stored[(side - albedos::ROWS + row) * side + x] = node;
+            let [mut albedo, mut schlick] = node;
+            if !description.ggx_dip {
+                // In a coarse table of a lobe that dips the balance lies beyond what an albedo can be
+                albedo = albedo.clamp(0.0, 1.0);
+                schlick = schlick.clamp(0.0, albedo);
+            }
+            stored[(side - albedos::ROWS + row) * side + x] = [albedo, schlick];
         }
     }
 }

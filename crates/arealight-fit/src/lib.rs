@@ -57,6 +57,6 @@ pub mod report;
 mod solve;
 
 pub use aim::Aim;
-pub use brdf::{Brdf, GgxBrdf, Magnitude};
+pub use brdf::{Brdf, GgxBrdf, Magnitude, half_vector_magnitude};
 pub use error::FitError;
 pub use fit::{Settings, fit, fit_at};

@@ -12,7 +12,7 @@ mod sheen;
 mod shown;
 mod textured;
 
-pub use shapes::{shape_ltc_on, shape_truth, textured_ellipse};
+pub use shapes::{shape_ltc_on, shape_seen_from, shape_truth, textured_ellipse};
 pub use shown::ShownImage;
 pub use textured::transformed_image_integral;
 

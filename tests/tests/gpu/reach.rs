@@ -3,10 +3,9 @@
 use arealight::reach::{self, DIFFUSE_DENSITY};
 use arealight::{Light, LightShape, LightTable, PackedLights, Quality, SpecularLobes, TubeEnds};
 use arealight_oracle::material::{Material, Surface};
-use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on};
+use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
 use arealight_oracle::stream::Stream;
 use arealight_tests::TestEngine;
-use arealight_tests::floor::seen_from;
 use arealight_tests::kernel::LIGHT_REACH;
 use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
@@ -58,7 +57,7 @@ fn reflected(light: &Light, surface: &Surface, position: DVec3, normal: DVec3, v
             })
         }
         _ => {
-            let there = seen_from(light, position);
+            let there = shape_seen_from(light, position);
             shape_ltc_on(Quality::default(), table, surface, normal, view, &there).unwrap()
         }
     };

@@ -8,10 +8,9 @@ use arealight_benches::pictures;
 use arealight_engine::host::{Image, ImageDescription, Usage};
 use arealight_engine::{Engine, Reference, SceneRenderer};
 use arealight_oracle::material::Material;
-use arealight_oracle::shading::shape_ltc_on;
+use arealight_oracle::shading::{shape_ltc_on, shape_seen_from};
 use arealight_oracle::texture::Texture;
 use arealight_scene::{Scene, SceneBuffers};
-use arealight_tests::floor::seen_from;
 use arealight_tests::scenes::{lambert, scene_of, without_textures};
 use arealight_tests::{Comparison, Random, TestEngine, rounding};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources};
@@ -118,7 +117,7 @@ fn of_kinds(effects: Effects) -> Vec<Light> {
 fn expected(shapes: &[Light]) -> Vec<DVec3> {
     let of_one = |pixel: &Pixel, shape: &Light| {
         let (surface, view) = (pixel.material.surface(), CAMERA - pixel.position);
-        let shape = seen_from(shape, pixel.position);
+        let shape = shape_seen_from(shape, pixel.position);
         shape_ltc_on(Quality::default(), &TABLE, &surface, pixel.normal, view, &shape).expect("a shape")
     };
     pixels().iter().map(|pixel| shapes.iter().map(|shape| of_one(pixel, shape)).sum()).collect()

@@ -228,6 +228,43 @@ fn progress_reaches_its_end() {
     assert!(done == total && total == settings(3).steps() && total > 27, "{done} of {total}");
 }
 
+/// GGX, of which nobody says that its albedos dip towards the horizon.
+struct Undeclared;
+
+impl Brdf for Undeclared {
+    fn name(&self) -> &'static str {
+        "undeclared"
+    }
+
+    fn evaluate(&self, alpha: f64, view: DVec3, light: DVec3) -> f64 {
+        GgxBrdf.evaluate(alpha, view, light)
+    }
+
+    fn sample(&self, alpha: f64, view: DVec3, u: [f64; 2]) -> DVec3 {
+        GgxBrdf.sample(alpha, view, u)
+    }
+
+    fn density(&self, alpha: f64, view: DVec3, light: DVec3) -> f64 {
+        GgxBrdf.density(alpha, view, light)
+    }
+
+    fn magnitude(&self, alpha: f64, cos_view: f64) -> Magnitude {
+        GgxBrdf.magnitude(alpha, cos_view)
+    }
+}
+
+#[test]
+fn a_coarse_table_of_a_lobe_whose_dip_is_not_known_holds_albedos() {
+    let table = fitted(&Undeclared, &quick(8));
+    for magnitude in table.magnitude() {
+        assert!((0.0..=1.0).contains(&magnitude[0]) && (0.0..=magnitude[0]).contains(&magnitude[1]));
+    }
+    // Away from the horizon they are GGX's
+    let (roughness, cos_view) = LightTable::node(8, 3, 2);
+    let truth = GgxBrdf.magnitude(roughness * roughness, cos_view);
+    assert!((table.lookup(roughness, cos_view).albedo - truth.albedo).abs() < 1e-6);
+}
+
 #[test]
 fn settings_out_of_range_are_named() {
     let refuse = |settings: Settings| match fit(&GgxBrdf, &settings, &|_, _| {}) {

@@ -101,6 +101,23 @@ fn uncoated_truth(
     })
 }
 
+/// The light with its disk, sphere or tube relative to a shading point, as [`shape_ltc_on`] and [`shape_truth`] take it. Polygons and meshes stay as
+/// they are: [`RelativeLight`](super::RelativeLight) is theirs.
+pub fn shape_seen_from(light: &Light, point: DVec3) -> Light {
+    let moved = |p: DVec3| p - point;
+    let shape = match light.shape.clone() {
+        LightShape::Disk { center, axis_u, axis_v } => {
+            LightShape::Disk { center: moved(center), axis_u, axis_v }
+        }
+        LightShape::Sphere { center, radius } => LightShape::Sphere { center: moved(center), radius },
+        LightShape::Tube { p0, p1, radius, ends } => {
+            LightShape::Tube { p0: moved(p0), p1: moved(p1), radius, ends }
+        }
+        polygonal => polygonal,
+    };
+    Light { shape, ..light.clone() }
+}
+
 /// A shape in the surface's frame.
 enum LocalShape {
     Ellipse { ellipse: Ellipse, two_sided: bool },
