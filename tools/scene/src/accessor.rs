@@ -5,7 +5,7 @@ use crate::document::{Document, slice};
 use gltf::json::accessor::{ComponentType, Type};
 
 /// The most elements an accessor may have: the corners of as many triangles as a scene may have.
-const MAX_ELEMENTS: u64 = 3 * crate::scene::MAX_TRIANGLES as u64;
+pub(crate) const MAX_ELEMENTS: u64 = 3 * crate::scene::MAX_TRIANGLES as u64;
 
 /// An accessor's elements, tightly packed.
 struct Elements {

@@ -1,6 +1,6 @@
 //! The file as glTF has it: container, JSON, buffers. Nothing here trusts the file.
 
-use crate::{SceneError, extensions};
+use crate::{SceneError, draco, extensions};
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
 
@@ -43,7 +43,33 @@ impl Document {
         let buffers = document.root.buffers.iter().enumerate();
         document.buffers =
             buffers.map(|(i, b)| document.read_buffer(i, b, blob)).collect::<Result<Vec<_>, _>>()?;
+        draco::decompress(&mut document)?;
         Ok(document)
+    }
+
+    /// Adds a buffer with a view of all of it: the view's index.
+    pub fn push(&mut self, bytes: Vec<u8>) -> u32 {
+        let byte_length = bytes.len().into();
+        let buffer = json::Index::new(self.root.buffers.len() as u32);
+        self.root.buffers.push(json::Buffer {
+            byte_length,
+            name: None,
+            uri: None,
+            extensions: None,
+            extras: json::Extras::default(),
+        });
+        self.buffers.push(bytes);
+        self.root.buffer_views.push(json::buffer::View {
+            buffer,
+            byte_length,
+            byte_offset: None,
+            byte_stride: None,
+            name: None,
+            target: None,
+            extensions: None,
+            extras: json::Extras::default(),
+        });
+        self.root.buffer_views.len() as u32 - 1
     }
 
     /// An error about a field.
@@ -142,13 +168,16 @@ impl Document {
                 }
             }
         }
-        // Check every index and enumeration; a missing minimum or maximum does no harm
+        // Check every index and enumeration; a missing minimum or maximum does no harm, and an accessor without a view is of zeros, or compressed
         let mut first = None;
         let report = &mut |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
             let field = path();
             let bounds = ["min", "max"].map(|bound| format!("[\"POSITION\"].{bound}"));
             let bounds = bounds.iter().any(|bound| field.as_str().ends_with(bound));
-            if first.is_none() && !bounds {
+            let is_empty = field.as_str().starts_with("accessors[")
+                && field.as_str().ends_with("].bufferView")
+                && error == json::validation::Error::Missing;
+            if first.is_none() && !bounds && !is_empty {
                 first = Some((field.as_str().to_owned(), error.to_string()));
             }
         };

@@ -7,10 +7,11 @@ use gltf::json;
 use std::collections::BTreeSet;
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
-const READ: [&str; 16] = [
+const READ: [&str; 17] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
+    crate::draco::NAME,
     crate::punctual::NAME,
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -39,7 +40,6 @@ const COSTS_LOOKS: [&str; 8] = [
 ];
 
 const MATERIALS: &str = "KHR_materials_";
-const DRACO: &str = "KHR_draco_mesh_compression";
 const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 const WEBP: &str = "EXT_texture_webp";
 
@@ -71,18 +71,6 @@ pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError>
             texture.source = json::Index::new(image);
         } else if let Some((name, _)) = others.clone().next() {
             return refused(format!("textures[{t}]"), name);
-        }
-    }
-    for (m, mesh) in root.meshes.iter().enumerate() {
-        for (p, primitive) in mesh.primitives.iter().enumerate() {
-            let is_compressed = primitive.extensions.as_ref().is_some_and(|e| e.others.contains_key(DRACO));
-            let is_empty = |accessor: usize| {
-                let accessor = root.accessors.get(accessor);
-                accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
-            };
-            if is_compressed && primitive.attributes.values().any(|accessor| is_empty(accessor.value())) {
-                return refused(format!("meshes[{m}].primitives[{p}]"), DRACO);
-            }
         }
     }
     for (v, view) in root.buffer_views.iter().enumerate() {
@@ -126,7 +114,7 @@ fn loss(name: &str) -> &'static str {
         "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {
             "is not supported: the textures' other images are shown"
         }
-        DRACO | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
             "is not supported: the uncompressed data are read"
         }
         _ => "is not supported: ignored",

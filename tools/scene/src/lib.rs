@@ -33,6 +33,7 @@ mod borders;
 mod camera;
 mod closed;
 mod document;
+mod draco;
 mod effects;
 mod emitters;
 mod error;
