@@ -171,7 +171,8 @@ impl<'a> Frame<'a> {
             "g_coat" => coat,
             "g_sheen" => sheen,
             "g_anisotropy" => anisotropy,
-            "g_film" => film,
+            // No frame has a stencil, whose place unsigned integers take
+            "g_film" | "g_stencil" => film,
             "radiance_image" | "glossy_image" => {
                 Resource::StorageImage { view: self.g_buffer.radiance.view() }
             }

@@ -136,7 +136,7 @@ fn binding(binding: &Binding, number: u32) -> Value {
 }
 
 fn constant_name(id: u32) -> &'static str {
-    const NAMES: [(u32, &str); 20] = [
+    const NAMES: [(u32, &str); 22] = [
         (constant::EFFECTS, "EFFECTS"),
         (constant::FORM_FACTOR, "FORM_FACTOR"),
         (constant::POSITION_SOURCE, "POSITION_SOURCE"),
@@ -157,6 +157,8 @@ fn constant_name(id: u32) -> &'static str {
         (constant::SHADOW_MOTION, "SHADOW_MOTION"),
         (constant::SHADOW_HISTORY, "SHADOW_HISTORY"),
         (constant::VIEW, "VIEW"),
+        (constant::LIGHT_COUNTS, "LIGHT_COUNTS"),
+        (constant::SAMPLES, "SAMPLES"),
     ];
     NAMES.iter().find(|(known, _)| *known == id).map_or("unnamed", |(_, name)| name)
 }
