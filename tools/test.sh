@@ -57,19 +57,20 @@ run_tests() {
 
 # Runs the GPU tests again with the shaders instrumented: an access out of bounds is found. (The tests above run
 # under core and synchronisation validation, which cannot be had together with this.) The batteries, tests of numbers, are left
-# out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too.
+# out: other tests make the same kernels read and write the same buffers. AREALIGHT_ASSISTED=all runs them too. Pushed descriptors are left out since the
+# layer binds a set of its own, after which this version of it (1.3.239) has lost what was pushed.
 batteries='bits|effects|footprints|guard|lobe_horizons|material_frames|properties|prune|reach|rescattered|shading|shadow_levels|shadow_motion'
 batteries+='|shape_lights|shape_properties|shapes|stability|surfaces|sweep|tubes'
 run_assisted() {
-    local left_out="test(/^($batteries)::/)"
+    local left_out="test(/^($batteries)::/)" pushed='test(/pushe/)'
     if [[ "${AREALIGHT_ASSISTED:-}" == all ]]; then left_out='test(the_guard_outlives_the_optimiser)'; fi # a minute, and no device
     if cargo nextest --version >/dev/null 2>&1; then
         # Of the whole workspace, so that what was built for the step before is what runs
         AREALIGHT_VALIDATION=gpu-assisted cargo nextest run "${workspace[@]}" \
-            -E "(package(arealight-tests) or package(arealight-examples)) - binary(window) - $left_out"
+            -E "(package(arealight-tests) or package(arealight-examples)) - binary(window) - $left_out - $pushed"
     else
         AREALIGHT_VALIDATION=gpu-assisted cargo test -p arealight-tests -p arealight-examples --tests --locked -- \
-            --skip the_guard_outlives_the_optimiser
+            --skip the_guard_outlives_the_optimiser --skip pushe
     fi
 }
 
@@ -112,7 +113,7 @@ programs="$(realpath -m "${CARGO_TARGET_DIR:-target}")/debug"
 xtask="$programs/xtask"
 
 step "format" cargo fmt --all --check
-step "programs" cargo build "${workspace[@]}" --bins --quiet
+step "programs" cargo build "${workspace[@]}" --bins --lib --quiet
 step "links of documents" "$xtask" links
 step "code in documents is that of the files" "$xtask" quotes --check
 step "the product depends on no laboratory" "$xtask" dependencies

@@ -110,17 +110,27 @@ int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout ui
     return count;
 }
 
-// The samples of a texel that have a surface, a bit each; whether any passes the stencil test.
+// Adds the sample that is read to those of a texel that have a surface, a bit each, if it does; whether it passes the stencil test.
+bool find_sample(ivec2 texel, ivec2 pixel, inout uint samples) {
+    if (!passes_stencil(texel)) {
+        return false;
+    }
+    vec3 position;
+    if (load_position_of(texel, pixel, ivec2(constants.size), position)) {
+        samples |= 1u << g_buffer_sample;
+    }
+    return true;
+}
+
+// The samples of a texel that have a surface; whether any passes the stencil test. What follows the first is apart, here and below: without
+// several samples no loop is around a pixel's work, which some drivers' compilers take long for.
 uint find_samples(ivec2 texel, ivec2 pixel, out bool any_passes) {
     uint samples = 0u;
-    any_passes = false;
-    for (int index = 0; index < G_BUFFER_SAMPLES; index++) {
-        g_buffer_sample = index;
-        vec3 position;
-        bool passes = passes_stencil(texel);
-        any_passes = any_passes || passes;
-        if (passes && load_position_of(texel, pixel, ivec2(constants.size), position)) {
-            samples |= 1u << index;
+    any_passes = find_sample(texel, pixel, samples);
+    if (G_BUFFER_SAMPLES > 1) {
+        for (int index = 1; index < G_BUFFER_SAMPLES; index++) {
+            g_buffer_sample = index;
+            any_passes = find_sample(texel, pixel, samples) || any_passes;
         }
     }
     return samples;
@@ -162,11 +172,14 @@ void shade_pixel(ivec2 pixel, LightList list) {
         begin_picks(pixel);
     }
     if (HAS_LIGHTS && hit) {
-        do {
-            PixelRadiance one = shade_samples(texel, pixel, list, samples);
-            sum.radiance += one.radiance;
-            sum.glossy += one.glossy;
-        } while (G_BUFFER_SAMPLES > 1 && samples != 0u);
+        sum = shade_samples(texel, pixel, list, samples);
+        if (G_BUFFER_SAMPLES > 1) {
+            while (samples != 0u) {
+                PixelRadiance one = shade_samples(texel, pixel, list, samples);
+                sum.radiance += one.radiance;
+                sum.glossy += one.glossy;
+            }
+        }
     }
     if (HAS_SHADOWS) {
         store_picks(pixel, size);
