@@ -23,7 +23,9 @@ LightReach light_reach(vec3 center, vec3 radiance, ArealightExtent extent, vec3 
 LightReach reach_of(ArealightGpuLight light, float threshold, float density) {
     bool is_flat = (light.flags & LIGHT_FLAT) != 0u;
     ArealightExtent extent = arealight_sphere_extent(light.radius);
-    extent.area = is_flat ? light.area * (light.radius * light.radius) : extent.area;
+    if (is_flat) {
+        extent = arealight_polygon_extent(light.radius, light.area * (light.radius * light.radius));
+    }
     vec3 front = is_flat && (light.flags & LIGHT_TWO_SIDED) == 0u ? light.normal : vec3(0.0);
     // What an image shows may be of any brightness
     threshold = light.texture_layer == NO_LIGHT_TEXTURE ? threshold : 0.0;

@@ -9,7 +9,7 @@ use arealight_oracle::material::{Material, Surface};
 use arealight_oracle::shading::{RelativeLight, ltc, shape_ltc_on, shape_seen_from};
 use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 use std::sync::OnceLock;
 
 /// Pixels of the images: no whole number of tiles.
@@ -90,15 +90,16 @@ impl<'a> Floor<'a> {
             lights: packed,
             radiance_of_lights: OnceLock::new(),
             unpacked: lights.to_vec(),
-            position: image(engine, float, sampled, &texels),
-            normal: image(engine, float, sampled, &vec![[0.0, 0.0, 1.0, roughness]; texels.len()]),
+            position: image(engine, SIZE, float, sampled, &texels),
+            normal: image(engine, SIZE, float, sampled, &vec![[0.0, 0.0, 1.0, roughness]; texels.len()]),
             color: image(
                 engine,
+                SIZE,
                 float,
                 sampled,
                 &vec![base_color.extend(metalness).to_array(); texels.len()],
             ),
-            radiance: image(engine, float, vk::ImageUsageFlags::STORAGE, &vec![BEFORE; texels.len()]),
+            radiance: image(engine, SIZE, float, vk::ImageUsageFlags::STORAGE, &vec![BEFORE; texels.len()]),
             buffers,
             horizons: host.storage_buffer("horizons", &horizons).unwrap(),
         }
@@ -199,21 +200,31 @@ pub fn one_light(
         .unwrap_or_else(|| ltc(table, surface, normal, view, &RelativeLight::new(light, position)))
 }
 
-/// An image with these texels, to be read or stored to.
+/// An image of `extent` with these texels, to be read or stored to.
 ///
 /// # Panics
 /// Where the device fails.
 pub fn image<T: bytemuck::Pod>(
     engine: &TestEngine,
+    extent: [u32; 2],
     format: vk::Format,
     usage: vk::ImageUsageFlags,
     texels: &[T],
 ) -> Image {
-    let description = ImageDescription { name: "floor", extent: SIZE, layers: 1, format, usage };
+    let description = ImageDescription { name: "floor", extent, layers: 1, format, usage };
     let image = engine.host().image(&description).unwrap();
     let stored = usage.contains(vk::ImageUsageFlags::STORAGE);
     image.upload(texels, if stored { Usage::COMPUTE_WRITE } else { Usage::COMPUTE_READ }).unwrap();
     image
+}
+
+/// From positions to a space with the eye at zero that looks along -z with y up.
+pub fn looking_at_floor(eye: DVec3) -> DMat4 {
+    let back = eye.normalize_or(DVec3::Z);
+    let right = DVec3::Z.cross(back).normalize_or(DVec3::Z);
+    let up = back.cross(right);
+    DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), DVec4::W).transpose()
+        * DMat4::from_translation(-eye)
 }
 
 /// What a pass reads by texel.

@@ -5,10 +5,11 @@ use crate::constants::{
     AREALIGHT_TABLE_RGBA16F, AREALIGHT_TABLE_RGBA32F,
 };
 use crate::failure::{ArealightResult, Failure, call};
+use crate::options::specular_lobes_of;
 use crate::types::{ArealightHost, ArealightMemory, ArealightTable, ArealightUpload};
 use crate::{AREALIGHT_ABI_VERSION, arguments, handles, loader};
+use arealight::LightTable;
 use arealight::table::LobeHorizon;
-use arealight::{LightTable, SpecularLobes};
 use arealight_table::TableFile;
 use arealight_vk::ash::{self, vk, vk::Handle as _};
 use arealight_vk::{Context, TableFormat, TableImage};
@@ -264,8 +265,7 @@ pub unsafe extern "C" fn arealight_lobe_density(
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
         let arealight = unsafe { handles::borrow(arealight, "arealight") }?;
-        let specular_lobes =
-            crate::pass::level(specular_lobes, &[SpecularLobes::One, SpecularLobes::Two], "specular_lobes")?;
+        let specular_lobes = specular_lobes_of(specular_lobes, "specular_lobes")?;
         if !(0.0..=1.0).contains(&roughness) {
             return Err(Failure::argument(format!("roughness: {roughness} must be from 0 to 1")));
         }
@@ -292,8 +292,7 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
         let (arealight, given) = unsafe {
             (handles::borrow(arealight, "arealight")?, *arguments::read(size.cast_const(), "size")?)
         };
-        let specular_lobes =
-            crate::pass::level(specular_lobes, &[SpecularLobes::One, SpecularLobes::Two], "specular_lobes")?;
+        let specular_lobes = specular_lobes_of(specular_lobes, "specular_lobes")?;
         let cells = u64::from(arealight.table.size() - 1).pow(2);
         let needed = cells * size_of::<LobeHorizon>() as u64;
         // SAFETY: as above.

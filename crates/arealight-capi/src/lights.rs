@@ -80,23 +80,18 @@ pub unsafe extern "C" fn arealight_light_reach(
 ) -> ArealightResult {
     call(|| {
         // SAFETY: the caller vouches for the pointers, here and below.
-        let lights = unsafe { read_lights(arguments::array(light, 1, "light")?) }?;
-        for light in &lights {
-            light.validate().map_err(|fault| LightError { index: 0, name: light.name.clone(), fault })?;
-            for (value, field) in [(threshold, "threshold"), (density, "density")] {
-                if !(value >= 0.0 && value.is_finite()) {
-                    return Err(Failure::argument(format!(
-                        "{field}: {value} must be finite and not negative"
-                    )));
-                }
+        let light = unsafe { read_light(0, arguments::read(light, "light")?) }?;
+        light.validate().map_err(|fault| LightError { index: 0, name: light.name.clone(), fault })?;
+        for (value, field) in [(threshold, "threshold"), (density, "density")] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return Err(Failure::argument(format!("{field}: {value} must be finite and not negative")));
             }
-            let radius = reach::radius(light, threshold, density);
-            let [low, high] = reach::bounds(light, radius).map(|corner| corner.to_array());
-            let found = ArealightReach { center: light.shape.center().to_array(), radius, low, high };
-            // SAFETY: as above.
-            unsafe { arguments::write(out, found, "out") }?;
         }
-        Ok(())
+        let radius = reach::radius(&light, threshold, density);
+        let [low, high] = reach::bounds(&light, radius).map(|corner| corner.to_array());
+        let found = ArealightReach { center: light.shape.center().to_array(), radius, low, high };
+        // SAFETY: as above.
+        unsafe { arguments::write(out, found, "out") }
     })
 }
 

@@ -3,9 +3,8 @@
 use crate::device::Arealight;
 use crate::failure::{ArealightResult, Failure, call};
 use crate::lights::{check_size, copy};
-use crate::pass::{
-    ArealightPass, buffer, level, read_frame, read_resources, sampled, set_layout, shade_options, stored,
-};
+use crate::options::{level, shade_options};
+use crate::pass::{ArealightPass, buffer, read_frame, read_resources, sampled, set_layout, stored};
 use crate::types::{
     ArealightBlockerArrays, ArealightBuffer, ArealightFrame, ArealightPassOptions, ArealightResources,
     ArealightSetLayout, ArealightShadowFrame, ArealightShadowOptions, ArealightShadowResources,

@@ -151,7 +151,8 @@ impl Context {
     }
 
     /// Has the buffers of lights, their vertices and shapes in the sets of shade passes be dynamic ones (`STORAGE_BUFFER_DYNAMIC`), whose offsets each frame
-    /// says: [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are written with the range of a frame.
+    /// says: [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are written with the range of a frame. Shadow passes
+    /// have plain buffers, and a set for each part of a ring.
     #[must_use = "the context is returned"]
     pub fn with_light_offsets(mut self) -> Self {
         self.descriptors = Descriptors::LightOffsets;

@@ -189,8 +189,8 @@ impl ShadePass {
         store_to(options.format, &mut module);
         read_samples(options.samples, &mut module);
         // Frames without tiles have none of their bindings
-        let needed = FRAME_BINDINGS + usize::from(options.light_counts);
-        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..needed] };
+        let used = FRAME_BINDINGS + usize::from(options.light_counts);
+        let bindings = if context.whole_modules { SHADE.bindings } else { &SHADE.bindings[..used] };
         // SAFETY: the same contract.
         unsafe {
             let layouts = Layouts::with(context, &SHADE, bindings, (context.descriptors.clone(), host_set))?;

@@ -1,23 +1,17 @@
 //! How passes get at a host's resources: sets, sets with offsets of rings of lights, and pushed descriptors. The picture is the same.
 
+use crate::recorder::field;
 use arealight::PackedLights;
 use arealight::plan::ShadeOptions;
 use arealight_engine::host::{Buffer, Host};
 use arealight_tests::TestEngine;
 use arealight_tests::floor::{Floor, lamps};
-use arealight_vk::{Context, Error, Resource, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{Context, Resource, ShadeFrame, ShadePass, ShadeResources};
 use ash::vk;
 use glam::{DVec3, Vec4};
 
 /// A multiple of every device's minStorageBufferOffsetAlignment.
 const SLOT: usize = 1024;
-
-fn field(error: Error) -> &'static str {
-    match error {
-        Error::InvalidArgument { field, .. } => field,
-        other => panic!("{other}"),
-    }
-}
 
 /// A buffer with a frame's bytes in each slot.
 fn ring(host: &Host, frames: [&[u8]; 2]) -> Buffer {
@@ -95,10 +89,10 @@ fn pushed_resources_shade_as_sets_do() {
         let pass = ShadePass::new(&context, options).unwrap();
         let null = vk::CommandBuffer::null();
         let missed = pass.record_pushed(null, &without, None, &frame).unwrap_err();
-        assert_eq!(field(missed), "shapes");
+        assert_eq!(field(&missed), "shapes");
         let set = vk::DescriptorSet::null();
-        assert_eq!(field(pass.record(null, set, &frame).unwrap_err()), "set");
-        assert_eq!(field(pass.write_set(set, &floor.resources()).unwrap_err()), "set");
+        assert_eq!(field(&pass.record(null, set, &frame).unwrap_err()), "set");
+        assert_eq!(field(&pass.write_set(set, &floor.resources()).unwrap_err()), "set");
     }
 }
 
@@ -116,12 +110,12 @@ fn ways_of_binding_are_not_mixed_up() {
     unsafe {
         let plain = made(engine.context());
         let pushed = plain.record_pushed(null, &floor.resources(), None, &floor.frame());
-        assert_eq!(field(pushed.unwrap_err()), "resources");
-        assert_eq!(field(plain.record(null, set, &moved).unwrap_err()), "light_offsets");
+        assert_eq!(field(&pushed.unwrap_err()), "resources");
+        assert_eq!(field(&plain.record(null, set, &moved).unwrap_err()), "light_offsets");
         let ring = made(&engine.context().clone().with_light_offsets());
         // An offset needs a range, and an alignment
-        assert_eq!(field(ring.write_set(set, &floor.resources()).unwrap_err()), "lights");
+        assert_eq!(field(&ring.write_set(set, &floor.resources()).unwrap_err()), "lights");
         let odd = ShadeFrame { light_offsets: [0, 0, 3], ..floor.frame() };
-        assert_eq!(field(ring.record(null, set, &odd).unwrap_err()), "light_offsets");
+        assert_eq!(field(&ring.record(null, set, &odd).unwrap_err()), "light_offsets");
     }
 }

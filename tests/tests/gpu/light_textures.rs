@@ -1,17 +1,11 @@
 //! A host's mistakes with light textures have typed answers that name the field, and then nothing is recorded.
 
+use crate::recorder::field;
 use arealight::{PyramidSize, TexturePart};
 use arealight_engine::{Passes, TextureArray};
 use arealight_tests::TestEngine;
 use arealight_vk::{Error, LightTextures, Resource, TextureUpdate};
 use ash::vk;
-
-fn field(error: &Error) -> &'static str {
-    match error {
-        Error::InvalidArgument { field, .. } => field,
-        other => panic!("{other} names no field"),
-    }
-}
 
 fn small() -> PyramidSize {
     PyramidSize::new(64, 64).unwrap()

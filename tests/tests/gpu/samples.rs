@@ -1,15 +1,18 @@
 //! G-buffers of several samples a texel: a pixel is the mean over its surfaces, each shaded once, in its sample's place.
 
+use crate::recorder::field;
 use arealight::LightTable;
 use arealight::kernels::read_samples;
 use arealight::plan::{Output, ShadeOptions};
 use arealight_oracle::material::Surface;
 use arealight_tests::TestEngine;
-use arealight_tests::floor::{CAMERA, Floor, SIZE, floor_material, lamps, one_light, pixels};
+use arealight_tests::floor::{
+    CAMERA, Floor, SIZE, floor_material, lamps, looking_at_floor, one_light, pixels,
+};
 use arealight_tests::kernel::shade_with_bridge;
 use arealight_tests::multisampled::{Multisampled, Texel};
 use arealight_tests::one_pixel::BEFORE;
-use arealight_vk::{Error, ShadeFrame, ShadePass, ShadeResources};
+use arealight_vk::{ShadeFrame, ShadePass, ShadeResources};
 use glam::{DMat4, DVec2, DVec3, DVec4, Vec4};
 
 /// What a sample shows.
@@ -57,18 +60,13 @@ fn shown([x, y]: [u32; 2], index: u32) -> Shown {
 
 /// The camera's projection: from positions to clip space, y down.
 fn clip_from_position() -> DMat4 {
-    let back = CAMERA.normalize_or(DVec3::Z);
-    let right = DVec3::Z.cross(back).normalize_or(DVec3::Z);
-    let view = DMat4::from_cols(right.extend(0.0), back.cross(right).extend(0.0), back.extend(0.0), DVec4::W)
-        .transpose()
-        * DMat4::from_translation(-CAMERA);
     let projection = DMat4::from_cols(
         DVec4::X * 1.2,
         DVec4::Y * -1.9,
         DVec4::new(0.0, 0.0, -1.05, -1.0),
         DVec4::Z * -1.05,
     );
-    projection * view
+    projection * looking_at_floor(CAMERA)
 }
 
 /// Where what is shown is hit by the ray through a place of the picture.
@@ -222,10 +220,7 @@ fn samples_that_cannot_be_are_refused() {
     let Some(engine) = TestEngine::new() else { return };
     let refused = |options: ShadeOptions| {
         // SAFETY: Nothing is made where an error is returned.
-        match unsafe { ShadePass::new(engine.context(), options) }.unwrap_err() {
-            Error::InvalidArgument { field, .. } => field,
-            other => panic!("{other}"),
-        }
+        field(&unsafe { ShadePass::new(engine.context(), options) }.unwrap_err())
     };
     let plain = ShadeOptions::default();
     for samples in [0, 3, 16, u32::MAX] {

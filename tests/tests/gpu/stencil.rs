@@ -2,7 +2,7 @@
 
 use arealight::plan::{Output, ShadeOptions};
 use arealight_tests::TestEngine;
-use arealight_tests::floor::{Floor, image, lamps, pixels, read};
+use arealight_tests::floor::{Floor, SIZE, image, lamps, pixels, read};
 use arealight_tests::one_pixel::BEFORE;
 use arealight_vk::{Error, ShadeFrame, ShadePass, ShadeResources, StencilTest};
 use ash::vk;
@@ -22,7 +22,7 @@ fn pixels_that_fail_the_stencil_test_stay_as_they_are() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &lamps());
     let stencils: Vec<u8> = pixels().map(stencil).collect();
-    let image = image(&engine, vk::Format::R8_UINT, vk::ImageUsageFlags::SAMPLED, &stencils);
+    let image = image(&engine, SIZE, vk::Format::R8_UINT, vk::ImageUsageFlags::SAMPLED, &stencils);
     let resources = ShadeResources { stencil: Some(read(&image)), ..floor.resources() };
     for (tiles, output, compare_mask, reference) in [
         (false, Output::Overwrite, 0x83, 0x02),

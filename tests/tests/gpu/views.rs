@@ -1,14 +1,16 @@
 //! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and orthographic cameras, with and without tiles,
 //! each pixel against the oracle.
 
+use crate::recorder::field;
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Light, LightShape, PackedLights, SpecularLobes};
-use arealight_engine::host::{Image, ImageDescription, Location, Usage};
+use arealight_engine::host::{Image, Location, Usage};
 use arealight_oracle::material::Material;
 use arealight_oracle::shading::{RelativeLight, ltc};
 use arealight_tests::TestEngine;
+use arealight_tests::floor::{image, looking_at_floor};
 use arealight_tests::one_pixel::{BEFORE, lamp, material};
-use arealight_vk::{Error, Resource, ShadeFrame, ShadePass, ShadeResources, Viewport};
+use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, Viewport};
 use ash::vk;
 use glam::{DMat4, DVec3, DVec4, Vec3, Vec4};
 
@@ -45,15 +47,6 @@ fn perspective(eye: DVec3) -> DMat4 {
         DVec4::Z * (-NEAR * depth),
     );
     projection * looking_at_floor(eye)
-}
-
-/// From positions to a space with the eye at zero that looks along -z with y up.
-fn looking_at_floor(eye: DVec3) -> DMat4 {
-    let back = eye.normalize_or(DVec3::Z);
-    let right = DVec3::Z.cross(back).normalize_or(DVec3::Z);
-    let up = back.cross(right);
-    DMat4::from_cols(right.extend(0.0), up.extend(0.0), back.extend(0.0), DVec4::W).transpose()
-        * DMat4::from_translation(-eye)
 }
 
 fn orthographic(eye: DVec3) -> DMat4 {
@@ -123,19 +116,6 @@ fn lights() -> Vec<Light> {
     vec![lamp(), Light { radiance: Vec3::new(3.0, 1.0, 0.5), shape: LightShape::Polygon(beside), ..lamp() }]
 }
 
-fn image<T: bytemuck::Pod>(
-    engine: &TestEngine,
-    format: vk::Format,
-    usage: vk::ImageUsageFlags,
-    texels: &[T],
-) -> Image {
-    let description = ImageDescription { name: "views", extent: TEXELS, layers: 1, format, usage };
-    let image = engine.host().image(&description).unwrap();
-    let stored = usage.contains(vk::ImageUsageFlags::STORAGE);
-    image.upload(texels, if stored { Usage::COMPUTE_WRITE } else { Usage::COMPUTE_READ }).unwrap();
-    image
-}
-
 /// The radiance image after `frames` of a G-buffer that the shots were drawn to.
 fn shade(
     engine: &TestEngine,
@@ -156,10 +136,11 @@ fn shade(
         .collect();
     let count = depth.len();
     let Material { base_color, roughness, metalness, .. } = material();
-    let depth = image(engine, vk::Format::R32_SFLOAT, sampled, &depth);
-    let normal = image(engine, float, sampled, &vec![[0.0, 0.0, 1.0, roughness]; count]);
-    let color = image(engine, float, sampled, &vec![base_color.extend(metalness).to_array(); count]);
-    let radiance = image(engine, float, vk::ImageUsageFlags::STORAGE, &vec![BEFORE.to_array(); count]);
+    let depth = image(engine, TEXELS, vk::Format::R32_SFLOAT, sampled, &depth);
+    let normal = image(engine, TEXELS, float, sampled, &vec![[0.0, 0.0, 1.0, roughness]; count]);
+    let color = image(engine, TEXELS, float, sampled, &vec![base_color.extend(metalness).to_array(); count]);
+    let radiance =
+        image(engine, TEXELS, float, vk::ImageUsageFlags::STORAGE, &vec![BEFORE.to_array(); count]);
     let read =
         |image: &Image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout };
     // SAFETY: Host::submit waits, and everything here is dropped before the engine.
@@ -316,23 +297,19 @@ fn half_resolution_shades_every_other_texel() {
 #[test]
 fn views_that_cannot_be_are_refused_by_field() {
     let Some(engine) = TestEngine::new() else { return };
-    let field = |error: Error| match error {
-        Error::InvalidArgument { field, .. } => field,
-        other => panic!("{other}"),
-    };
     // SAFETY: nothing is made where an error is returned; else it is dropped before the engine.
     let pass = |options| unsafe { ShadePass::new(engine.context(), options) };
     let plain = ShadeOptions::default();
     for texels_per_pixel in [0, 17] {
-        assert_eq!(field(pass(ShadeOptions { texels_per_pixel, ..plain }).unwrap_err()), "texels_per_pixel");
+        assert_eq!(field(&pass(ShadeOptions { texels_per_pixel, ..plain }).unwrap_err()), "texels_per_pixel");
     }
     let rays = ShadeOptions { shadow_rays: 1, ..plain };
-    assert_eq!(field(pass(ShadeOptions { orthographic: true, ..rays }).unwrap_err()), "orthographic");
-    assert_eq!(field(pass(ShadeOptions { rectangle: true, ..rays }).unwrap_err()), "rectangle");
-    assert_eq!(field(pass(ShadeOptions { texels_per_pixel: 2, ..rays }).unwrap_err()), "texels_per_pixel");
+    assert_eq!(field(&pass(ShadeOptions { orthographic: true, ..rays }).unwrap_err()), "orthographic");
+    assert_eq!(field(&pass(ShadeOptions { rectangle: true, ..rays }).unwrap_err()), "rectangle");
+    assert_eq!(field(&pass(ShadeOptions { texels_per_pixel: 2, ..rays }).unwrap_err()), "texels_per_pixel");
 
     let frame = ShadeFrame { size: [8, 8], ..ShadeFrame::default() };
-    let refused = |options, frame| field(pass(options).unwrap().prepare(&frame).unwrap_err());
+    let refused = |options, frame| field(&pass(options).unwrap().prepare(&frame).unwrap_err());
     assert_eq!(refused(plain, ShadeFrame { offset: [1, 0], ..frame }), "offset");
     let rectangle = ShadeOptions { rectangle: true, ..plain };
     assert_eq!(refused(rectangle, ShadeFrame { offset: [0, u32::MAX], ..frame }), "offset");

@@ -6,7 +6,7 @@ mod brdf;
 mod light;
 mod table;
 
-use arealight::Quality;
+use arealight::{LightTable, Quality};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on, shape_seen_from, shape_truth, truth};
@@ -14,6 +14,7 @@ use glam::DVec3;
 use light::{Light, Material};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::sync::LazyLock;
 use table::Table;
 
 /// Three numbers.
@@ -35,6 +36,23 @@ fn direction(vector: Triple, name: &str) -> PyResult<DVec3> {
     vector.try_normalize().ok_or_else(wrong)
 }
 
+/// Where a surface is and how it is seen, as arguments have it.
+struct Seen {
+    position: DVec3,
+    normal: DVec3,
+    view: DVec3,
+}
+
+impl Seen {
+    fn new(position: Triple, normal: Triple, view: Triple) -> PyResult<Self> {
+        let (view, normal) = (direction(view, "view")?, direction(normal, "normal")?);
+        Ok(Self { position: finite(position, "position")?, normal, view })
+    }
+}
+
+/// The table that is built in, which takes a while to read.
+static BUILT_IN: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+
 /// What a surface reflects of a light, by a fitted table in float64.
 #[pyfunction]
 #[pyo3(signature = (light, material, view, position = [0.0; 3], normal = [0.0, 0.0, 1.0], table = None))]
@@ -47,15 +65,15 @@ fn radiance(
     normal: Triple,
     table: Option<&Table>,
 ) -> PyResult<Triple> {
-    let (view, normal) = (direction(view, "view")?, direction(normal, "normal")?);
-    let (position, light) = (finite(position, "position")?, &light.0);
-    let (quality, surface) = (Quality::default(), material.0.surface());
-    let table = table.map_or_else(arealight_table::ggx, |table| table.0.clone());
+    let Seen { position, normal, view } = Seen::new(position, normal, view)?;
+    let (quality, surface, light) = (Quality::default(), material.0.surface(), &light.0);
+    let table = table.map(|table| &table.0);
     let found = py.detach(|| {
+        let table = table.unwrap_or_else(|| &BUILT_IN);
         let shape = shape_seen_from(light, position);
-        shape_ltc_on(quality, &table, &surface, normal, view, &shape).unwrap_or_else(|| {
+        shape_ltc_on(quality, table, &surface, normal, view, &shape).unwrap_or_else(|| {
             let light = RelativeLight::new(light, position);
-            ltc_on(quality, &table, &surface, normal, view, &light)
+            ltc_on(quality, table, &surface, normal, view, &light)
         })
     });
     Ok(found.to_array())
@@ -73,8 +91,8 @@ fn true_radiance(
     normal: Triple,
     tolerance: f64,
 ) -> PyResult<(Triple, Triple)> {
-    let (view, normal) = (direction(view, "view")?, direction(normal, "normal")?);
-    let (position, light) = (finite(position, "position")?, &light.0);
+    let Seen { position, normal, view } = Seen::new(position, normal, view)?;
+    let light = &light.0;
     if !(tolerance > 0.0 && tolerance < 1.0) {
         return Err(PyValueError::new_err(format!("tolerance: {tolerance} must be above 0 and below 1")));
     }

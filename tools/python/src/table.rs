@@ -1,6 +1,6 @@
 //! Light tables.
 
-use crate::Triple;
+use crate::{BUILT_IN, Triple};
 use arealight::LightTable;
 use glam::DMat3;
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -30,7 +30,7 @@ impl Table {
     /// The table of GGX that is built in.
     #[new]
     fn new() -> Self {
-        Self(arealight_table::ggx())
+        Self(BUILT_IN.clone())
     }
 
     #[staticmethod]

@@ -47,11 +47,10 @@ impl Document {
         Ok(document)
     }
 
-    /// Adds a buffer with a view of all of it: the view's index.
-    pub fn push(&mut self, bytes: Vec<u8>) -> u32 {
+    /// Adds a buffer with a view of all of it.
+    pub fn push(&mut self, bytes: Vec<u8>) -> json::Index<json::buffer::View> {
         let byte_length = bytes.len().into();
-        let buffer = json::Index::new(self.root.buffers.len() as u32);
-        self.root.buffers.push(json::Buffer {
+        let buffer = self.root.push(json::Buffer {
             byte_length,
             name: None,
             uri: None,
@@ -59,7 +58,7 @@ impl Document {
             extras: json::Extras::default(),
         });
         self.buffers.push(bytes);
-        self.root.buffer_views.push(json::buffer::View {
+        self.root.push(json::buffer::View {
             buffer,
             byte_length,
             byte_offset: None,
@@ -68,8 +67,7 @@ impl Document {
             target: None,
             extensions: None,
             extras: json::Extras::default(),
-        });
-        self.root.buffer_views.len() as u32 - 1
+        })
     }
 
     /// An error about a field.

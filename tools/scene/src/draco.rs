@@ -26,9 +26,8 @@ pub(crate) fn decompress(document: &mut Document) -> Result<(), SceneError> {
         for p in 0..document.root.meshes[m].primitives.len() {
             let field = format!("meshes[{m}].primitives[{p}]");
             let primitive = document.root.meshes[m].primitives[p].clone();
-            if let Some(compressed) = compressed(document, &primitive) {
-                let compressed = compressed.clone();
-                let primitive = plain(document, primitive, &compressed, &field, &mut budget)?;
+            if let Some(extension) = compressed(document, &primitive).cloned() {
+                let primitive = plain(document, primitive, &extension, &field, &mut budget)?;
                 document.root.meshes[m].primitives[p] = primitive;
             }
         }
@@ -74,8 +73,11 @@ fn plain(
     // Its faces are triangles, whatever the mode was
     let corners: Vec<u8> = mesh.faces().iter().flatten().flat_map(|point| point.0.to_le_bytes()).collect();
     let count = 3 * mesh.num_faces();
-    let indices = json!({ "componentType": 5125, "type": "SCALAR", "count": count, "bufferView": document.push(corners) });
-    primitive.indices = Some(push_accessor(document, indices, &field)?);
+    let view = document.push(corners);
+    let accessor = json!({ "componentType": 5125, "type": "SCALAR", "count": count, "bufferView": view });
+    let accessor: json::Accessor =
+        serde_json::from_value(accessor).map_err(|error| document.invalid(&field, error.to_string()))?;
+    primitive.indices = Some(document.root.push(accessor));
     primitive.mode = Valid(json::mesh::Mode::Triangles);
     Ok(primitive)
 }
@@ -136,20 +138,6 @@ fn attribute(
     accessor.count = (mesh.num_points() as u64).into();
     accessor.byte_offset = None;
     accessor.sparse = None;
-    accessor.buffer_view = Some(json::Index::new(document.push(bytes)));
-    let index = json::Index::new(document.root.accessors.len() as u32);
-    document.root.accessors.push(accessor);
-    Ok(index)
-}
-
-fn push_accessor(
-    document: &mut Document,
-    accessor: serde_json::Value,
-    field: &str,
-) -> Result<json::Index<json::Accessor>, SceneError> {
-    let made = serde_json::from_value(accessor);
-    let accessor = made.map_err(|error| document.invalid(field, error.to_string()))?;
-    let index = json::Index::new(document.root.accessors.len() as u32);
-    document.root.accessors.push(accessor);
-    Ok(index)
+    accessor.buffer_view = Some(document.push(bytes));
+    Ok(document.root.push(accessor))
 }

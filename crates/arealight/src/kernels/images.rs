@@ -53,7 +53,7 @@ pub fn read_samples(samples: u32, words: &mut [u32]) {
     });
 }
 
-/// Calls for each instruction with its code and its words, the first of which says that and how many they are.
+/// Visits each instruction with its opcode and its words, of which the first holds the opcode and the word count.
 fn each_instruction(words: &mut [u32], mut act: impl FnMut(u32, &mut [u32])) {
     let mut at = HEADER;
     while at < words.len() {

@@ -2,13 +2,11 @@
 
 use super::{Markers, document, write};
 use crate::failure::Failure;
+use crate::gpu;
 use crate::output::print;
 use arealight_benches::compiled::Compiled;
 use arealight_benches::model::{Modelled, count_scene, markdown, text};
-use arealight_engine::Engine;
-use arealight_engine::host::{Host, HostOptions};
 use arealight_scene::Scene;
-use arealight_vk::TableFormat;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -25,9 +23,7 @@ const SCENES: [(&str, &[u8]); 3] = [
 /// Counts the paths of our scenes, and prices them by the statistics of each family.
 pub fn run(found: &Compiled, document_path: Option<&Path>) -> Result<ExitCode, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Device(error.to_string());
-    let host = Host::new(HostOptions::default()).map_err(|error| failed(&error))?;
-    let engine =
-        Engine::new(host, &arealight_table::ggx(), TableFormat::default()).map_err(|error| failed(&error))?;
+    let engine = gpu::engine(None, &arealight_table::ggx())?;
     let mut scenes = vec![];
     for (name, bytes) in SCENES {
         let scene = Scene::from_bytes(bytes, name).map_err(|error| Failure::Scene(error.to_string()))?;
