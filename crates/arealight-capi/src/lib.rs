@@ -17,6 +17,7 @@
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
 //! | `handles` | which objects are alive |
+//! | `options` | what a pass is to do, from the host's numbers |
 //! | `loader` | Vulkan's functions from the host's two |
 //!
 //! Nothing unwinds into the host; each function that can fail says by a result that it did, and
@@ -31,8 +32,8 @@ mod failure;
 mod handles;
 pub mod lights;
 mod loader;
-pub mod options;
-mod pass;
+mod options;
+pub mod pass;
 pub mod shadows;
 pub mod textures;
 pub mod types;
