@@ -6,6 +6,9 @@ use crate::{EngineError, Kept, Passes, SourceImage, SourceTexels};
 use arealight::PyramidSize;
 use arealight_vk::{LightTextures, Resource, TextureUpdate};
 use ash::vk;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::rc::Rc;
 
 /// Light textures with the memory that they lie in, and the descriptor sets of their levels.
 pub struct TextureArray {
@@ -25,7 +28,7 @@ struct Allocated {
 pub struct TextureSource {
     update: TextureUpdate,
     // Go after the last submission that uses them was waited for
-    _image: Image,
+    _image: Rc<Image>,
     _pool: DescriptorPool,
 }
 
@@ -67,7 +70,33 @@ impl TextureArray {
     /// # Errors
     /// [`EngineError`] where the image has not the texels that it says, or memory is out.
     pub fn source(&self, layer: u32, image: &SourceImage<'_>) -> Result<TextureSource, EngineError> {
-        let uploaded = upload(&self.host, layer, image)?;
+        self.source_of(layer, image, Rc::new(upload(&self.host, layer, image)?))
+    }
+
+    /// Uploads images that are to replace the first layers. Those that have the same texels, in the same memory, are uploaded
+    /// once: a model's lights show hundreds of parts of one image.
+    ///
+    /// # Errors
+    /// As [`TextureArray::source`].
+    pub fn sources(&self, images: &[SourceImage<'_>]) -> Result<Vec<TextureSource>, EngineError> {
+        let mut known: HashMap<_, Rc<Image>> = HashMap::new();
+        let source = |(layer, image): (u32, &SourceImage<'_>)| {
+            let uploaded = match known.entry((image.texels.address(), image.size)) {
+                Entry::Occupied(entry) => entry.get().clone(),
+                Entry::Vacant(entry) => entry.insert(Rc::new(upload(&self.host, layer, image)?)).clone(),
+            };
+            self.source_of(layer, image, uploaded)
+        };
+        (0..).zip(images).map(source).collect()
+    }
+
+    /// What loads a layer from an image on the device.
+    fn source_of(
+        &self,
+        layer: u32,
+        image: &SourceImage<'_>,
+        uploaded: Rc<Image>,
+    ) -> Result<TextureSource, EngineError> {
         let pool = self.host.descriptor_pool(1, &self.image().source_pool_sizes(1))?;
         // SAFETY: The layout is the textures', and alive.
         let source_set = unsafe { pool.allocate(self.image().source_set_layout()) }?;

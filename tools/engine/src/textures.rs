@@ -35,6 +35,14 @@ impl SourceTexels<'_> {
         }
     }
 
+    /// Where they are, to find images that are the same: the first texel's, and how many there are.
+    pub(crate) fn address(&self) -> (*const u8, usize) {
+        match self {
+            Self::Linear(texels) => (texels.as_ptr().cast(), size_of_val(*texels)),
+            Self::Srgb(texels) => (texels.as_ptr().cast(), size_of_val(*texels)),
+        }
+    }
+
     pub(crate) fn format(&self) -> vk::Format {
         match self {
             Self::Linear(_) => vk::Format::R32G32B32A32_SFLOAT,
@@ -60,8 +68,7 @@ impl Engine {
             return Ok(());
         }
         let textures = TextureArray::new(&self.passes, size, images.len() as u32)?;
-        let load = |(layer, image)| textures.source(layer, image);
-        textures.update(&(0..).zip(images).map(load).collect::<Result<Vec<_>, _>>()?)?;
+        textures.update(&textures.sources(images)?)?;
         self.textures = Some(textures);
         Ok(())
     }

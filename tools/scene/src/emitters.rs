@@ -125,7 +125,7 @@ fn add_polygons(
             format!("its texture is on a surface that is not flat: {count} polygon lights, one a flat part");
         loader.warn(place, text);
     }
-    if outlines.seams {
+    if outlines.seams && !outlines.bent {
         let text = format!("its texture has seams or bends: {count} polygon lights, one a straight part");
         loader.warn(place, text);
     }
@@ -133,6 +133,7 @@ fn add_polygons(
         let text = format!("touches itself: {} more polygon lights make it up", outlines.split);
         loader.warn(place, text);
     }
+    let surface = loader.scene.lights.len();
     let mut uvs = outlines.uvs.into_iter();
     for (number, vertices) in outlines.polygons.into_iter().enumerate() {
         let uvs = uvs.next().unwrap_or_default();
@@ -142,7 +143,7 @@ fn add_polygons(
         let light = Light { name, radiance, two_sided, shape, ..Light::default() };
         if push(loader, place, light) {
             let owner = loader.scene.lights.len() - 1;
-            loader.textured.push(TexturedLight { owner, texture, uvs });
+            loader.textured.push(TexturedLight { owner, surface, texture, uvs });
         }
     }
 }

@@ -55,6 +55,7 @@ mod scene;
 mod shape_lights;
 mod shown;
 mod skins;
+mod small_parts;
 mod tangents;
 mod uv_map;
 mod uv_mapping;

@@ -10,6 +10,7 @@
 use crate::images::halved;
 use crate::load::Loader;
 use crate::shown::{Images, Key, Rectangle, Shown};
+use crate::small_parts::{self, Simplified};
 use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{Light, LightShape, LightTexture, TexturePart};
@@ -104,6 +105,8 @@ impl Scene {
 pub(crate) struct TexturedLight {
     /// Which light: an index into [`Scene::lights`].
     pub owner: usize,
+    /// Which surface it is a part of: the first light of that.
+    pub surface: usize,
     /// Index into [`Scene::textures`].
     pub texture: u32,
     /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's first.
@@ -123,7 +126,8 @@ pub(crate) fn assign(loader: &mut Loader) {
     let scene = &mut loader.scene;
     // Find out what each shows
     let mut images = Images::default();
-    let shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
+    let mut shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
+    let simplified = small_parts::simplify(scene, &textured, &mut shown);
     let mut layers = Layers { whole: shown_in_many_pieces(&shown), ..Layers::default() };
     let mut losses: Vec<(&str, Vec<usize>)> = Vec::new();
     for (TexturedLight { owner, .. }, shown) in textured.iter().zip(shown) {
@@ -146,12 +150,22 @@ pub(crate) fn assign(loader: &mut Loader) {
     }
     scene.light_textures = layers.made;
     scale_down(scene);
-    for (loss, lights) in losses {
-        let name = &loader.scene.lights[lights[0]].name;
-        let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
-        let text = format!("emissiveTexture: {loss}: its mean colour is everywhere");
-        loader.warn(format!("light '{name}'{more}"), text);
+    for Simplified { small, faint, lost } in simplified {
+        warn_of(loader, &small, "small, one of many parts of its surface: its mean colour is everywhere");
+        let share = lost * 100.0;
+        warn_of(loader, &faint, &format!("with {share:.2} % of its surface's light in all: left out"));
     }
+    for (loss, lights) in losses {
+        warn_of(loader, &lights, &format!("{loss}: its mean colour is everywhere"));
+    }
+}
+
+/// Warns once of all `lights`, if there are any.
+fn warn_of(loader: &mut Loader, lights: &[usize], text: &str) {
+    let Some(first) = lights.first() else { return };
+    let name = &loader.scene.lights[*first].name;
+    let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
+    loader.warn(format!("light '{name}'{more}"), format!("emissiveTexture: {text}"));
 }
 
 /// Textures of which there are more pieces than a few that make up at least half of it.

@@ -81,7 +81,7 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
         Ok((light, image)) => {
             if let Some((texture, uvs)) = image {
                 let owner = loader.scene.lights.len();
-                loader.textured.push(TexturedLight { owner, texture, uvs: uvs.into() });
+                loader.textured.push(TexturedLight { owner, surface: owner, texture, uvs: uvs.into() });
             } else if texture.is_some() {
                 loader.warn(place, "its texture is not shown in what it lights: only disks are textured");
             }

@@ -14,9 +14,10 @@ const FARTHEST: f64 = 1e5;
 /// A light that shows less of an image than this many texels across shows a line of it, or a point.
 const THIN: f64 = 0.25;
 
-/// Samples for a mean along a line, and along each side of a rectangle.
+/// Samples for a mean along a line, and the most and the fewest along each side of a rectangle.
 const LINE_SAMPLES: u32 = 64;
 const SIDE_SAMPLES: u32 = 32;
+const FEWEST_SAMPLES: u32 = 8;
 
 /// How far a box may be outside of the image and still count as inside, from rounding in files.
 const OUTSIDE: f64 = 1e-5;
@@ -34,6 +35,14 @@ pub(crate) enum Shown {
 impl Shown {
     pub fn rectangle(&self) -> Option<&Rectangle> {
         if let Self::Rectangle(rectangle) = self { Some(rectangle) } else { None }
+    }
+
+    /// The mean linear colour.
+    pub fn mean(&self, scene: &Scene) -> DVec3 {
+        match self {
+            Self::Color(color) | Self::Lost(color, _) => *color,
+            Self::Rectangle(rectangle) => rectangle.mean(scene),
+        }
     }
 }
 
@@ -56,14 +65,54 @@ impl Rectangle {
         Key::of(self.texture, self.low, self.high - self.low)
     }
 
-    /// The mean linear colour.
+    /// The mean linear colour over the light; over the rectangle, where the light is too thin for samples.
     pub fn mean(&self, scene: &Scene) -> DVec3 {
-        let place = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE_SAMPLES);
-        let place = |i: u32| DVec2::new(place(i % SIDE_SAMPLES), place(i / SIDE_SAMPLES));
         let (image, texture) = read(scene, self.texture);
-        let samples = (0..SIDE_SAMPLES * SIDE_SAMPLES)
-            .map(|i| sample(image, texture, self.low + (self.high - self.low) * place(i)));
-        samples.sum::<DVec3>() / f64::from(SIDE_SAMPLES * SIDE_SAMPLES)
+        let size = self.high - self.low;
+        // A sample a texel, where that is enough
+        let texels = size * DVec2::new(f64::from(image.width), f64::from(image.height));
+        let [across, down] = texels
+            .to_array()
+            .map(|side| side.ceil().clamp(f64::from(FEWEST_SAMPLES), f64::from(SIDE_SAMPLES)) as u32);
+        let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
+        let places = (0..across * down)
+            .map(|i| self.low + size * DVec2::new(place(i % across, across), place(i / across, down)));
+        let (mut inside, mut all) = (Mean::default(), Mean::default());
+        for at in places {
+            let color = sample(image, texture, at);
+            all.add(color);
+            if self.is_on_light(at) {
+                inside.add(color);
+            }
+        }
+        if inside.count > 0 { inside.get() } else { all.get() }
+    }
+
+    /// Whether the light shows this place: an odd number of its edges are to the right.
+    fn is_on_light(&self, at: DVec2) -> bool {
+        let edges = self.uvs.iter().zip(self.uvs.iter().cycle().skip(1));
+        let crosses = |(a, b): &(&DVec2, &DVec2)| {
+            (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x)
+        };
+        edges.filter(crosses).count() % 2 == 1
+    }
+}
+
+/// A mean in the making.
+#[derive(Default)]
+struct Mean {
+    sum: DVec3,
+    count: u32,
+}
+
+impl Mean {
+    fn add(&mut self, color: DVec3) {
+        self.sum += color;
+        self.count += 1;
+    }
+
+    fn get(&self) -> DVec3 {
+        self.sum / f64::from(self.count)
     }
 }
 

@@ -343,3 +343,76 @@ fn one_size_fits_all_layers() {
     assert_eq!(size(screen(|uv| uv * 8.0), u32::MAX), Some([4096, 1024]));
     assert_eq!(size(screen(|_| DVec2::splat(0.4)), 4096), None);
 }
+
+/// Quads of a sphere's front that is dented, `count` a side, mapped onto the whole image.
+fn dented(count: u32) -> Shape {
+    let mut shape = Shape::default();
+    let corner = |i: u32| f64::from(i) / f64::from(count);
+    for (x, y) in (0..=count).flat_map(|y| (0..=count).map(move |x| (x, y))) {
+        let (u, v) = (corner(x), corner(y));
+        let (sin, cos) = ((u - 0.5) * 2.0).sin_cos();
+        let radius = 1.0 + 0.05 * (9.0 * u).sin() * (7.0 * v).sin();
+        shape.positions.push(DVec3::new(radius * sin, 1.0 - 2.0 * v, radius * cos).as_vec3().to_array());
+        shape.uvs.push(DVec2::new(u, v).as_vec2().to_array());
+    }
+    for (x, y) in (0..count).flat_map(|y| (0..count).map(move |x| (x, y))) {
+        let a = y * (count + 1) + x;
+        let (b, c, d) = (a + 1, a + 1 + count, a + 2 + count);
+        shape.indices.extend([a, c, b, b, c, d]);
+    }
+    shape
+}
+
+/// Radiance by area of all lights, of one colour each.
+fn flux(scene: &Scene) -> DVec3 {
+    let of = |light: &Light| light.radiance.as_dvec3() * light.shape.area_vector().length();
+    scene.lights.iter().map(of).sum()
+}
+
+#[test]
+fn small_parts_of_a_model_show_their_mean() {
+    // Two bright patches, one dim one, and black elsewhere
+    let image = RgbImage::from_fn(256, 256, |x, y| match (x / 32, y / 32) {
+        (1..=3, 2..=4) => Rgb([x as u8, 255 - y as u8, 200]),
+        (5, 1..=6) => Rgb([255, 255, (x * y) as u8]),
+        (7, 7) => Rgb([3, 3, 3]),
+        _ => Rgb([0; 3]),
+    });
+    let scene = scene_of(&image, &[dented(24)], &json!({}));
+    assert!(scene.light_textures.is_empty() && scene.lights.iter().all(|light| light.texture.is_none()));
+    let words = warnings(&scene);
+    let small = "small, one of many parts of its surface: its mean colour is everywhere";
+    assert!(words.iter().any(|warning| warning.ends_with(small)), "{words:?}");
+    let faint = words.iter().find(|warning| warning.ends_with("of its surface's light in all: left out"));
+    let share = faint.and_then(|warning| warning.split_once("with ")?.1.split_once(" %")?.0.parse().ok());
+    assert!(share.is_some_and(|percent: f64| percent > 0.0 && percent <= 0.1), "{words:?}");
+    // All light is there but for what is left out: the triangles' own areas by the image, 256 samples a triangle
+    let shape = dented(24);
+    let decode = |byte: u8| match f64::from(byte) / 255.0 {
+        encoded if encoded <= 0.04045 => encoded / 12.92,
+        encoded => ((encoded + 0.055) / 1.055).powf(2.4),
+    };
+    let mut expected = DVec3::ZERO;
+    for corners in shape.indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|i| {
+            let at = corners[i] as usize;
+            (Vec3::from(shape.positions[at]).as_dvec3(), DVec2::from_array(shape.uvs[at].map(f64::from)))
+        });
+        let area = (b.0 - a.0).cross(c.0 - a.0).length() / 2.0;
+        let mut sum = DVec3::ZERO;
+        for (i, j) in (0..16).flat_map(|i| (0..16).map(move |j| (i, j))) {
+            let (s, t) = (((f64::from(i) + 0.5) / 16.0).sqrt(), (f64::from(j) + 0.5) / 16.0);
+            let uv = a.1 * (1.0 - s) + b.1 * (s * (1.0 - t)) + c.1 * (s * t);
+            let texel = (uv * 256.0).min(DVec2::splat(255.0)).as_uvec2();
+            sum += DVec3::from_array(image.get_pixel(texel.x, texel.y).0.map(decode));
+        }
+        expected += sum / 256.0 * area * DVec3::new(3.0, 2.0, 1.0);
+    }
+    // A hundredth: nearest texels here, filtered ones there, at the patches' edges
+    let ratio = flux(&scene) / expected;
+    assert!((ratio - 1.0).abs().max_element() < 0.01, "{ratio}");
+    // The twin: few parts show the image
+    let few = scene_of(&image, &[dented(7)], &json!({}));
+    assert!(few.lights.iter().any(|light| light.texture.is_some()));
+    assert!(!warnings(&few).iter().any(|warning| warning.contains("one of many parts")));
+}
