@@ -17,8 +17,8 @@
 //! | `arguments` | pointers of the host, checked as far as they can be |
 //! | `failure` | results, messages, and panics that stay inside |
 //! | `handles` | which objects are alive |
-//! | `options` | what a pass is to do, from the host's numbers |
 //! | `loader` | Vulkan's functions from the host's two |
+//! | `options` | what a pass is to do, from the host's numbers |
 //!
 //! Nothing unwinds into the host; each function that can fail says by a result that it did, and
 //! [`arealight_last_error`] why.

@@ -35,7 +35,7 @@ impl SourceTexels<'_> {
         }
     }
 
-    /// Where they are, to find images that are the same: the first texel's, and how many there are.
+    /// Where they are, to find images that are the same: the first texel's address, and their size in bytes.
     pub(crate) fn address(&self) -> (*const u8, usize) {
         match self {
             Self::Linear(texels) => (texels.as_ptr().cast(), size_of_val(*texels)),

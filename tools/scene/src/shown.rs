@@ -65,7 +65,7 @@ impl Rectangle {
         Key::of(self.texture, self.low, self.high - self.low)
     }
 
-    /// The mean linear colour over the light; over the rectangle, where the light is too thin for samples.
+    /// The mean linear colour over the light (over the rectangle, where the light is a disk, or too thin for samples).
     pub fn mean(&self, scene: &Scene) -> DVec3 {
         let (image, texture) = read(scene, self.texture);
         let size = self.high - self.low;
@@ -75,17 +75,13 @@ impl Rectangle {
             .to_array()
             .map(|side| side.ceil().clamp(f64::from(FEWEST_SAMPLES), f64::from(SIDE_SAMPLES)) as u32);
         let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
-        let places = (0..across * down)
-            .map(|i| self.low + size * DVec2::new(place(i % across, across), place(i / across, down)));
-        let (mut inside, mut all) = (Mean::default(), Mean::default());
-        for at in places {
-            let color = sample(image, texture, at);
-            all.add(color);
-            if self.is_on_light(at) {
-                inside.add(color);
-            }
+        let mut places: Vec<DVec2> = (0..across * down)
+            .map(|i| self.low + size * DVec2::new(place(i % across, across), place(i / across, down)))
+            .collect();
+        if places.iter().any(|at| self.is_on_light(*at)) {
+            places.retain(|at| self.is_on_light(*at));
         }
-        if inside.count > 0 { inside.get() } else { all.get() }
+        places.iter().map(|at| sample(image, texture, *at)).sum::<DVec3>() / places.len() as f64
     }
 
     /// Whether the light shows this place: an odd number of its edges are to the right.
@@ -95,24 +91,6 @@ impl Rectangle {
             (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x)
         };
         edges.filter(crosses).count() % 2 == 1
-    }
-}
-
-/// A mean in the making.
-#[derive(Default)]
-struct Mean {
-    sum: DVec3,
-    count: u32,
-}
-
-impl Mean {
-    fn add(&mut self, color: DVec3) {
-        self.sum += color;
-        self.count += 1;
-    }
-
-    fn get(&self) -> DVec3 {
-        self.sum / f64::from(self.count)
     }
 }
 

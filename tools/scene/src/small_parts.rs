@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// A surface of more lit parts than these has its small and faint parts simplified.
-pub(crate) const MANY_PARTS: usize = 64;
+const MANY_PARTS: usize = 64;
 
 /// A part is small below this share of its surface's diagonal, if it also has less than [`SMALL_FLUX`] of its light.
 const SMALL_DIAGONAL: f64 = 0.1;

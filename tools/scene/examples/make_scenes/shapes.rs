@@ -14,7 +14,7 @@ impl Shape {
     }
 
     /// Two triangles for each cell of a grid of vertices, `columns` a row, whose first vertex is `first`.
-    fn grid(&mut self, first: u32, columns: u32, rows: u32) {
+    pub fn grid(&mut self, first: u32, columns: u32, rows: u32) {
         for y in 0..rows - 1 {
             for x in 0..columns - 1 {
                 let a = first + y * columns + x;

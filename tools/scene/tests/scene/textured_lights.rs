@@ -344,7 +344,7 @@ fn one_size_fits_all_layers() {
     assert_eq!(size(screen(|_| DVec2::splat(0.4)), 4096), None);
 }
 
-/// Quads of a sphere's front that is dented, `count` a side, mapped onto the whole image.
+/// The dented front of a cylinder, of `count` quads a side, mapped onto the whole image.
 fn dented(count: u32) -> Shape {
     let mut shape = Shape::default();
     let corner = |i: u32| f64::from(i) / f64::from(count);
@@ -352,14 +352,10 @@ fn dented(count: u32) -> Shape {
         let (u, v) = (corner(x), corner(y));
         let (sin, cos) = ((u - 0.5) * 2.0).sin_cos();
         let radius = 1.0 + 0.05 * (9.0 * u).sin() * (7.0 * v).sin();
-        shape.positions.push(DVec3::new(radius * sin, 1.0 - 2.0 * v, radius * cos).as_vec3().to_array());
-        shape.uvs.push(DVec2::new(u, v).as_vec2().to_array());
+        shape.positions.push(DVec3::new(radius * sin, 2.0 * v - 1.0, radius * cos).as_vec3().to_array());
+        shape.uvs.push(DVec2::new(u, 1.0 - v).as_vec2().to_array());
     }
-    for (x, y) in (0..count).flat_map(|y| (0..count).map(move |x| (x, y))) {
-        let a = y * (count + 1) + x;
-        let (b, c, d) = (a + 1, a + 1 + count, a + 2 + count);
-        shape.indices.extend([a, c, b, b, c, d]);
-    }
+    shape.grid(0, count + 1, count + 1);
     shape
 }
 
