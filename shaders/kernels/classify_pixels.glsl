@@ -143,8 +143,11 @@ void reduce_sample(ivec2 pixel) {
     ivec2 texel = g_buffer_texel(pixel);
     bool has_surface = load_position_of(texel, pixel, ivec2(constants.size), position) && is_inside && passes_stencil(texel);
     ArealightSurface surface = load_seen_surface(texel, position);
-    vec3 normal = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
     position = IS_ORTHOGRAPHIC ? position : -surface.view;
+    if (IS_TRANSMITTED) {
+        surface = arealight_other_side(surface);
+    }
+    vec3 normal = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
     float distance = sqrt(dot(position, position));
     // Where numbers are infinite or NaN, nothing is known of the tile
     float known_distance = distance > 0.0 && distance < TILE_FAR ? distance : TILE_FAR;

@@ -40,6 +40,8 @@ const uint EFFECT_SHEEN = 524288u;
 const uint EFFECT_ANISOTROPY = 1048576u;
 // What specular lobes' facets reflect more than once is added.
 const uint EFFECT_MULTIPLE_SCATTERING = 2097152u;
+// The pass is of light that thin surfaces let through: what the G-buffer holds is seen from behind.
+const uint EFFECT_TRANSMISSION = 4194304u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -53,6 +55,9 @@ const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;
 const bool HAS_DISKS = (EFFECTS & EFFECT_ELLIPSE) != 0u;
 const bool HAS_SPHERES = (EFFECTS & EFFECT_SPHERE) != 0u;
 const bool HAS_TUBES = (EFFECTS & EFFECT_TUBE) != 0u;
+
+// Whether surfaces face away from the viewer: arealight_other_side.
+const bool IS_TRANSMITTED = (EFFECTS & EFFECT_TRANSMISSION) != 0u;
 
 // Values of the constants of the quality, which are 0 else.
 const int FORM_FACTOR_DIFFERENCE = 1;

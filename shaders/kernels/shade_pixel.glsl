@@ -65,8 +65,15 @@ PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList lis
     visibility_pixel = radiance_texel(pixel);
     visibility_position = surface.position;
 #endif
-    ArealightPoint point = arealight_point(surface);
     PixelRadiance sum = PixelRadiance(vec3(0.0), vec3(0.0));
+    if (IS_TRANSMITTED) {
+        // Most surfaces are opaque
+        if (!AREALIGHT_HAS_SPECULAR && surface.diffuse_albedo == vec3(0.0)) {
+            return sum;
+        }
+        surface = arealight_other_side(surface);
+    }
+    ArealightPoint point = arealight_point(surface);
     if (HAS_QUADS) {
         for (uint index = 0u; index < list.quad_count; index++) {
             uint light = light_at(list, index);

@@ -127,6 +127,9 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
         return vec4(0.0);
     }
     ArealightSurface surface = load_surface(pixel, position, constants.camera);
+    if (IS_TRANSMITTED) {
+        surface = arealight_other_side(surface);
+    }
     ArealightPoint point = arealight_point(surface);
     vec3 normal = geometric_normal(pixel, size, surface);
     vec3 origin = arealight_ray_origin(position, normal, position_step(pixel, size, position));

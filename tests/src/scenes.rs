@@ -17,6 +17,8 @@ pub fn lambert(albedo: f32) -> Material {
         sheen_color: Vec3::ZERO,
         sheen_roughness: 0.0,
         film: None,
+        transmission: 0.0,
+        transmission_color: Vec3::ONE,
     }
 }
 
@@ -44,6 +46,8 @@ pub fn without_textures(material: Material) -> SceneMaterial {
         film_texture: None,
         film_thickness_texture: None,
         film_least_thickness: 0.0,
+        transmission_texture: None,
+        transmission_color_texture: None,
         alpha_cutoff: None,
         double_sided: true,
     }

@@ -147,6 +147,12 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
         quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
+        quads(
+            "quads",
+            "exact, transmission (a pass of its own)",
+            Effects::DIFFUSE | Effects::TRANSMISSION,
+            exact,
+        ),
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),

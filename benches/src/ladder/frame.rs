@@ -54,10 +54,11 @@ pub fn g_buffer(
     g_buffer.normal.upload(&normal, Usage::COMPUTE_READ)?;
     g_buffer.base_color.upload(&half(base_color), Usage::COMPUTE_READ)?;
     g_buffer.specular.upload(&specular, Usage::COMPUTE_READ)?;
-    // No coat, sheen, film or second roughness: Monte Carlo reads them of every surface
+    // No coat, sheen, film, second roughness or transmission: Monte Carlo reads them of every surface
     g_buffer.coat.upload(&none, Usage::COMPUTE_READ)?;
     g_buffer.anisotropy.upload(&none, Usage::COMPUTE_READ)?;
     g_buffer.sheen.upload(&none, Usage::COMPUTE_READ)?;
+    g_buffer.transmitted.upload(&vec![[0_u16; 4]; width * height], Usage::COMPUTE_READ)?;
     g_buffer.film.upload(&vec![[0_u32; 4]; width * height], Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }
@@ -156,7 +157,8 @@ impl<'a> Frame<'a> {
         let has_published =
             matches!(method, Method::Yardstick { table: YardstickTable::PublishedQuality, .. });
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted] =
+            self.g_buffer.sampled();
         match binding {
             "table_image" if has_published => self.published.resource(),
             "table_image" => self.engine.table(),
@@ -171,6 +173,7 @@ impl<'a> Frame<'a> {
             "g_coat" => coat,
             "g_sheen" => sheen,
             "g_anisotropy" => anisotropy,
+            "g_transmitted" => transmitted,
             // No frame has a stencil, whose place unsigned integers take
             "g_film" | "g_stencil" => film,
             "radiance_image" | "glossy_image" => {

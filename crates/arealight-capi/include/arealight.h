@@ -83,6 +83,10 @@
 // What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
 #define AREALIGHT_EFFECT_MULTIPLE_SCATTERING 2097152
 
+// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a pass of its own whose base colour is the part of the
+// light that is let through.
+#define AREALIGHT_EFFECT_TRANSMISSION 4194304
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -420,7 +424,7 @@ typedef struct ArealightReach {
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO and _MULTIPLE_SCATTERING. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING and _TRANSMISSION. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;

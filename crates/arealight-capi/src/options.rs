@@ -116,6 +116,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_ANISOTROPY, Effects::ANISOTROPY),
             (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
             (c::AREALIGHT_EFFECT_MULTIPLE_SCATTERING, Effects::MULTIPLE_SCATTERING),
+            (c::AREALIGHT_EFFECT_TRANSMISSION, Effects::TRANSMISSION),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

@@ -86,7 +86,7 @@ pub struct ArealightUpload {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
     /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO and _MULTIPLE_SCATTERING. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING and _TRANSMISSION. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,

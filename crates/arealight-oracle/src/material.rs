@@ -27,6 +27,10 @@ pub struct Material {
     pub sheen_roughness: f32,
     /// A thin film on the surface, below sheen and the coat.
     pub film: Option<ThinFilm>,
+    /// How much of a thin dielectric's diffuse light goes through it, in [0, 1]; 0 for none ([`Effects::TRANSMISSION`](arealight::Effects::TRANSMISSION)).
+    pub transmission: f32,
+    /// Linear Rec. 709 colour of that light in [0, 1].
+    pub transmission_color: Vec3,
 }
 
 impl Default for Material {
@@ -43,6 +47,8 @@ impl Default for Material {
             sheen_color: Vec3::ZERO,
             sheen_roughness: 0.0,
             film: None,
+            transmission: 0.0,
+            transmission_color: Vec3::ONE,
         }
     }
 }
@@ -196,7 +202,7 @@ impl Coat {
 impl Material {
     /// The surface of this material: what `arealight_surface_from_metalness` does in GLSL.
     ///
-    /// The Lambert albedo is `base_color (1 - metalness)`; the lobes are added without Fresnel coupling, as
+    /// The Lambert albedo is `base_color (1 - metalness)`, less what is let through ([`Material::other_side`]); the lobes are added without Fresnel coupling, as
     /// in many real-time engines. The coat has the surface's normal.
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
@@ -204,7 +210,7 @@ impl Material {
         let alpha = |roughness: f32| (f64::from(roughness) * f64::from(roughness)).max(arealight::MIN_ALPHA);
         let weight = f64::from(self.coat);
         Surface {
-            diffuse_albedo: base * (1.0 - metalness),
+            diffuse_albedo: base * (1.0 - metalness) * (1.0 - f64::from(self.transmission)),
             f0: self.dielectric_f0.as_dvec3().lerp(base, metalness),
             f90: f64::from(self.dielectric_f90) * (1.0 - metalness) + metalness,
             alpha: alpha(self.roughness),
@@ -224,6 +230,13 @@ impl Material {
             film: self.film,
             anisotropy: None,
         }
+    }
+
+    /// Its other side, for light that is let through: what a surface of the opposite normal, seen from the mirror image of the view, reflects.
+    pub fn other_side(&self) -> Surface {
+        let part = f64::from(self.transmission) * (1.0 - f64::from(self.metalness));
+        let Surface { interface, .. } = self.coupled_surface();
+        Surface { diffuse_albedo: self.transmission_color.as_dvec3() * part, interface, ..Surface::default() }
     }
 
     /// The same with the Lambert lobe coupled, as glTF has it.

@@ -459,7 +459,7 @@ fn group_rows(frame: &ShadeFrame) -> Result<Range<u32>, Error> {
 /// Refuses options that no pass can be made with.
 fn check_options(options: ShadeOptions) -> Result<(), Error> {
     check_view(options)?;
-    if !options.surfaces.intersects(Effects::DIFFUSE | Effects::GLOSSY | Effects::COAT | Effects::SHEEN) {
+    if !options.surfaces.intersects(Effects::LOBES) {
         return Err(Error::InvalidArgument {
             field: "surfaces",
             message: format!("have no lobe, and would be black: {}", options.surfaces),

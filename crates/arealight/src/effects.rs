@@ -55,6 +55,9 @@ bitflags::bitflags! {
         /// What the facets of specular lobes reflect more than once is added, as in OpenPBR; else it is lost, as in glTF, and rough metals are up to
         /// 60 % too dark. Metals have a diffuse lobe then.
         const MULTIPLE_SCATTERING = 1 << 21;
+        /// Some thin surface lets light through. A pass with this shades what the G-buffer holds from behind, for a pass of its own: its base colour is the part of
+        /// the light that is let through, and its normals are those of the front ([`Effects::passes`]).
+        const TRANSMISSION = 1 << 22;
     }
 }
 
@@ -62,15 +65,19 @@ impl Effects {
     /// Every kind of light that is no polygon or mesh.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
 
+    /// Every lobe: without any of these surfaces are black.
+    pub const LOBES: Self = Self::DIFFUSE.union(Self::GLOSSY).union(Self::COAT).union(Self::SHEEN);
+
     /// With any of these the light textures are read.
     pub const IMAGES: Self = Self::TEXTURED.union(Self::TEXTURED_ELLIPSE);
 
-    /// How layers of surfaces share light: the material model, a choice of the host's that changes the picture. Of every other effect the
-    /// code alone changes nothing where no surface or light needs it.
+    /// How layers of surfaces share light, the material model, and from which side it comes: choices of the host's that change the picture. Of
+    /// every other effect the code alone changes nothing where no surface or light needs it.
     pub const MODEL: Self = Self::COUPLED
         .union(Self::COUPLED_BY_ALBEDO)
         .union(Self::COAT_BY_ALBEDO)
-        .union(Self::MULTIPLE_SCATTERING);
+        .union(Self::MULTIPLE_SCATTERING)
+        .union(Self::TRANSMISSION);
 
     /// What surfaces need, whatever the lights.
     pub const SURFACES: Self = Self::DIFFUSE
@@ -82,6 +89,18 @@ impl Effects {
         .union(Self::DIFFUSE_ROUGHNESS)
         .union(Self::SHEEN)
         .union(Self::ANISOTROPY);
+
+    /// What each pass over surfaces with these effects has, its radiance added to that of the one before: what is reflected, and with
+    /// [`Effects::TRANSMISSION`] what is let through, by an ideally diffusing sheet below the same interface.
+    pub fn passes(self) -> impl Iterator<Item = Self> {
+        let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::TRANSMISSION;
+        let lets_through = self.contains(Self::TRANSMISSION);
+        let reflects = !lets_through || self.intersects(Self::LOBES);
+        let transmitted = (self & below_interface) | Self::DIFFUSE;
+        [reflects.then_some(self - Self::TRANSMISSION), lets_through.then_some(transmitted)]
+            .into_iter()
+            .flatten()
+    }
 
     /// The effects in words, in the order of their bits, for people to read.
     pub fn names(self) -> Vec<&'static str> {
@@ -106,6 +125,7 @@ impl Effects {
             (Self::SHEEN, "sheen"),
             (Self::ANISOTROPY, "anisotropy"),
             (Self::MULTIPLE_SCATTERING, "multiple_scattering"),
+            (Self::TRANSMISSION, "transmission"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -122,6 +142,14 @@ impl std::fmt::Display for Effects {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn light_that_is_let_through_has_a_pass_of_its_own() {
+        let opaque = Effects::DIFFUSE | Effects::GLOSSY | Effects::COUPLED | Effects::COAT;
+        assert!(opaque.passes().eq([opaque]));
+        let passes = (opaque | Effects::TRANSMISSION).passes();
+        assert!(passes.eq([opaque, Effects::DIFFUSE | Effects::COUPLED | Effects::TRANSMISSION]));
+    }
 
     #[test]
     fn every_effect_has_a_name() {

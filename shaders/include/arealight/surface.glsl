@@ -116,6 +116,15 @@ ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
     return frame;
 }
 
+// A thin surface from behind, for light that it lets through to the viewer: it faces away from the viewer, who is as far behind it as before it. Its
+// members but normal and view are for the caller to set to what is let through: diffuse_albedo, of an ideally diffusing sheet
+// (KHR_materials_diffuse_transmission). What it reflects so is the mirror image of what the front would, exactly.
+ArealightSurface arealight_other_side(ArealightSurface surface) {
+    surface.normal = -surface.normal;
+    surface.view += surface.normal * (-2.0 * dot(surface.normal, surface.view) / max(dot(surface.normal, surface.normal), AREALIGHT_TINY));
+    return surface;
+}
+
 // The matrix that takes offsets from the shading point into the frame: rows tangent, bitangent, normal.
 mat3 arealight_frame_matrix(ArealightFrame frame) {
     return transpose(mat3(frame.tangent, frame.bitangent, frame.normal));

@@ -73,6 +73,8 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             sheen_color: sheens[i].truncate(),
             sheen_roughness: sheens[i].w,
             film: None,
+            transmission: 0.0,
+            transmission_color: Vec3::ONE,
         };
         let normal = Some(from_octahedron(coats[i].z.into(), coats[i].w.into()));
         let surface = material.coupled_surface();

@@ -70,5 +70,6 @@ mod textured;
 mod textured_disks;
 mod textures;
 mod tiles;
+mod transmission;
 mod tubes;
 mod views;

@@ -23,6 +23,8 @@ pub struct GBuffer {
     pub anisotropy: Image,
     /// Thin films, for Monte Carlo alone, as reference.comp has them: reflectances are below them in it, and above them in the other images.
     pub film: Image,
+    /// Albedo of what is let through: the base colour of a pass with [`arealight::Effects::TRANSMISSION`].
+    pub transmitted: Image,
     /// Radiance.
     pub radiance: Image,
 }
@@ -54,18 +56,21 @@ impl GBuffer {
             sheen: image("sheen", full)?,
             anisotropy: image("anisotropy", full)?,
             film: image("thin film", vk::Format::R32G32B32A32_UINT)?,
+            transmitted: image("transmitted", half)?,
             radiance: image("radiance", full)?,
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy and films are the last.
-    pub fn surfaces(&self) -> [&Image; 8] {
-        let Self { position, normal, base_color, specular, coat, sheen, anisotropy, film, .. } = self;
-        [position, normal, base_color, specular, coat, sheen, anisotropy, film]
+    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy, films and transmission are the last.
+    pub fn surfaces(&self) -> [&Image; 9] {
+        let Self {
+            position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted, ..
+        } = self;
+        [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted]
     }
 
     /// The surface images as a shading pass reads them.
-    pub fn sampled(&self) -> [Resource; 8] {
+    pub fn sampled(&self) -> [Resource; 9] {
         let layout = Usage::COMPUTE_READ.layout;
         self.surfaces().map(|image| Resource::SampledImage { view: image.view(), layout })
     }

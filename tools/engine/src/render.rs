@@ -107,10 +107,9 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] where the device fails.
     pub fn visibility(&mut self) -> Result<Option<Duration>, EngineError> {
-        let GBuffer { position, normal, base_color, specular, coat, sheen, anisotropy, film, radiance } =
-            &self.g_buffer;
+        let [position, normal, base_color, specular, layers @ ..] = self.g_buffer.surfaces();
         let images =
-            [position, normal, base_color, specular, radiance, coat, sheen, anisotropy, film].into_iter();
+            [position, normal, base_color, specular, &self.g_buffer.radiance].into_iter().chain(layers);
         let stored = images.clone().map(|image| Resource::StorageImage { view: image.view() });
         let read = self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle()));
         let pass = self.engine.pass(&VISIBILITY, &[], &read.chain(stored).collect::<Vec<_>>())?;
@@ -133,7 +132,25 @@ impl<'a> SceneRenderer<'a> {
     /// # Errors
     /// [`EngineError`] says why the device fails.
     pub fn shade(&mut self, surfaces: Effects, quality: Quality) -> Result<Option<Duration>, EngineError> {
-        self.shade_as(ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() })
+        let options = ShadeOptions { quality, output: Output::Add, ..ShadeOptions::default() };
+        self.each_pass(surfaces, |renderer, surfaces| renderer.shade_as(ShadeOptions { surfaces, ..options }))
+    }
+
+    /// Runs `shade` for each of [`Effects::passes`]. The sum of its times, where it has any.
+    ///
+    /// # Errors
+    /// Those of `shade`.
+    pub fn each_pass(
+        &mut self,
+        surfaces: Effects,
+        mut shade: impl FnMut(&mut Self, Effects) -> Result<Option<Duration>, EngineError>,
+    ) -> Result<Option<Duration>, EngineError> {
+        let mut total = Some(Duration::ZERO);
+        for surfaces in surfaces.passes() {
+            let took = shade(self, surfaces)?;
+            total = total.zip(took).map(|(total, took)| total + took);
+        }
+        Ok(total)
     }
 
     /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of ours, and radiance is
@@ -148,7 +165,7 @@ impl<'a> SceneRenderer<'a> {
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
         // SAFETY: The set is new, and the resources live until the submission was waited for.
-        unsafe { pass.write_set(set, &self.shade_resources()) }?;
+        unsafe { pass.write_set(set, &self.shade_resources(options.surfaces)) }?;
         // doc: parts
         let parts = self.shade_frame().parts(self.most_pairs); // 2^24 pairs
         self.submit_parts(parts, |commands, part| {
@@ -199,7 +216,8 @@ impl<'a> SceneRenderer<'a> {
         lists: Option<&Buffer>,
     ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, _] =
+            self.g_buffer.sampled();
         let resources = [
             self.engine.table(),
             Resource::buffer(self.light_buffer.handle()),
@@ -243,7 +261,7 @@ impl<'a> SceneRenderer<'a> {
         self.ensure_visible()?;
         let light_sampling = self.engine.storage("light sampling", &self.sampling.lights)?;
         let light_triangles = self.engine.storage("light triangles", &self.sampling.triangles)?;
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = self.g_buffer.sampled();
+        let [position, normal, base_color, specular, layers @ ..] = self.g_buffer.sampled();
         let buffers = [&self.light_buffer, &self.vertex_buffer, &light_sampling, &light_triangles];
         let resources: Vec<_> = buffers
             .into_iter()
@@ -256,11 +274,8 @@ impl<'a> SceneRenderer<'a> {
                 Resource::StorageImage { view: self.g_buffer.radiance.view() },
                 self.engine.light_textures(),
                 Resource::buffer(self.shape_buffer.handle()),
-                coat,
-                sheen,
-                anisotropy,
-                film,
             ])
+            .chain(layers)
             .chain(self.geometry.iter().map(|buffer| Resource::buffer(buffer.handle())))
             .collect();
         let pass = self.engine.pass(
@@ -364,15 +379,17 @@ impl<'a> SceneRenderer<'a> {
         Ok(())
     }
 
-    fn shade_resources(&self) -> ShadeResources {
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, _] = self.g_buffer.sampled();
+    /// What a pass reads that is for surfaces with these effects.
+    fn shade_resources(&self, surfaces: Effects) -> ShadeResources {
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, _, transmitted] =
+            self.g_buffer.sampled();
         ShadeResources {
             table: self.engine.table(),
             lights: Resource::buffer(self.light_buffer.handle()),
             light_vertices: Resource::buffer(self.vertex_buffer.handle()),
             position,
             normal,
-            base_color,
+            base_color: if surfaces.contains(Effects::TRANSMISSION) { transmitted } else { base_color },
             specular: Some(specular),
             coat: Some(coat),
             sheen: Some(sheen),

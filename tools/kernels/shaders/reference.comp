@@ -17,7 +17,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
 #define FILM_BINDING 14
-#define SCENE_BINDING 15
+#define TRANSMITTED_BINDING 15
+#define SCENE_BINDING 16
 #define AREALIGHT_COAT 1
 #define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_SHEEN 1
@@ -95,6 +96,7 @@ struct SheenLobe {
 };
 
 layout(set = 0, binding = FILM_BINDING) uniform utexture2D g_film;
+layout(set = 0, binding = TRANSMITTED_BINDING) uniform texture2D g_transmitted;
 
 // A thin film, and the reflectances below it: those of the surface are above it, as they are seen.
 struct Film {
@@ -119,7 +121,7 @@ vec3 film_reflectance(Film film, float cosine) {
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
     vec3 position;
-    vec3 ray_origin; // of shadow rays
+    vec3 ray_origins[2]; // of shadow rays: on the side that is seen, and on the other
     mat3 to_surface;
     vec3 view;
     vec3 diffuse_albedo;
@@ -132,6 +134,8 @@ struct Lobes {
     CoatLobe coat;
     SheenLobe sheen;
     Film film;
+    vec3 transmitted; // albedo of what is let through, below the interface
+    float transmission_probability; // of drawing from it
 };
 
 // `base`: about what the lobes below the coat reflect.
@@ -145,15 +149,16 @@ CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share, probability);
 }
 
-// Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen.
-vec3 load_ray_origin(ArealightSurface surface, uint index) {
+// Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen and on the other.
+vec3[2] load_ray_origins(ArealightSurface surface, uint index) {
     if (SHADOWS == 0u) {
-        return surface.position;
+        return vec3[2](surface.position, surface.position);
     }
     ArealightGpuTriangle triangle = triangles[index];
     vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
     vec3 normal = arealight_normalize_or(face, surface.normal);
-    return arealight_ray_origin(surface.position, dot(normal, surface.view) < 0.0 ? -normal : normal, 0.0);
+    normal = dot(normal, surface.view) < 0.0 ? -normal : normal;
+    return vec3[2](arealight_ray_origin(surface.position, normal, 0.0), arealight_ray_origin(surface.position, -normal, 0.0));
 }
 
 // Whether light arrives from a light's point, `offset` from the surface.
@@ -161,9 +166,10 @@ bool arrives(Lobes lobes, vec3 offset) {
     if (SHADOWS == 0u) {
         return true;
     }
-    vec3 way = offset + (lobes.position - lobes.ray_origin);
+    vec3 origin = lobes.ray_origins[(lobes.to_surface * offset).z < 0.0 ? 1 : 0];
+    vec3 way = offset + (lobes.position - origin);
     float distance = length(way);
-    return arealight_bridge_blocker(lobes.ray_origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
+    return arealight_bridge_blocker(origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
 }
 
 // Charlie's f cos for a colour of 1; 0 for light from below. The view's cosine is the frame's, from AREALIGHT_FORMULA_MIN_COS_VIEW on.
@@ -205,17 +211,20 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
-Lobes load_lobes(ArealightSurface surface, vec3 ray_origin, Film film) {
+Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], Film film, vec3 transmitted) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
     vec2 axis = alpha.x == alpha.y ? vec2(1.0, 0.0) : arealight_surface_axis(frame, surface.anisotropy.tangent);
     float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
+    float let_through = dot(transmitted, vec3(1.0 / 3.0));
+    float transmission_probability = let_through > 0.0 ? clamp(let_through / (let_through + glossy + diffuse), 0.25, 0.75) : 0.0;
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
-    return Lobes(surface.position, ray_origin, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
+    return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
                  surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, axis, alpha,
-                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), film);
+                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), film,
+                 transmitted, transmission_probability);
 }
 
 // A direction of the surface's frame in the frame of its GGX lobe, and back.
@@ -226,8 +235,19 @@ vec3 from_axis(Lobes lobes, vec3 direction) {
     return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
+// f cos of light from behind, which the interface reflects as much of as of that from the mirror image of its direction.
+vec3 evaluate_transmitted(Lobes lobes, vec3 light) {
+    vec3 mirrored = vec3(light.xy, -light.z);
+    float above = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
+                      arealight_schlick_weight(lobes.view, arealight_normalize_or(lobes.view + mirrored, vec3(0.0, 0.0, 1.0))));
+    return lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0) * (COUPLED != 0u ? 1.0 - above : 1.0));
+}
+
 // f cos, all lobes.
 vec3 evaluate(Lobes lobes, vec3 light) {
+    if (light.z < 0.0) {
+        return evaluate_transmitted(lobes, light);
+    }
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
     vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
     bool has_film = lobes.film.film.weight > 0.0 && lobes.film.film.thickness > 0.0;
@@ -255,17 +275,31 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     return mix(base, above, coat.share);
 }
 
-// Zero where no lobe reflects light from there: below the surface, and below its coat.
+// Zero where no lobe reflects light from there: below an opaque surface, and below its coat.
 float density(Lobes lobes, vec3 light) {
+    if (light.z < 0.0) {
+        return AREALIGHT_INVERSE_PI * -light.z * lobes.transmission_probability;
+    }
     float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
     float base = mix(diffuse, arealight_ggx_density(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha), lobes.glossy_probability);
     float above = arealight_ggx_density(lobes.coat.view, lobes.coat.to_coat * light, vec2(lobes.coat.alpha));
-    return mix(base, above, lobes.coat.probability);
+    return mix(base, above, lobes.coat.probability) * (1.0 - lobes.transmission_probability);
+}
+
+// Of the density of a cosine.
+vec3 sample_cosine(vec2 u) {
+    float radius = sqrt(u.x);
+    float phi = 2.0 * AREALIGHT_PI * u.y;
+    return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
 }
 
 vec3 sample_direction(Lobes lobes, inout RandomState random) {
     float choice = random_float(random);
     vec2 u = vec2(random_float(random), random_float(random));
+    if (choice < lobes.transmission_probability) {
+        return -sample_cosine(u);
+    }
+    choice = (choice - lobes.transmission_probability) / (1.0 - lobes.transmission_probability);
     CoatLobe coat = lobes.coat;
     if (choice < coat.probability) {
         return arealight_ggx_sample(coat.view, vec2(coat.alpha), u) * coat.to_coat;
@@ -274,9 +308,7 @@ vec3 sample_direction(Lobes lobes, inout RandomState random) {
     if (choice < lobes.glossy_probability) {
         return from_axis(lobes, arealight_ggx_sample(to_axis(lobes, lobes.view), lobes.alpha, u));
     }
-    float radius = sqrt(u.x);
-    float phi = 2.0 * AREALIGHT_PI * u.y;
-    return vec3(radius * cos(phi), radius * sin(phi), sqrt(max(0.0, 1.0 - u.x)));
+    return sample_cosine(u);
 }
 
 // A point of a light relative to its center, and the unit normal of the front there.
@@ -453,7 +485,8 @@ void main() {
         return;
     }
     ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera);
-    Lobes lobes = load_lobes(surface, load_ray_origin(surface, uint(position.w) - 1u), load_film(pixel));
+    vec3 transmitted = texelFetch(g_transmitted, pixel, 0).rgb;
+    Lobes lobes = load_lobes(surface, load_ray_origins(surface, uint(position.w) - 1u), load_film(pixel), transmitted);
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

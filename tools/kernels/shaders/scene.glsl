@@ -5,6 +5,7 @@
 // test compares the offsets. The including kernel defines SCENE_BINDING, the first of five.
 
 #define BVH_NODES_BINDING SCENE_BINDING
+#include "arealight/lobes/sheen.glsl"
 #include "arealight/thin_film.glsl"
 #include "bvh.glsl"
 #include "octahedron.glsl"
@@ -67,8 +68,10 @@ struct ArealightGpuMaterial {
     float film_thickness;
     uint film_texture;
     uint film_thickness_texture;
-    uint reserved0;
-    uint reserved1;
+    uint transmission_texture;
+    uint transmission_color_texture;
+    vec3 transmission_color;
+    float transmission;
 };
 
 struct ArealightGpuTexture {
@@ -117,6 +120,7 @@ struct ScenePoint {
     ArealightSheen sheen;
     ArealightAnisotropy anisotropy; // its roughness is 0 where there is none
     ArealightThinFilm film;
+    vec3 transmitted; // albedo of what is let through; the base colour of what is not metal is less by that part
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -266,6 +270,9 @@ ScenePoint scene_point(BvhHit hit) {
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
                                sample_texture(material.film_thickness_texture, uv).g);
+    float transmission = material.transmission * sample_texture(material.transmission_texture, uv).a * (1.0 - point.metalness);
+    point.transmitted = transmission * material.transmission_color * sample_texture(material.transmission_color_texture, uv).rgb;
+    point.base_color *= 1.0 - transmission;
     point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
     return point;
 }

@@ -17,6 +17,7 @@ layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D out_sheen;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D out_anisotropy;
 layout(set = 0, binding = 13, rgba32ui) uniform writeonly uimage2D out_film;
+layout(set = 0, binding = 14, rgba16f) uniform writeonly image2D out_transmitted;
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
@@ -56,6 +57,11 @@ void store_film(ivec2 pixel, inout ScenePoint point, vec3 view) {
     }
 }
 
+// The part of the light that sheen keeps from neither reflection nor transmission below it.
+float below_sheen(ScenePoint point, vec3 view) {
+    return arealight_sheen_layer(arealight_surface_frame(point.normal, view), point.sheen).base;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     ivec2 size = imageSize(out_radiance);
@@ -78,6 +84,7 @@ void main() {
         imageStore(out_sheen, pixel, vec4(0.0));
         imageStore(out_anisotropy, pixel, vec4(0.0));
         imageStore(out_film, pixel, uvec4(0u));
+        imageStore(out_transmitted, pixel, vec4(0.0));
         return;
     }
     ScenePoint point = scene_point(hit);
@@ -91,4 +98,5 @@ void main() {
     imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
     imageStore(out_sheen, pixel, vec4(point.sheen.color, point.sheen.roughness));
     imageStore(out_anisotropy, pixel, vec4(to_octahedron(point.anisotropy.tangent), point.anisotropy.roughness, 0.0));
+    imageStore(out_transmitted, pixel, vec4(point.transmitted * (below_coat * below_sheen(point, -direction)), 0.0));
 }

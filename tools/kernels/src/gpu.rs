@@ -235,8 +235,14 @@ pub struct GpuMaterial {
     pub film_texture: u32,
     /// Linear texture whose green says how thick the film is.
     pub film_thickness_texture: u32,
-    /// Zero.
-    pub reserved: [u32; 2],
+    /// Linear texture: alpha times `transmission`.
+    pub transmission_texture: u32,
+    /// sRGB texture times `transmission_color`.
+    pub transmission_color_texture: u32,
+    /// Colour factor of what is let through, of the diffuse part.
+    pub transmission_color: [f32; 3],
+    /// How much of the diffuse part is let through instead of reflected.
+    pub transmission: f32,
 }
 
 impl VisibilityConstants {

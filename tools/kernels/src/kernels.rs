@@ -113,6 +113,11 @@ pub static REFERENCE: Kernel = Kernel {
             "thin films: weight and index of refraction in r as packHalf2x16 has them, bits of the thickness in nanometres in g, F0 below the \
              film and F90 in ba as packUnorm2x16 has them (rgba32ui)",
         ),
+        read(
+            "g_transmitted",
+            BindingKind::SampledImage,
+            "albedo of what is let through in rgb, below the interface and above all other layers (rgba16f)",
+        ),
         SCENE[0],
         SCENE[1],
         SCENE[2],
@@ -157,6 +162,12 @@ pub static VISIBILITY: Kernel = Kernel {
             BindingKind::StorageImage,
             Access::Write,
             "g_film of the reference kernel (rgba32ui)",
+        ),
+        write(
+            "out_transmitted",
+            BindingKind::StorageImage,
+            Access::Write,
+            "g_base_color of a pass with Effects::TRANSMISSION (rgba16f)",
         ),
     ],
     constants: &[],

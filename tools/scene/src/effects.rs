@@ -24,7 +24,7 @@ impl std::fmt::Display for RequiredEffect {
 type Needs = fn(&SceneMaterial) -> bool;
 
 /// What materials may need, and how it is known.
-const OF_MATERIALS: [(Effects, Needs); 8] = [
+const OF_MATERIALS: [(Effects, Needs); 9] = [
     (Effects::DIFFUSE, has_diffuse_lobe),
     (Effects::GLOSSY, has_glossy_lobe),
     (Effects::SPECULAR_INPUT, has_specular_input),
@@ -33,6 +33,7 @@ const OF_MATERIALS: [(Effects, Needs); 8] = [
     (Effects::COUPLED, is_coupled),
     (Effects::SHEEN, has_sheen),
     (Effects::ANISOTROPY, has_anisotropy),
+    (Effects::TRANSMISSION, has_transmission),
 ];
 
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
@@ -106,10 +107,16 @@ fn has_anisotropy(material: &SceneMaterial) -> bool {
     material.anisotropy_strength > 0.0 && has_glossy_lobe(material)
 }
 
+fn has_transmission(material: &SceneMaterial) -> bool {
+    let Material { transmission, transmission_color, .. } = material.material;
+    is_dielectric_somewhere(material) && transmission > 0.0 && transmission_color != Vec3::ZERO
+}
+
 /// glTF couples the diffuse lobe of a dielectric with its Fresnel term, where it has one.
 fn is_coupled(material: &SceneMaterial) -> bool {
     let Material { dielectric_f0, dielectric_f90, film, .. } = material.material;
-    has_diffuse_lobe(material) && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0 || film.is_some())
+    let is_diffuse = has_diffuse_lobe(material) || has_transmission(material);
+    is_diffuse && (dielectric_f0 != Vec3::ZERO || dielectric_f90 > 0.0 || film.is_some())
 }
 
 /// A coat has the geometry's normal, unless it has a texture, and the base may be bent by one.

@@ -7,7 +7,7 @@ use gltf::json;
 use std::collections::BTreeSet;
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
-const READ: [&str; 17] = [
+const READ: [&str; 18] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -15,6 +15,7 @@ const READ: [&str; 17] = [
     crate::punctual::NAME,
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_iridescence",

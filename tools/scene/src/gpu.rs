@@ -129,6 +129,8 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
             ("anisotropy_texture", material.anisotropy_texture),
             ("film_texture", material.film_texture),
             ("film_thickness_texture", material.film_thickness_texture),
+            ("transmission_texture", material.transmission_texture),
+            ("transmission_color_texture", material.transmission_color_texture),
         ];
         for (name, texture) in textures {
             let Some(texture) = texture else { continue };
@@ -232,7 +234,10 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         film_thickness: film.thickness as f32,
         film_texture: texture(material.film_texture),
         film_thickness_texture: texture(material.film_thickness_texture),
-        reserved: [0; 2],
+        transmission_texture: texture(material.transmission_texture),
+        transmission_color_texture: texture(material.transmission_color_texture),
+        transmission_color: material.material.transmission_color.to_array(),
+        transmission: material.material.transmission,
     }
 }
 

@@ -40,6 +40,8 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
         material.anisotropy_texture,
         material.film_texture,
         material.film_thickness_texture,
+        material.transmission_texture,
+        material.transmission_color_texture,
     ];
     if !primitive.has_uvs && textured.iter().any(Option::is_some) {
         let text = format!("has no TEXCOORD_{}: its textures are read at (0, 0)", primitive.uv_set);
@@ -75,6 +77,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let sheen_color = reader.fractions("sheenColorFactor", sheen.color_factor);
     let [sheen_roughness] = reader.fractions("sheenRoughnessFactor", [sheen.roughness_factor]);
     let iridescence = reader.iridescence(&source)?;
+    let transmission = reader.diffuse_transmission(&source)?;
+    let [transmission_factor] = reader.fractions("diffuseTransmissionFactor", [transmission.factor]);
+    let transmission_color = reader.fractions("diffuseTransmissionColorFactor", transmission.color_factor);
     let material = Material {
         base_color: Vec3::new(r, g, b),
         metalness,
@@ -86,6 +91,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         sheen_color: Vec3::from_array(sheen_color),
         sheen_roughness,
         film: iridescence.film(),
+        transmission: transmission_factor,
+        transmission_color: Vec3::from_array(transmission_color),
     };
     let anisotropy = reader.anisotropy(&source)?;
     let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
@@ -104,6 +111,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let anisotropy_texture = reader.texture(anisotropy.texture.as_ref(), false)?;
     let film_texture = reader.texture(iridescence.texture.as_ref(), false)?;
     let film_thickness_texture = reader.texture(iridescence.thickness_texture.as_ref(), false)?;
+    let transmission_texture = reader.texture(transmission.texture.as_ref(), false)?;
+    let transmission_color_texture = reader.texture(transmission.color_texture.as_ref(), true)?;
     // Transparency
     let alpha_cutoff = match source.alpha_mode {
         Checked::Valid(AlphaMode::Mask) => Some(source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0)),
@@ -135,6 +144,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         film_texture,
         film_thickness_texture,
         film_least_thickness: iridescence.least_thickness,
+        transmission_texture,
+        transmission_color_texture,
         alpha_cutoff,
         double_sided: source.double_sided,
     })
@@ -215,6 +226,12 @@ impl Reader<'_> {
         Ok(if anisotropy.strength == 0.0 { Anisotropy::default() } else { anisotropy })
     }
 
+    /// What is let through; nothing of it where its factor is zero.
+    fn diffuse_transmission(&self, source: &json::Material) -> Result<DiffuseTransmission, SceneError> {
+        let transmission: DiffuseTransmission = self.extension(source, DIFFUSE_TRANSMISSION)?;
+        Ok(if transmission.factor == 0.0 { DiffuseTransmission::default() } else { transmission })
+    }
+
     /// The thin film; nothing of it where its factor is zero, or it has no thickness anywhere.
     fn iridescence(&mut self, source: &json::Material) -> Result<Iridescence, SceneError> {
         let mut film: Iridescence = self.extension(source, IRIDESCENCE)?;
@@ -276,11 +293,9 @@ impl Reader<'_> {
     }
 
     fn warn_of_unknown_extensions(&mut self, source: &json::Material) {
-        let unknown = source
-            .extensions
-            .iter()
-            .flat_map(|e| e.others.keys())
-            .filter(|name| ![ANISOTROPY, CLEARCOAT, IRIDESCENCE, SHEEN].contains(&name.as_str()));
+        let unknown = source.extensions.iter().flat_map(|e| e.others.keys()).filter(|name| {
+            ![ANISOTROPY, CLEARCOAT, DIFFUSE_TRANSMISSION, IRIDESCENCE, SHEEN].contains(&name.as_str())
+        });
         for extension in unknown {
             self.warn(format!("{extension} is not supported: ignored"));
         }
@@ -296,6 +311,7 @@ pub(crate) fn has_tangents(material: &json::Material) -> bool {
 
 const ANISOTROPY: &str = "KHR_materials_anisotropy";
 const CLEARCOAT: &str = "KHR_materials_clearcoat";
+const DIFFUSE_TRANSMISSION: &str = "KHR_materials_diffuse_transmission";
 const IRIDESCENCE: &str = "KHR_materials_iridescence";
 const SHEEN: &str = "KHR_materials_sheen";
 
@@ -380,4 +396,24 @@ struct Clearcoat {
     roughness_texture: Option<json::texture::Info>,
     #[serde(rename = "clearcoatNormalTexture")]
     normal_texture: Option<json::material::NormalTexture>,
+}
+
+/// `KHR_materials_diffuse_transmission`.
+#[derive(Deserialize)]
+#[serde(default)]
+struct DiffuseTransmission {
+    #[serde(rename = "diffuseTransmissionFactor")]
+    factor: f32,
+    #[serde(rename = "diffuseTransmissionTexture")]
+    texture: Option<json::texture::Info>,
+    #[serde(rename = "diffuseTransmissionColorFactor")]
+    color_factor: [f32; 3],
+    #[serde(rename = "diffuseTransmissionColorTexture")]
+    color_texture: Option<json::texture::Info>,
+}
+
+impl Default for DiffuseTransmission {
+    fn default() -> Self {
+        Self { factor: 0.0, texture: None, color_factor: [1.0; 3], color_texture: None }
+    }
 }

@@ -129,6 +129,10 @@ pub struct SceneMaterial {
     pub film_thickness_texture: Option<u32>,
     /// The film's thickness where that texture is 0, in nanometres.
     pub film_least_thickness: f32,
+    /// Of a linear texture: alpha times how much is let through.
+    pub transmission_texture: Option<u32>,
+    /// Of an sRGB texture times the colour of that.
+    pub transmission_color_texture: Option<u32>,
     /// Alpha below which a surface is not there; none for opaque materials.
     pub alpha_cutoff: Option<f32>,
     /// Seen from both sides. Other surfaces are seen from their front only.

@@ -108,6 +108,7 @@ fn textures(material: &json::Material) -> Vec<(String, UvMapping)> {
         "KHR_materials_sheen",
         "KHR_materials_anisotropy",
         "KHR_materials_iridescence",
+        "KHR_materials_diffuse_transmission",
     ] {
         let said =
             material.extensions.as_ref().and_then(|e| e.others.get(extension)).and_then(Value::as_object);

@@ -168,7 +168,10 @@ fn structures_of_scenes_have_the_same_offsets() {
                 film_thickness,
                 film_texture,
                 film_thickness_texture,
-                reserved as "reserved0"
+                transmission_texture,
+                transmission_color_texture,
+                transmission_color,
+                transmission
             ),
         ),
         (

@@ -76,7 +76,7 @@ pub struct Viewer<'a> {
     buffers: SceneBuffers,
     renderer: SceneRenderer<'a>,
     yardstick: Option<SceneRenderer<'a>>,
-    shadowed: Option<(usize, ShadowedView)>,
+    shadowed: Option<(usize, Vec<ShadowedView>)>,
     size: [u32; 2],
     /// Of the renderers' cameras.
     looks: Option<Orbit>,
@@ -279,13 +279,20 @@ impl<'a> Viewer<'a> {
     fn shade_with_shadows(&mut self, level: usize) -> Result<Option<Duration>, EngineError> {
         let Shadows::Rays(shadow_rays, filter) = Shadows::default() else { return self.shade(level) };
         if self.shadowed.as_ref().is_none_or(|(of, _)| *of != level) {
-            let (surfaces, quality) = (self.surfaces(), quality(level));
-            let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
-            let view = self.renderer.shadowed(&self.buffers, options, (filter, ShadowHistory::Off))?;
-            self.shadowed = Some((level, view));
+            let options = ShadeOptions { quality: quality(level), shadow_rays, ..ShadeOptions::default() };
+            let view = |surfaces| {
+                let options = ShadeOptions { surfaces, ..options };
+                self.renderer.shadowed(&self.buffers, options, (filter, ShadowHistory::Off))
+            };
+            let views = self.surfaces().passes().map(view).collect::<Result<_, _>>()?;
+            self.shadowed = Some((level, views));
         }
-        let Some((_, view)) = &self.shadowed else { return Ok(None) };
-        self.renderer.shade_shadowed(view, 0)
+        let mut total = Some(Duration::ZERO);
+        for view in self.shadowed.iter().flat_map(|(_, views)| views) {
+            let took = self.renderer.shade_shadowed(view, 0)?;
+            total = total.zip(took).map(|(total, took)| total + took);
+        }
+        Ok(total)
     }
 
     fn draw_theirs(&mut self, seen: &Seen) -> Result<(), EngineError> {

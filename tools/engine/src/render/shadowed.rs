@@ -2,10 +2,10 @@
 
 use crate::host::{Buffer, DescriptorPool, Image, ImageDescription, Usage};
 use crate::{Engine, EngineError, Kept, SceneRenderer};
-use arealight::Blockers;
 use arealight::gpu::ShadeConstants;
 use arealight::kernels::Kernel;
 use arealight::plan::{self, Output, ShadeOptions, ShadowFilter, ShadowHistory};
+use arealight::{Blockers, Effects};
 use arealight_scene::{BufferError, SceneBuffers};
 use arealight_tool_kernels::gpu::GpuTriangle;
 use arealight_vk::{
@@ -147,7 +147,7 @@ impl SceneRenderer<'_> {
             shade: Kept::new(host, shade),
             shadow: Kept::new(host, shadow),
         };
-        let resources = self.shadowed_resources(&view);
+        let resources = self.shadowed_resources(&view, options.surfaces);
         // doc: sets
         // SAFETY: The sets are new, and the resources live until submissions were waited for.
         unsafe {
@@ -181,11 +181,11 @@ impl SceneRenderer<'_> {
         ShadeFrame { seed, position_from_clip, ..self.shade_frame() }
     }
 
-    fn shadowed_resources(&self, view: &ShadowedView) -> ShadeResources {
+    fn shadowed_resources(&self, view: &ShadowedView, surfaces: Effects) -> ShadeResources {
         ShadeResources {
             radiance: Resource::StorageImage { view: view.unshadowed.view() },
             picks: Some(Resource::buffer(view.picks.handle())),
-            ..self.shade_resources()
+            ..self.shade_resources(surfaces)
         }
     }
 

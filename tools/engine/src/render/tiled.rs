@@ -5,7 +5,7 @@ use crate::host::{Buffer, DescriptorPool, Location, Usage};
 use crate::kept::Kept;
 use crate::{Engine, EngineError};
 use arealight::plan::{ShadeOptions, TileOptions};
-use arealight::{TileClass, tiles};
+use arealight::{Effects, TileClass, tiles};
 use arealight_vk::{Resource, ShadeFrame, ShadePass, ShadeResources, TileMemory};
 use ash::vk;
 use std::cell::RefCell;
@@ -21,6 +21,7 @@ pub struct TiledView {
     tile_lists: Buffer,
     _pool: DescriptorPool,
     tiles: TileOptions,
+    surfaces: Effects,
     size: [u32; 2],
     /// The tiles of each class that the parts of the last run found, but for the last part.
     found_before: RefCell<[Vec<u32>; TileClass::ALL.len()]>,
@@ -162,7 +163,18 @@ impl SceneRenderer<'_> {
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
         let (size, found_before) = (self.size, RefCell::default());
-        let view = TiledView { pass, set, lobe_horizons, tile_lists, _pool: pool, tiles, size, found_before };
+        let surfaces = options.surfaces;
+        let view = TiledView {
+            pass,
+            set,
+            lobe_horizons,
+            tile_lists,
+            _pool: pool,
+            tiles,
+            surfaces,
+            size,
+            found_before,
+        };
         let (resources, frame) = self.tiled_run(&view);
         // SAFETY: The set is new, and the resources live until submissions were waited for.
         unsafe { view.pass.write_set(view.set, &resources) }?;
@@ -203,7 +215,7 @@ impl SceneRenderer<'_> {
     pub fn tiled_run(&self, view: &TiledView) -> (ShadeResources, ShadeFrame) {
         let buffer = |buffer: &Buffer| Some(Resource::buffer(buffer.handle()));
         let (lobe_horizons, tile_lists) = (buffer(&view.lobe_horizons), buffer(&view.tile_lists));
-        let resources = ShadeResources { lobe_horizons, tile_lists, ..self.shade_resources() };
+        let resources = ShadeResources { lobe_horizons, tile_lists, ..self.shade_resources(view.surfaces) };
         (resources, ShadeFrame { tile_lists, ..self.shade_frame() })
     }
 }

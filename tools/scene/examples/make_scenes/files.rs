@@ -3,12 +3,12 @@
 use crate::hundred_lamps::Surface;
 use crate::shadows::Floor;
 use crate::{
-    clock, coats, demo, hundred_lamps, interior, lamps, material_balls, neon, product, room, screen, shadows,
-    sheen, shop, studio, sweep,
+    clock, coats, demo, hundred_lamps, interior, lamps, material_balls, neon, paper, product, room, screen,
+    shadows, sheen, shop, studio, sweep,
 };
 
 /// Each file's name and bytes.
-pub fn files() -> [(&'static str, Vec<u8>); 18] {
+pub fn files() -> [(&'static str, Vec<u8>); 19] {
     [
         ("sweep.glb", sweep::glb()),
         ("room.glb", room::glb()),
@@ -28,5 +28,6 @@ pub fn files() -> [(&'static str, Vec<u8>); 18] {
         ("neon.glb", neon::glb()),
         ("shop.glb", shop::glb()),
         ("product.glb", product::glb()),
+        ("paper.glb", paper::glb()),
     ]
 }

@@ -9,6 +9,7 @@ mod interior;
 mod lamps;
 mod material_balls;
 mod neon;
+mod paper;
 mod product;
 mod room;
 mod screen;

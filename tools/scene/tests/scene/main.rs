@@ -36,6 +36,8 @@ mod lamps;
 mod material_balls;
 #[path = "../../examples/make_scenes/neon.rs"]
 mod neon;
+#[path = "../../examples/make_scenes/paper.rs"]
+mod paper;
 #[path = "../../examples/make_scenes/product.rs"]
 mod product;
 #[path = "../../examples/make_scenes/room.rs"]

@@ -413,3 +413,50 @@ fn what_is_wrong_with_anisotropy_is_named() {
     let scene = load(textured(with_anisotropy(&json!({ "anisotropyStrength": 2.0 }))));
     assert_eq!(warnings(&scene), ["material '#0': anisotropyStrength [2.0] is not in [0, 1]: clamped"]);
 }
+
+fn with_transmission(values: &Value) -> Value {
+    json!({ "pbrMetallicRoughness": { "metallicFactor": 0 },
+            "extensions": { "KHR_materials_diffuse_transmission": values } })
+}
+
+#[test]
+fn diffuse_transmission_is_read_with_both_textures() {
+    let scene = load(textured(with_transmission(&json!({
+        "diffuseTransmissionFactor": 0.75, "diffuseTransmissionColorFactor": [0.25, 0.5, 1.0],
+        "diffuseTransmissionTexture": { "index": 0 }, "diffuseTransmissionColorTexture": { "index": 0 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    assert_eq!(read.material.transmission, 0.75);
+    assert_eq!(read.material.transmission_color.to_array(), [0.25, 0.5, 1.0]);
+    assert!(scene.effects().contains(Effects::TRANSMISSION));
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!((gpu.transmission, gpu.transmission_color), (0.75, [0.25, 0.5, 1.0]));
+    let textures = [gpu.transmission_texture, gpu.transmission_color_texture];
+    assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [false, true]);
+    // Half of the diffuse light of the front is what is left
+    let surface = read.material.surface();
+    assert_eq!(
+        (surface.diffuse_albedo, read.material.other_side().diffuse_albedo.x),
+        (DVec3::splat(0.25), 0.75 * 0.25)
+    );
+    // None without the extension, nor of its textures where the factor is zero, which is the default; nor of a metal
+    for without in [json!({}), with_transmission(&json!({ "diffuseTransmissionTexture": { "index": 0 } }))] {
+        let scene = load(textured(without));
+        assert_eq!((scene.materials[0].transmission_texture, scene.textures.len()), (None, 0));
+        assert!(!scene.effects().contains(Effects::TRANSMISSION));
+    }
+    let mut metal = with_transmission(&json!({ "diffuseTransmissionFactor": 1 }));
+    metal["pbrMetallicRoughness"]["metallicFactor"] = json!(1);
+    assert!(!load(panel_with(metal)).effects().contains(Effects::TRANSMISSION));
+}
+
+#[test]
+fn what_is_wrong_with_diffuse_transmission_is_named() {
+    let text = error(textured(with_transmission(&json!({ "diffuseTransmissionFactor": "much" }))));
+    assert!(text.contains("material '#0': KHR_materials_diffuse_transmission"), "{text}");
+    let scene = load(textured(with_transmission(&json!({ "diffuseTransmissionFactor": 2.0 }))));
+    assert_eq!(
+        warnings(&scene),
+        ["material '#0': diffuseTransmissionFactor [2.0] is not in [0, 1]: clamped"]
+    );
+}

@@ -127,11 +127,18 @@ fn shade(
             shade_with_shadows(renderer, scene, (surfaces, quality), (shadows, index))?
         }
         (None, Some(cull_threshold)) => {
-            let options = ShadeOptions { surfaces, quality, output: Output::Add, ..ShadeOptions::default() };
-            let view = renderer.tiled(options, TileOptions { cull_threshold, ..TileOptions::default() })?;
-            let took = renderer.shade_tiled(&view)?;
+            let options = ShadeOptions { quality, output: Output::Add, ..ShadeOptions::default() };
+            let tiles = TileOptions { cull_threshold, ..TileOptions::default() };
+            // Of light that is reflected; what is let through is a pass of its own
+            let mut counts = None;
+            let took = renderer.each_pass(surfaces, |renderer, surfaces| {
+                let view = renderer.tiled(ShadeOptions { surfaces, ..options }, tiles)?;
+                let took = renderer.shade_tiled(&view)?;
+                counts.get_or_insert(view.counts(light_count)?);
+                Ok(took)
+            })?;
             bar.inc(1);
-            return Ok((took, Some(view.counts(light_count)?)));
+            return Ok((took, counts));
         }
         (Some(samples), _) => {
             let samples = arguments.samples_a_subpixel(samples);
@@ -157,7 +164,10 @@ fn shade_with_shadows(
     (shadows, seed): (Shadows, u32),
 ) -> Result<Option<Duration>, EngineError> {
     let Shadows::Rays(shadow_rays, filter) = shadows else { return renderer.shade(surfaces, quality) };
-    let options = ShadeOptions { surfaces, quality, shadow_rays, ..ShadeOptions::default() };
-    let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
-    renderer.shade_shadowed(&view, seed)
+    let options = ShadeOptions { quality, shadow_rays, ..ShadeOptions::default() };
+    renderer.each_pass(surfaces, |renderer, surfaces| {
+        let options = ShadeOptions { surfaces, ..options };
+        let view = renderer.shadowed(scene, options, (filter, ShadowHistory::Off))?;
+        renderer.shade_shadowed(&view, seed)
+    })
 }
