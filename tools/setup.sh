@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing on this machine, and says what and why:
 #
-#   tools/setup.sh run     what the command line needs: a linker, the Vulkan loader, a Vulkan driver
+#   tools/setup.sh run     what the command line needs: compilers, the Vulkan loader, a Vulkan driver
 #   tools/setup.sh window  that, and what windows need: X11's libraries; and what the tests of windows do: validation layers, a screen
 #                          that needs no monitor
 #   tools/setup.sh test    that, and what the other tests need: shader compilers, a browser
@@ -63,6 +63,7 @@ need() { # package, reason, check and its arguments
     fi
 }
 need gcc "links Rust programs" has_program cc
+need g++ "compiles the library that reads compressed meshes" has_program c++
 need libc6-dev "the C library, for linking" has_c_library
 need libvulkan1 "the Vulkan loader" has_shared_library libvulkan.so.1
 need mesa-vulkan-drivers "a Vulkan driver; it computes on the CPU where there is no GPU" has_driver
@@ -78,7 +79,6 @@ if [[ "$mode" == window || "$mode" == test ]]; then
 fi
 if [[ "$mode" == test ]]; then
     has_driver && need mesa-vulkan-drivers "the compiler whose statistics are held against those checked in" has_radv
-    need g++ "the C++ library, for the shader compiler" has_program c++
     need libshaderc-dev "the shader compiler" has_library libshaderc_combined.a
     need glslang-dev "a part of it" has_library libMachineIndependent.a
     need spirv-tools "another part of it, and the SPIR-V validator" has_spirv_tools

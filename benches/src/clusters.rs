@@ -103,7 +103,7 @@ impl Grid {
     fn cells(self, camera: &Camera, [near, far]: [f64; 2]) -> impl Iterator<Item = [DVec3; 2]> + '_ {
         let [columns, rows, slices] = self.counts;
         let [width, height] = self.size.map(f64::from);
-        let tan = [camera.tan_half_height * width / height, camera.tan_half_height];
+        let tan = [camera.half_height * width / height, camera.half_height];
         // Pixels belong to a cell by their corner, and are seen through their middle
         let side = move |index: u32, count: u32, pixels: f64| {
             let [from, to] = [index, index + 1].map(|edge| f64::from(edge) / f64::from(count));
@@ -146,8 +146,8 @@ mod tests {
         for pixel in (0..40).flat_map(|y| (0..64).map(move |x| [x, y])) {
             // Where its ray meets the floor
             let at = [0, 1].map(|axis: usize| (f64::from(pixel[axis]) + 0.5) / f64::from(grid.size[axis]));
-            let direction = camera.direction([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], 1.6);
-            let position = camera.position - direction * (camera.position.y / direction.y);
+            let [start, direction] = camera.ray([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], 1.6);
+            let position = start - direction * (start.y / direction.y);
             if direction.y >= 0.0 || position.abs().max_element() > 20.0 {
                 continue;
             }

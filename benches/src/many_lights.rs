@@ -317,9 +317,9 @@ impl<'a> Frame<'a> {
         let [width, height] = self.options.size.map(f64::from);
         let count = |pixel: [u32; 2]| {
             let at = [(f64::from(pixel[0]) + 0.5) / width, (f64::from(pixel[1]) + 0.5) / height];
-            let direction = self.camera.direction([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], width / height);
+            let [start, direction] = self.camera.ray([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], width / height);
             // The floor is where y is 0
-            let position = self.camera.position - direction * (self.camera.position.y / direction.y);
+            let position = start - direction * (start.y / direction.y);
             clusters.at(&self.camera, pixel, position).len() as f64
         };
         mean(self.pixels().map(count))

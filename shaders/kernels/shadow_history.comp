@@ -75,7 +75,7 @@ bool load_before(Before before, ivec2 pixel, ivec2 size, out HistoryPixel tap) {
 bool find_before(ivec2 pixel, ivec2 size, vec3 position, vec3 normal, out Before before) {
     before.position = position + history_head(16u, 0u).xyz;
     before.normal = normal;
-    before.tolerance = SAME_PLANE * distance(constants.camera, position);
+    before.tolerance = SAME_PLANE * camera_distance(position);
     return place_before(pixel, size, before.position, before.place);
 }
 

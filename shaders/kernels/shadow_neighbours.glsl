@@ -9,7 +9,7 @@ const float NORMAL_POWER = 32.0;
 
 // What likeness takes an offset out of the plane times, for a surface at a position.
 float plane_scale(vec3 position) {
-    return 1.0 / (PLANE_PART * distance(constants.camera, position));
+    return 1.0 / (PLANE_PART * camera_distance(position));
 }
 
 // How much a neighbour at an offset, with its normal, counts as of the surface of this normal and plane_scale.

@@ -126,7 +126,7 @@ vec4 pixel_shadow(ivec2 pixel, ivec2 size) {
     if (!load_position(pixel, size, position) || shadow_picks[first] == NO_PICK) {
         return vec4(0.0);
     }
-    ArealightSurface surface = load_surface(pixel, position, constants.camera);
+    ArealightSurface surface = load_seen_surface(pixel, position);
     if (IS_TRANSMITTED) {
         surface = arealight_other_side(surface);
     }

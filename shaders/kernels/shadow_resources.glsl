@@ -12,6 +12,7 @@ layout(constant_id = 5) const int SPECULAR_LOBES = 0;
 layout(constant_id = 6) const int LOBES = 0;
 layout(constant_id = 13) const int LAYOUT = 0;
 layout(constant_id = 15) const int SHADOW_RAYS = 1;
+layout(constant_id = 19) const uint VIEW = 0u;
 
 #define LIGHTS_BINDING 1
 #define G_BUFFER_BINDING 3
@@ -42,6 +43,12 @@ layout(push_constant, std430) uniform ShadowConstants {
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "g_buffer.glsl"
 #include "position.glsl"
+#include "camera.glsl"
+
+// How far the camera is from a position: an orthographic one as far as the direction to it is long.
+float camera_distance(vec3 position) {
+    return IS_ORTHOGRAPHIC ? length(constants.camera) : distance(constants.camera, position);
+}
 
 // Of a pixel with light: what arrives of it in r, from 0 to 1; the penumbra's width in g, in the unit of positions, times the part that is
 // hidden; 1 in b; and in a of how many rays these are means. Else zero.

@@ -4,12 +4,10 @@
 // Where a pixel of the frame is in the host's images, and from where it is seen. The including kernel has the specialisation constant VIEW,
 // position.glsl, g_buffer.glsl and shade_constants.glsl; it defines STENCIL_BINDING where frames may have a stencil. The bits are those of
 // arealight::plan::ShadeOptions::view_bits.
-const uint VIEW_ORTHOGRAPHIC = 1u;
+#include "camera.glsl"
 const uint VIEW_RECTANGLE = 2u;
 const uint VIEW_STENCIL = 4u;
 const int VIEW_TEXELS_SHIFT = 8; // from here on: texels of the G-buffer to a pixel's side, less one
-
-const bool IS_ORTHOGRAPHIC = (VIEW & VIEW_ORTHOGRAPHIC) != 0u;
 
 // Where a pixel's radiance goes.
 ivec2 radiance_texel(ivec2 pixel) {
@@ -35,15 +33,6 @@ bool passes_stencil(ivec2 texel) {
     }
 #endif
     return true;
-}
-
-// The surface of a texel of the G-buffer.
-ArealightSurface load_seen_surface(ivec2 texel, vec3 position) {
-    ArealightSurface surface = load_surface(texel, position, constants.camera);
-    if (IS_ORTHOGRAPHIC) {
-        surface.view = constants.camera;
-    }
-    return surface;
 }
 
 #endif

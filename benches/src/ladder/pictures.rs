@@ -168,8 +168,8 @@ fn render(
     renderer.visibility()?;
     let emitted: Vec<DVec3> =
         renderer.radiance()?.into_iter().map(|texel| texel.truncate().as_dvec3()).collect();
-    let origin = Vec3::from(constants.camera);
-    let frame = Frame::new(engine, renderer.g_buffer(), &scene.lights, buffers.origin, origin)?;
+    let seen_from = constants.position();
+    let frame = Frame::new(engine, renderer.g_buffer(), &scene.lights, buffers.origin, seen_from)?;
 
     // Two independent halves, whose difference is the reference's noise
     let ready = frame.ready(Method::Samples { count: view.samples.div_ceil(2) })?;

@@ -189,7 +189,7 @@ fn orbit(camera: Camera, angle: f64) -> Camera {
 /// The pixel, in rows from the top, at which a camera sees a world position; none outside of its picture.
 fn pixel_of(camera: &Camera, [width, height]: [u32; 2], position: DVec3) -> Option<usize> {
     let offset = position - camera.position;
-    let depth = offset.dot(camera.forward) * camera.tan_half_height;
+    let depth = offset.dot(camera.forward) * camera.half_height;
     let aspect = f64::from(width) / f64::from(height.max(1));
     let x = (0.5 + 0.5 * offset.dot(camera.right) / (depth * aspect)) * f64::from(width);
     let y = (0.5 - 0.5 * offset.dot(camera.up) / depth) * f64::from(height);
@@ -210,13 +210,11 @@ mod tests {
             for (x, y, pixel) in
                 [(-0.99, 0.99, 0), (0.99, 0.99, 29), (-0.99, -0.99, 19 * 30), (0.01, -0.01, 10 * 30 + 15)]
             {
-                let point = camera.position + 3.0 * camera.direction([x, y], 1.5);
+                let [start, direction] = camera.ray([x, y], 1.5);
+                let point = start + 3.0 * direction;
                 assert_eq!(pixel_of(&camera, [30, 20], point), Some(pixel));
             }
-            assert_eq!(
-                pixel_of(&camera, [30, 20], camera.position + camera.direction([1.01, 0.0], 1.5)),
-                None
-            );
+            assert_eq!(pixel_of(&camera, [30, 20], camera.position + camera.ray([1.01, 0.0], 1.5)[1]), None);
             assert_eq!(pixel_of(&camera, [30, 20], camera.position - camera.forward), None);
         }
     }

@@ -456,7 +456,7 @@ typedef struct ArealightPassOptions {
     uint32_t tile_least_quads;
     // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
     uint32_t shadow_rays;
-    // One of AREALIGHT_CAMERA_*. Shadow rays are of perspective cameras.
+    // One of AREALIGHT_CAMERA_*.
     uint32_t camera;
     // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
     uint32_t rectangle;
@@ -592,7 +592,8 @@ typedef struct ArealightFrame {
     uint32_t width;
     // Likewise.
     uint32_t height;
-    // The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it.
+    // The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays
+    // its length is that at which a perspective camera would stand that sees as much.
     float camera[3];
     // ArealightPackedLights.summary of the lights in the set's buffers.
     struct ArealightLightSummary lights;

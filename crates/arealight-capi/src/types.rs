@@ -118,7 +118,7 @@ pub struct ArealightPassOptions {
     pub tile_least_quads: u32,
     /// How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
     pub shadow_rays: u32,
-    /// One of AREALIGHT_CAMERA_*. Shadow rays are of perspective cameras.
+    /// One of AREALIGHT_CAMERA_*.
     pub camera: u32,
     /// 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
     pub rectangle: u32,
@@ -350,7 +350,8 @@ pub struct ArealightFrame {
     pub width: u32,
     /// Likewise.
     pub height: u32,
-    /// The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it.
+    /// The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays
+    /// its length is that at which a perspective camera would stand that sees as much.
     pub camera: [f32; 3],
     /// ArealightPackedLights.summary of the lights in the set's buffers.
     pub lights: ArealightLightSummary,

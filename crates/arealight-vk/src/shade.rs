@@ -36,7 +36,8 @@ pub struct ShadeFrame {
     /// Only positions from depth, and a shadow's history, depend on it.
     pub viewport: Option<Viewport>,
     /// The camera's position relative to the origin that lights and positions are packed with; with [`ShadeOptions::orthographic`] the
-    /// direction to it, of any length but zero.
+    /// direction to it, of any length but zero. With shadow rays the length is that at which a perspective camera would stand that sees as much: what
+    /// counts as one plane depends on it.
     pub camera: Vec3,
     /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix that drew the depth, jitter
     /// included. Needed with [`ShadeOptions::from_depth`], else ignored.

@@ -135,7 +135,6 @@ pub(crate) fn check_view(options: ShadeOptions) -> Result<(), Error> {
         return Ok(());
     }
     for (is_set, field) in [
-        (options.orthographic, "orthographic"),
         (options.rectangle, "rectangle"),
         (options.texels_per_pixel != 1, "texels_per_pixel"),
         (options.samples != 1, "samples"),
@@ -144,8 +143,7 @@ pub(crate) fn check_view(options: ShadeOptions) -> Result<(), Error> {
         if is_set {
             return wrong(
                 field,
-                "is set, but shadow rays are of whole frames of a perspective camera with one sample a pixel"
-                    .into(),
+                "is set, but shadow rays are of whole frames with one sample a pixel".into(),
             );
         }
     }

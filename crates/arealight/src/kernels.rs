@@ -353,6 +353,7 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         constant::LOBES,
         constant::LAYOUT,
         constant::SHADOW_RAYS,
+        constant::VIEW,
     ],
 };
 
@@ -392,6 +393,7 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
         constant::LAYOUT,
         constant::SHADOW_RAYS,
         constant::SHADOW_MOTION,
+        constant::VIEW,
     ],
 };
 
@@ -434,6 +436,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         constant::SHADOW_RAYS,
         constant::SHADOW_FILTER,
         constant::SHADOW_HISTORY,
+        constant::VIEW,
     ],
 };
 

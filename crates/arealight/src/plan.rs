@@ -73,7 +73,7 @@ pub struct ShadeOptions {
     /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a light and a lobe for each. With 0
     /// there are no shadows, and the pipeline has nothing of them.
     pub shadow_rays: u32,
-    /// Whether the camera is orthographic: `ShadeFrame::camera` is the direction to it then. Without shadow rays.
+    /// Whether the camera is orthographic: `ShadeFrame::camera` is the direction to it then.
     pub orthographic: bool,
     /// Whether frames are rectangles of larger images, each from `ShadeFrame::offset` on: views side by side, an atlas. Without shadow rays.
     pub rectangle: bool,
@@ -275,6 +275,7 @@ fn shadow_specialization(options: ShadeOptions, effects: Effects) -> Vec<(u32, u
         (kernels::constant::LOBES, options.quality.lobes as u32),
         (kernels::constant::LAYOUT, options.g_buffer as u32),
         (kernels::constant::SHADOW_RAYS, options.shadow_rays),
+        (kernels::constant::VIEW, options.view_bits()),
     ]
 }
 

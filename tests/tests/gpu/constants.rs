@@ -45,6 +45,7 @@ const G_BUFFER_GLSL: &str = include_str!("../../../shaders/kernels/g_buffer.glsl
 const OUTPUT_TEXEL_GLSL: &str = include_str!("../../../shaders/kernels/output_texel.glsl");
 const SHADOW_HISTORY_GLSL: &str = include_str!("../../../shaders/kernels/shadow_history.glsl");
 const SHADOW_PICKS_GLSL: &str = include_str!("../../../shaders/kernels/shadow_picks.glsl");
+const CAMERA_GLSL: &str = include_str!("../../../shaders/kernels/camera.glsl");
 const VIEW_GLSL: &str = include_str!("../../../shaders/kernels/view.glsl");
 const POSITION_GLSL: &str = include_str!("../../../shaders/kernels/position.glsl");
 const TILES_GLSL: &str = include_str!("../../../shaders/kernels/tiles.glsl");
@@ -181,8 +182,9 @@ fn choices_have_the_same_numbers_in_glsl() {
     ];
     assert_constants(OUTPUT_TEXEL_GLSL, "OUTPUT_", &output);
     let plain = ShadeOptions::default();
+    let camera = [("ORTHOGRAPHIC", number(ShadeOptions { orthographic: true, ..plain }.view_bits()))];
+    assert_constants(CAMERA_GLSL, "VIEW_", &camera);
     let view = [
-        ("ORTHOGRAPHIC", number(ShadeOptions { orthographic: true, ..plain }.view_bits())),
         ("RECTANGLE", number(ShadeOptions { rectangle: true, ..plain }.view_bits())),
         ("STENCIL", number(ShadeOptions { stencil: true, ..plain }.view_bits())),
         ("TEXELS_SHIFT", f64::from(ShadeOptions { texels_per_pixel: 2, ..plain }.view_bits().ilog2())),

@@ -104,8 +104,8 @@ fn visibility_finds_what_a_float64_walk_finds() {
                 (f64::from(x) + 0.5) / f64::from(SIZE[0]) * 2.0 - 1.0,
                 1.0 - (f64::from(y) + 0.5) / f64::from(SIZE[1]) * 2.0,
             ];
-            let direction = view.camera.direction(plane, aspect);
-            let hit = view.buffers.closest_hit(view.camera.position, direction);
+            let [start, direction] = view.camera.ray(plane, aspect);
+            let hit = view.buffers.closest_hit(start, direction);
             let expected = hit.map(|hit| direction * hit.distance);
             let same = match expected {
                 None => found.w == 0.0,
@@ -315,8 +315,8 @@ fn vertex_colours_multiply_the_base_colour_and_alpha() {
     for (index, (plain, colored)) in plain.iter().zip(&colored).enumerate() {
         let (x, y) = (index as u32 % SIZE[0], index as u32 / SIZE[0]);
         let at = |side: u32, of: u32| (f64::from(side) + 0.5) / f64::from(of) * 2.0 - 1.0;
-        let direction = view.camera.direction([at(x, SIZE[0]), -at(y, SIZE[1])], aspect);
-        let Some(hit) = view.buffers.closest_hit(view.camera.position, direction) else { continue };
+        let [start, direction] = view.camera.ray([at(x, SIZE[0]), -at(y, SIZE[1])], aspect);
+        let Some(hit) = view.buffers.closest_hit(start, direction) else { continue };
         let [second, third] = hit.barycentric;
         let weights = [1.0 - second - third, second, third];
         for channel in 0..3 {

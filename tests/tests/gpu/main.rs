@@ -33,6 +33,7 @@ mod many_lights;
 mod material_frames;
 mod meshes;
 mod modules;
+mod orthographic;
 mod output;
 mod parts;
 mod paths;

@@ -95,7 +95,7 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
 fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
     let camera = VisibilityConstants {
         camera: [0.0; 3],
-        reserved0: 0,
+        orthographic: 0,
         right: [1.0, 0.0, 0.0],
         reserved1: 0,
         up: [0.0, 1.0, 0.0],

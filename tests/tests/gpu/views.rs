@@ -304,7 +304,6 @@ fn views_that_cannot_be_are_refused_by_field() {
         assert_eq!(field(&pass(ShadeOptions { texels_per_pixel, ..plain }).unwrap_err()), "texels_per_pixel");
     }
     let rays = ShadeOptions { shadow_rays: 1, ..plain };
-    assert_eq!(field(&pass(ShadeOptions { orthographic: true, ..rays }).unwrap_err()), "orthographic");
     assert_eq!(field(&pass(ShadeOptions { rectangle: true, ..rays }).unwrap_err()), "rectangle");
     assert_eq!(field(&pass(ShadeOptions { texels_per_pixel: 2, ..rays }).unwrap_err()), "texels_per_pixel");
 

@@ -15,7 +15,7 @@ use arealight_tool_kernels::gpu::{ReferenceConstants, VisibilityConstants};
 use arealight_tool_kernels::kernels::{COUPLED, REFERENCE, SHADOWS, VISIBILITY};
 use arealight_vk::{Resource, ShadeFrame, ShadeResources};
 use ash::vk;
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec4};
 use std::time::Duration;
 
 /// What the Monte Carlo reference does: [`SceneRenderer::reference`].
@@ -160,7 +160,7 @@ impl<'a> SceneRenderer<'a> {
     /// As [`SceneRenderer::shade`].
     pub fn shade_as(&mut self, options: ShadeOptions) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
-        let pass = self.engine.shade_pass(options)?;
+        let pass = self.engine.shade_pass(self.seen(options))?;
         let pool: DescriptorPool = self.engine.host().descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.
         let set = unsafe { pool.allocate(pass.set_layout()) }?;
@@ -304,7 +304,7 @@ impl<'a> SceneRenderer<'a> {
         Reference { samples, seed, .. }: Reference,
     ) -> Result<Option<Duration>, EngineError> {
         let constants = ReferenceConstants {
-            camera: self.camera.camera,
+            camera: self.camera.position().to_array(),
             light_count: self.lights.light_count,
             first_sample,
             sample_count,
@@ -405,7 +405,7 @@ impl<'a> SceneRenderer<'a> {
     fn shade_constants(&self) -> ShadeConstants {
         ShadeConstants {
             position_from_clip: glam::Mat4::IDENTITY.to_cols_array_2d(),
-            camera: self.camera.camera,
+            camera: self.camera.position().to_array(),
             light_count: self.lights.light_count,
             shape_count: self.lights.shape_count,
             quad_count: self.lights.quad_count,
@@ -414,10 +414,15 @@ impl<'a> SceneRenderer<'a> {
         }
     }
 
+    /// Options of a pass that shades what this camera sees.
+    fn seen(&self, options: ShadeOptions) -> ShadeOptions {
+        ShadeOptions { orthographic: self.camera.orthographic != 0, ..options }
+    }
+
     fn shade_frame(&self) -> ShadeFrame {
         ShadeFrame {
             size: self.size,
-            camera: Vec3::from(self.camera.camera),
+            camera: self.camera.seen_from(),
             lights: self.lights,
             ..ShadeFrame::default()
         }

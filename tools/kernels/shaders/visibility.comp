@@ -21,7 +21,7 @@ layout(set = 0, binding = 14, rgba16f) uniform writeonly image2D out_transmitted
 
 layout(push_constant, std430) uniform VisibilityConstants {
     vec3 camera;
-    uint reserved0;
+    uint orthographic; // 1: lines of sight are parallel
     vec3 right;
     uint reserved1;
     vec3 up;
@@ -70,9 +70,10 @@ void main() {
     }
     // Send a ray through the pixel's centre
     vec2 plane = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
-    vec3 direction = arealight_normalize_or(
-        constants.forward + plane.x * constants.right - plane.y * constants.up, vec3(0.0, 0.0, -1.0));
-    BvhHit hit = bvh_trace(constants.camera, direction, 3e38, false);
+    vec3 across = plane.x * constants.right - plane.y * constants.up;
+    bool parallel = constants.orthographic != 0u;
+    vec3 direction = arealight_normalize_or(parallel ? constants.forward : constants.forward + across, vec3(0.0, 0.0, -1.0));
+    BvhHit hit = bvh_trace(parallel ? constants.camera + across : constants.camera, direction, 3e38, false);
 
     if (hit.triangle == BVH_NO_TRIANGLE) {
         imageStore(out_position, pixel, vec4(0.0));

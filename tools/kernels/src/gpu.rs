@@ -245,18 +245,39 @@ pub struct GpuMaterial {
     pub transmission: f32,
 }
 
+/// How far an orthographic camera's position is, in lengths of the direction to it: directions to it differ by this part of a radian.
+const FAR_AWAY: f32 = 1e5;
+
 impl VisibilityConstants {
-    /// From clip space to positions, of a pinhole camera of this view whose depth is that of a far plane at infinity.
+    /// From clip space to positions. The depth is that of a far plane at infinity; of an orthographic camera, it grows with the distance.
     pub fn position_from_clip(&self) -> Mat4 {
-        let row = |axis: [f32; 3]| {
-            let axis = Vec3::from_array(axis);
-            axis / axis.length_squared()
-        };
-        let (right, down, forward) = (row(self.right), -row(self.up), row(self.forward));
+        let [camera, right, up, forward] =
+            [self.camera, self.right, self.up, self.forward].map(Vec3::from_array);
+        if self.orthographic != 0 {
+            return Mat4::from_cols(
+                right.extend(0.0),
+                -up.extend(0.0),
+                forward.extend(0.0),
+                camera.extend(1.0),
+            );
+        }
+        let row = |axis: Vec3| axis / axis.length_squared();
+        let (right, down, forward) = (row(right), -row(up), row(forward));
         // The depth is 1 over the distance along the axis
         let rows = [right.extend(0.0), down.extend(0.0), Vec4::W, forward.extend(0.0)];
         let clip_from_view = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
-        (clip_from_view * Mat4::from_translation(-Vec3::from_array(self.camera))).inverse()
+        (clip_from_view * Mat4::from_translation(-camera)).inverse()
+    }
+
+    /// The camera as the shade kernel has it: its position, or the direction to an orthographic one.
+    pub fn seen_from(&self) -> Vec3 {
+        if self.orthographic == 0 { Vec3::from_array(self.camera) } else { -Vec3::from_array(self.forward) }
+    }
+
+    /// The camera's position, for kernels that know of no other cameras: an orthographic one is so far away that all directions to it are one.
+    pub fn position(&self) -> Vec3 {
+        Vec3::from_array(self.camera)
+            + if self.orthographic == 0 { Vec3::ZERO } else { FAR_AWAY * self.seen_from() }
     }
 }
 
@@ -297,23 +318,23 @@ impl GpuTexture {
     pub const MIRROR_V: u32 = 16;
 }
 
-/// Push constants of the visibility kernel: a pinhole camera.
+/// Push constants of the visibility kernel: a camera.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct VisibilityConstants {
     /// The camera's position relative to the origin.
     pub camera: [f32; 3],
-    /// Zero.
-    pub reserved0: u32,
-    /// From the middle of the image to its right edge, at distance 1 along `forward`.
+    /// 1: lines of sight are parallel; else 0.
+    pub orthographic: u32,
+    /// From the middle of the image to its right edge, at distance 1 along `forward`; of an orthographic camera at any distance.
     pub right: [f32; 3],
     /// Zero.
     pub reserved1: u32,
-    /// From the middle of the image to its top edge, at distance 1.
+    /// Likewise to its top edge.
     pub up: [f32; 3],
     /// Zero.
     pub reserved2: u32,
-    /// Unit viewing direction.
+    /// Unit viewing direction; of an orthographic camera as long as a perspective one that sees as much would be away.
     pub forward: [f32; 3],
     /// Zero.
     pub reserved3: u32,

@@ -1,10 +1,10 @@
-//! Pinhole cameras.
+//! Cameras: pinholes, and orthographic ones.
 
 use crate::Bounds;
 use arealight_tool_kernels::gpu::VisibilityConstants;
 use glam::{DVec3, Vec3};
 
-/// A pinhole camera in the world.
+/// A camera in the world.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     /// The node's name, else the camera's, else a number.
@@ -17,34 +17,36 @@ pub struct Camera {
     pub up: DVec3,
     /// Unit, to the right in the image: `forward × up`.
     pub right: DVec3,
-    /// Half the image's height at distance 1: tan(yfov / 2).
-    pub tan_half_height: f64,
+    /// Whether lines of sight are parallel; else all go through `position`.
+    pub orthographic: bool,
+    /// Half the image's height: at distance 1, tan(yfov / 2), or of an orthographic camera at any distance.
+    pub half_height: f64,
     /// Width over height that the camera is made for. An image of another shape keeps the vertical field of
     /// view.
     pub aspect: Option<f64>,
 }
 
 /// tan(yfov / 2) of [`Camera::framing`]: 35 degrees.
-const FRAMING_TAN_HALF_HEIGHT: f64 = 0.3153;
+const FRAMING_HALF_HEIGHT: f64 = 0.3153;
 
 /// How much farther away than needed a framing camera stands.
 const FRAMING_MARGIN: f64 = 1.05;
 
 impl Camera {
-    /// None if the field of view is not between 0 and pi. `forward` is unit and not along `up`.
-    pub(crate) fn perspective(
-        name: String,
-        position: DVec3,
-        forward: DVec3,
-        up: DVec3,
-        perspective: &gltf::json::camera::Perspective,
-    ) -> Option<Self> {
-        let tan_half_height = (f64::from(perspective.yfov) * 0.5).tan();
+    /// None if the field of view is not between 0 and pi.
+    pub(crate) fn perspective(self, perspective: &gltf::json::camera::Perspective) -> Option<Self> {
+        let half_height = (f64::from(perspective.yfov) * 0.5).tan();
         let in_range = perspective.yfov > 0.0 && f64::from(perspective.yfov) < std::f64::consts::PI;
         let aspect = perspective.aspect_ratio.map(f64::from);
         let aspect = aspect.filter(|aspect| aspect.is_finite() && *aspect > 0.0);
-        let looking = Self::looking(name, position, forward, up);
-        (in_range && tan_half_height.is_finite()).then_some(Self { tan_half_height, aspect, ..looking })
+        (in_range && half_height.is_finite()).then_some(Self { half_height, aspect, ..self })
+    }
+
+    /// None if the image has no width or no height.
+    pub(crate) fn orthographic(self, orthographic: &gltf::json::camera::Orthographic) -> Option<Self> {
+        let [width, half_height] = [orthographic.xmag, orthographic.ymag].map(f64::from);
+        let aspect = Some(width / half_height);
+        (width > 0.0 && half_height > 0.0).then_some(Self { orthographic: true, half_height, aspect, ..self })
     }
 
     /// A camera that looks along `forward` from where it just sees all of `bounds` in an image of `aspect`.
@@ -52,27 +54,27 @@ impl Camera {
         let forward = forward.normalize_or(DVec3::NEG_Z);
         let mut camera = Self::looking(name.to_owned(), bounds.center(), forward, up);
         camera.aspect = Some(aspect);
-        camera.tan_half_height = FRAMING_TAN_HALF_HEIGHT;
+        camera.half_height = FRAMING_HALF_HEIGHT;
         // Step back until every corner of the box is between the image's edges
-        let tan_half_width = camera.tan_half_height * aspect;
+        let tan_half_width = camera.half_height * aspect;
         let half = if bounds.is_empty() { DVec3::ONE } else { (bounds.max - bounds.min) * 0.5 };
         let mut distance = 0.0_f64;
         for corner in 0..8 {
             let sign = |bit: i32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
             let corner = half * DVec3::new(sign(0), sign(1), sign(2));
             let across = (corner.dot(camera.right).abs() / tan_half_width)
-                .max(corner.dot(camera.up).abs() / camera.tan_half_height);
+                .max(corner.dot(camera.up).abs() / camera.half_height);
             distance = distance.max(across - corner.dot(forward));
         }
         camera.position -= forward * (distance * FRAMING_MARGIN).max(1e-3);
         camera
     }
 
-    /// Right-angled axes; `up` need not be at a right angle to `forward`.
-    fn looking(name: String, position: DVec3, forward: DVec3, up: DVec3) -> Self {
+    /// A pinhole of a field of view of a right angle. `forward` is unit; `up` need not be at a right angle to it.
+    pub(crate) fn looking(name: String, position: DVec3, forward: DVec3, up: DVec3) -> Self {
         let right = forward.cross(up).normalize_or(forward.any_orthonormal_vector());
         let up = right.cross(forward);
-        Self { name, position, forward, up, right, tan_half_height: 1.0, aspect: None }
+        Self { name, position, forward, up, right, orthographic: false, half_height: 1.0, aspect: None }
     }
 
     /// Push constants of the visibility kernel for an image of `width` × `height` pixels, relative to
@@ -86,23 +88,43 @@ impl Camera {
         let aspect = f64::from(width.max(1)) / f64::from(height.max(1));
         VisibilityConstants {
             camera: (self.position - origin).as_vec3().to_array(),
-            reserved0: 0,
-            right: (self.right * (self.tan_half_height * aspect)).as_vec3().to_array(),
+            orthographic: self.orthographic.into(),
+            right: (self.right * (self.half_height * aspect)).as_vec3().to_array(),
             reserved1: 0,
-            up: (self.up * self.tan_half_height).as_vec3().to_array(),
+            up: (self.up * self.half_height).as_vec3().to_array(),
             reserved2: 0,
-            forward: self.forward.as_vec3().to_array(),
+            forward: (self.forward * self.distance()).as_vec3().to_array(),
             reserved3: 0,
             background: background.to_array(),
             reserved4: 0,
         }
     }
 
-    /// Unit direction of the ray through a point of the image: (-1, -1) is the lower left corner, (1, 1) the
+    /// How far away a pinhole camera with the field of view of [`Camera::framing`] is that sees as much as an orthographic one; of a
+    /// pinhole 1.
+    fn distance(&self) -> f64 {
+        if self.orthographic { self.half_height / FRAMING_HALF_HEIGHT } else { 1.0 }
+    }
+
+    /// A pinhole camera that sees as much at `point`, for what knows of no other.
+    #[must_use]
+    pub fn pinhole(self, point: DVec3) -> Self {
+        if !self.orthographic {
+            return self;
+        }
+        let ahead = (point - self.position).dot(self.forward) - self.distance();
+        let position = self.position + self.forward * ahead;
+        Self { position, orthographic: false, half_height: FRAMING_HALF_HEIGHT, ..self }
+    }
+
+    /// Where the ray through a point of the image starts, and its unit direction: (-1, -1) is the lower left corner, (1, 1) the
     /// upper right one, of an image of `aspect`.
-    pub fn direction(&self, [x, y]: [f64; 2], aspect: f64) -> DVec3 {
-        let across = self.right * (self.tan_half_height * aspect * x) + self.up * (self.tan_half_height * y);
-        (self.forward + across).normalize_or(self.forward)
+    pub fn ray(&self, [x, y]: [f64; 2], aspect: f64) -> [DVec3; 2] {
+        let across = self.right * (self.half_height * aspect * x) + self.up * (self.half_height * y);
+        if self.orthographic {
+            return [self.position + across, self.forward];
+        }
+        [self.position, (self.forward + across).normalize_or(self.forward)]
     }
 }
 
@@ -121,7 +143,7 @@ mod tests {
     fn reach(camera: &Camera, bounds: Bounds, aspect: f64) -> f64 {
         let across = corners(bounds).map(|corner| {
             let offset = corner - camera.position;
-            let depth = offset.dot(camera.forward) * camera.tan_half_height;
+            let depth = offset.dot(camera.forward) * camera.half_height;
             assert!(depth > 0.0, "the corner is in front of the camera");
             (offset.dot(camera.up).abs() / depth).max(offset.dot(camera.right).abs() / depth / aspect)
         });
@@ -136,7 +158,7 @@ mod tests {
             let reach = reach(&camera, bounds, aspect);
             assert!(reach < 1.0 && reach > 0.8, "{size} at {aspect}: reaches {reach}");
             // The twin: half the field of view cannot hold it
-            let narrow = Camera { tan_half_height: camera.tan_half_height * 0.5, ..camera };
+            let narrow = Camera { half_height: camera.half_height * 0.5, ..camera };
             assert!(self::reach(&narrow, bounds, aspect) > 1.0);
         }
     }
@@ -154,7 +176,24 @@ mod tests {
         assert_eq!(constants.camera, [0.0, 0.0, 0.5]);
         assert_eq!((constants.right, constants.up), ([2.0, 0.0, 0.0], [0.0, 1.0, 0.0]));
         assert_eq!(constants.forward, [0.0, 0.0, -1.0]);
-        let corner = camera.direction([1.0, -1.0], 2.0);
+        let [start, corner] = camera.ray([1.0, -1.0], 2.0);
         assert!((corner - DVec3::new(2.0, -1.0, -1.0) / 6.0_f64.sqrt()).length() < 1e-15);
+        assert_eq!(start, camera.position);
+    }
+
+    #[test]
+    fn a_pinhole_sees_as_much_as_an_orthographic_camera_where_it_is_asked_to() {
+        let camera = Camera::looking(String::new(), DVec3::X, DVec3::NEG_Z, DVec3::Y);
+        let parallel = Camera { orthographic: true, half_height: 3.0, ..camera.clone() };
+        let at = |camera: &Camera, depth: f64| {
+            let [start, direction] = camera.ray([0.5, -1.0], 2.0);
+            start + direction * ((depth - start.z) / direction.z)
+        };
+        let pinhole = parallel.clone().pinhole(DVec3::new(9.0, 9.0, -20.0));
+        assert!(at(&pinhole, -20.0).distance(at(&parallel, -20.0)) < 1e-12);
+        assert!((at(&parallel, -20.0) - DVec3::new(4.0, -3.0, -20.0)).length() < 1e-12);
+        // The twin: elsewhere it does not
+        assert!(at(&pinhole, -21.0).distance(at(&parallel, -21.0)) > 0.1);
+        assert_eq!(camera.clone().pinhole(DVec3::ZERO), camera);
     }
 }

@@ -1,6 +1,6 @@
 //! The file as glTF has it: container, JSON, buffers. Nothing here trusts the file.
 
-use crate::{SceneError, draco, extensions};
+use crate::{SceneError, compressed_views, draco, extensions};
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
 
@@ -43,6 +43,7 @@ impl Document {
         let buffers = document.root.buffers.iter().enumerate();
         document.buffers =
             buffers.map(|(i, b)| document.read_buffer(i, b, blob)).collect::<Result<Vec<_>, _>>()?;
+        compressed_views::decompress(&mut document)?;
         draco::decompress(&mut document)?;
         Ok(document)
     }
@@ -70,6 +71,19 @@ impl Document {
         })
     }
 
+    /// Puts other bytes in the place of a view's.
+    pub fn fill(&mut self, view: usize, bytes: Vec<u8>) {
+        let filled = self.push(bytes);
+        let buffer = self.root.buffer_views[filled.value()].buffer;
+        let view = &mut self.root.buffer_views[view];
+        (view.buffer, view.byte_offset) = (buffer, None);
+    }
+
+    /// Whether a view is of a buffer that is not [compressed alone](compressed_views::is_fallback).
+    pub fn has_data(&self, view: &json::buffer::View) -> bool {
+        self.buffers.get(view.buffer.value()).is_some_and(|buffer| !buffer.is_empty())
+    }
+
     /// An error about a field.
     pub fn invalid(&self, field: impl Into<String>, problem: impl Into<String>) -> SceneError {
         SceneError::Invalid { file: self.file.clone(), field: field.into(), problem: problem.into() }
@@ -90,16 +104,26 @@ impl Document {
         let field = || format!("bufferViews[{index}]");
         let view =
             self.root.buffer_views.get(index).ok_or_else(|| self.invalid(field(), "does not exist"))?;
-        let buffer = self.buffers.get(view.buffer.value());
-        let buffer = buffer.ok_or_else(|| self.invalid(field(), "its buffer does not exist"))?;
         let offset = view.byte_offset.unwrap_or_default().0;
-        let bytes = slice(buffer, offset, view.byte_length.0).ok_or_else(|| {
-            let problem =
-                format!("bytes {offset} + {} reach beyond the buffer's {}", view.byte_length.0, buffer.len());
-            self.invalid(field(), problem)
-        })?;
+        let bytes = self.bytes(field, view.buffer.value(), offset, view.byte_length.0)?;
         // A stride of zero is what some exporters write for tightly packed
         Ok((bytes, view.byte_stride.map(|s| s.0).filter(|s| *s > 0)))
+    }
+
+    /// `length` bytes of a buffer from `offset` on, for what `field` names.
+    pub fn bytes(
+        &self,
+        field: impl Fn() -> String,
+        buffer: usize,
+        offset: u64,
+        length: u64,
+    ) -> Result<&[u8], SceneError> {
+        let buffer = self.buffers.get(buffer);
+        let buffer = buffer.ok_or_else(|| self.invalid(field(), "its buffer does not exist"))?;
+        slice(buffer, offset, length).ok_or_else(|| {
+            let problem = format!("bytes {offset} + {length} reach beyond the buffer's {}", buffer.len());
+            self.invalid(field(), problem)
+        })
     }
 
     /// The bytes that a URI refers to: base64 data, or a file beside the scene.
@@ -193,6 +217,7 @@ impl Document {
         let mut bytes = match (&buffer.uri, blob) {
             (Some(uri), _) => self.resource(&field, uri)?,
             (None, Some(blob)) if index == 0 => blob.to_vec(),
+            _ if compressed_views::is_fallback(buffer) => return Ok(Vec::new()),
             _ => return Err(self.invalid(field, "has neither a URI nor a binary chunk")),
         };
         let expected = buffer.byte_length.0;

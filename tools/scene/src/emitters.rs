@@ -12,8 +12,22 @@ use arealight::{Light, LightShape};
 use glam::Vec3;
 use std::ops::Range;
 
+/// Adds the lights that a node's mesh is, instance by instance, and says which of the scene's triangles look like each.
+pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, mesh: &[Instance]) {
+    let closed = closed_parts(&loader.scene, mesh);
+    for (instance, closed) in mesh.iter().zip(&closed) {
+        let lights = add_instance(loader, node, instance, closed);
+        loader.scene.lamps.push(SceneLamp { triangles: instance.drawn.clone(), lights });
+    }
+}
+
 /// Adds the lights that an instance is, if its material emits: which of the scene's.
-pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -> Range<usize> {
+fn add_instance(
+    loader: &mut Loader,
+    node: &PlacedNode,
+    instance: &Instance,
+    closed: &[bool],
+) -> Range<usize> {
     let first = loader.scene.lights.len();
     let material = &loader.scene.materials[instance.material as usize];
     if material.emission == Vec3::ZERO || instance.triangles.is_empty() {
@@ -23,8 +37,41 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
         // The node's shape may have been added for another of its primitives
         return loader.scene.lights.len() - 1..loader.scene.lights.len();
     }
-    add_sides(loader, node, instance);
+    add_sides(loader, node, instance, closed);
     first..loader.scene.lights.len()
+}
+
+/// Which triangles of a mesh's instances are of closed parts, each by itself or together with the others, whatever those are made of. Where
+/// alpha makes holes there is no inside, and without an emitter of two sides nobody asks: none.
+fn closed_parts(scene: &Scene, mesh: &[Instance]) -> Vec<Vec<bool>> {
+    let material = |instance: &Instance| &scene.materials[instance.material as usize];
+    let is_whole = |instance: &Instance| material(instance).alpha_cutoff.is_none();
+    let mut is_closed: Vec<Vec<bool>> =
+        mesh.iter().map(|instance| vec![false; instance.triangles.len()]).collect();
+    let emits = |instance: &Instance| material(instance).emission != Vec3::ZERO;
+    if !mesh.iter().any(|instance| emits(instance) && material(instance).double_sided) {
+        return is_closed;
+    }
+    let whole = || mesh.iter().enumerate().filter(|(_, instance)| is_whole(instance));
+    for (number, instance) in whole() {
+        is_closed[number] = closed(&instance.positions, &instance.triangles, instance.rounding);
+    }
+    // Join what is open by itself
+    let mut positions = Vec::new();
+    let mut open = Vec::new();
+    for (number, instance) in whole().filter(|_| mesh.len() > 1) {
+        for (at, triangle) in instance.triangles.iter().enumerate().filter(|(at, _)| !is_closed[number][*at])
+        {
+            positions.extend(triangle.map(|index| instance.positions[index as usize]));
+            open.push((number, at));
+        }
+    }
+    let triangles: Vec<[u32; 3]> = (0..open.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let rounding = mesh.iter().map(|instance| instance.rounding).fold(0.0, f64::max);
+    for ((number, at), closed) in open.into_iter().zip(closed(&positions, &triangles, rounding)) {
+        is_closed[number][at] = closed;
+    }
+    is_closed
 }
 
 /// Drops the lights that are black, and says which triangles look like the others.
@@ -63,21 +110,20 @@ pub(crate) fn add_bare(scene: &mut Scene, first: usize) {
 }
 
 /// Adds an instance's flat parts as lights: those of its closed parts as one-sided ones whatever the material says, for nobody sees their
-/// inside. Where alpha makes holes there is no inside.
-fn add_sides(loader: &mut Loader, node: &PlacedNode, instance: &Instance) {
+/// inside.
+fn add_sides(loader: &mut Loader, node: &PlacedNode, instance: &Instance, is_closed: &[bool]) {
     let material = &loader.scene.materials[instance.material as usize];
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());
     let place = format!("light '{}' (node {})", instance.name, node.index);
     if masked {
         loader.warn(place.as_str(), "alphaMode MASK: the light shines where the mask is transparent, too");
     }
-    if !two_sided || masked {
-        add_polygons(loader, &place, instance, &instance.triangles, two_sided);
+    if !two_sided {
+        add_polygons(loader, &place, instance, &instance.triangles, false);
         return;
     }
-    let is_closed = closed(&instance.positions, &instance.triangles, instance.rounding);
     let part = |wanted: bool| -> Vec<[u32; 3]> {
-        let of_part = instance.triangles.iter().zip(&is_closed).filter(|(_, closed)| **closed == wanted);
+        let of_part = instance.triangles.iter().zip(is_closed).filter(|(_, closed)| **closed == wanted);
         of_part.map(|(triangle, _)| *triangle).collect()
     };
     for (triangles, two_sided) in [(part(true), false), (part(false), true)] {

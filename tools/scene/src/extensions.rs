@@ -1,15 +1,17 @@
 //! Extensions: which are read, which cost looks where they are not, and which leave nothing to show.
 
-use crate::SceneError;
 use crate::document::Document;
 use crate::load::Loader;
+use crate::{SceneError, compressed_views};
 use gltf::json;
 use std::collections::BTreeSet;
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
-const READ: [&str; 18] = [
+const READ: [&str; 20] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
+    compressed_views::NAMES[0],
+    compressed_views::NAMES[1],
     "EXT_texture_webp",
     crate::draco::NAME,
     crate::punctual::NAME,
@@ -41,7 +43,6 @@ const COSTS_LOOKS: [&str; 8] = [
 ];
 
 const MATERIALS: &str = "KHR_materials_";
-const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 const WEBP: &str = "EXT_texture_webp";
 
 /// Refuses what a file requires and nothing can be shown without.
@@ -72,15 +73,6 @@ pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError>
             texture.source = json::Index::new(image);
         } else if let Some((name, _)) = others.clone().next() {
             return refused(format!("textures[{t}]"), name);
-        }
-    }
-    for (v, view) in root.buffer_views.iter().enumerate() {
-        let names = view.extensions.iter().flat_map(|extensions| extensions.others.keys());
-        let compressed = names.clone().find(|name| MESHOPT.contains(&name.as_str()));
-        let buffer = root.buffers.get(view.buffer.value());
-        let has_data = buffer.is_some_and(|b| b.uri.is_some()) || view.buffer.value() == 0;
-        if let Some(name) = compressed.filter(|_| !has_data) {
-            return refused(format!("bufferViews[{v}]"), name);
         }
     }
     Ok(())
@@ -114,9 +106,6 @@ fn loss(name: &str) -> &'static str {
         "KHR_materials_variants" => "the default materials are shown",
         "KHR_texture_basisu" | "EXT_texture_avif" | "MSFT_texture_dds" => {
             "is not supported: the textures' other images are shown"
-        }
-        "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "is not supported: the uncompressed data are read"
         }
         _ => "is not supported: ignored",
     }

@@ -32,6 +32,7 @@ mod area_lights;
 mod borders;
 mod camera;
 mod closed;
+mod compressed_views;
 mod document;
 mod draco;
 mod effects;

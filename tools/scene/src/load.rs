@@ -2,7 +2,7 @@
 
 use crate::document::Document;
 use crate::light_textures::{self, TexturedLight};
-use crate::scene::{LoadOptions, SceneLamp};
+use crate::scene::LoadOptions;
 use crate::{
     Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes,
     punctual, skins,
@@ -63,21 +63,20 @@ fn read(document: Document, name: String, options: LoadOptions) -> Result<Scene,
     // Place the nodes in the world
     let placed = nodes::place(&mut loader)?;
     // Give every primitive to the triangles, and to the lights where it emits
-    let mut primitives = meshes::Meshes::new(&loader);
+    let mut meshes = meshes::Meshes::new(&loader);
     let worlds = LazyCell::new(|| nodes::worlds(&placed));
     for node in &placed {
         let pose = match node.skin {
             Some(skin) => skins::pose(&mut loader, &worlds, node, skin)?,
             None => None,
         };
-        for primitive in &*primitives.of_node(&mut loader, node)? {
+        let primitives = meshes.of_node(&mut loader, node)?;
+        let mut mesh = Vec::with_capacity(primitives.len());
+        for primitive in &*primitives {
             let material = materials::resolve(&mut loader, primitive)?;
-            let first = loader.scene.triangles.len();
-            let instance = meshes::place(&mut loader, (node, pose.as_deref()), primitive, material)?;
-            let lights = emitters::add(&mut loader, node, &instance);
-            let triangles = first..loader.scene.triangles.len();
-            loader.scene.lamps.push(SceneLamp { triangles, lights });
+            mesh.push(meshes::place(&mut loader, (node, pose.as_deref()), primitive, material)?);
         }
+        emitters::add(&mut loader, node, &mesh);
     }
     light_textures::assign(&mut loader);
     emitters::finish(&mut loader);

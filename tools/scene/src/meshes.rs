@@ -10,6 +10,7 @@ use gltf::json;
 use gltf::json::accessor::Type;
 use gltf::json::mesh::{Mode, Semantic};
 use gltf::json::validation::Checked;
+use std::ops::Range;
 use std::rc::Rc;
 
 /// A primitive of the file, in its mesh's space.
@@ -55,6 +56,8 @@ pub(crate) struct Instance<'a> {
     pub uvs: &'a [Vec2],
     /// Counter-clockwise from the front, without those that have no area.
     pub triangles: Vec<[u32; 3]>,
+    /// The same among the scene's.
+    pub drawn: Range<usize>,
     /// How far a position may be off because the file's numbers are `f32`, in the world's unit.
     pub rounding: f64,
 }
@@ -307,6 +310,7 @@ pub(crate) fn place<'a>(
         material,
         positions,
         uvs: primitive.light_uvs.as_ref().unwrap_or(&primitive.uvs),
+        drawn: loader.scene.triangles.len() - kept.len()..loader.scene.triangles.len(),
         triangles: kept,
         rounding: largest * stretch * f64::from(f32::EPSILON),
     })

@@ -158,7 +158,7 @@ pub(crate) fn local_transform(node: &json::Node) -> Result<DAffine3, String> {
     Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
 }
 
-/// Adds the nodes' cameras to the scene, whose bounds are known.
+/// Adds the nodes' cameras to the scene.
 pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
     for node in nodes {
         let Some(camera) = node.camera.and_then(|c| loader.document.root.cameras.get(c)) else { continue };
@@ -172,16 +172,17 @@ pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
             loader.warn(place, "its node's scale is zero: left out");
             continue;
         }
-        let bounds = loader.scene.bounds;
-        let made = if let Some(perspective) = &camera.perspective {
-            Camera::perspective(name, node.world.translation, forward, y, perspective)
-        } else {
-            loader.warn(place.as_str(), "orthographic: a perspective camera that looks along it is used");
-            Some(Camera::framing(&name, bounds, forward, y, 16.0 / 9.0))
+        let looking = Camera::looking(name, node.world.translation, forward, y);
+        let (made, wrong) = match (&camera.perspective, &camera.orthographic) {
+            (Some(perspective), _) => (looking.perspective(perspective), "yfov must be between 0 and pi"),
+            (None, Some(orthographic)) => {
+                (looking.orthographic(orthographic), "xmag and ymag must be more than 0")
+            }
+            (None, None) => (None, "it is neither perspective nor orthographic"),
         };
         match made {
             Some(camera) => loader.scene.cameras.push(camera),
-            None => loader.warn(place, "yfov must be between 0 and pi: left out"),
+            None => loader.warn(place, format!("{wrong}: left out")),
         }
     }
 }

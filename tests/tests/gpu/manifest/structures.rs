@@ -185,7 +185,7 @@ fn structures_of_scenes_have_the_same_offsets() {
             layout!(
                 tool::gpu::VisibilityConstants,
                 camera,
-                reserved0,
+                orthographic,
                 right,
                 reserved1,
                 up,

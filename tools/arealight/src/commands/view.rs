@@ -83,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .load_scene_textures(&scene, super::render::TEXTURE_SIZE)
         .map_err(|error| gpu::failure(error, &path))?;
     let engines = Engines::new(engine, &scene).map_err(|error| gpu::failure(error, &path))?;
+    let camera = camera.pinhole(scene.bounds.center());
     let state = State::new(&scene, &camera, exposure, engines.has_yardstick());
     let viewer = Viewer::new(&engines, scene, arguments.size).map_err(|error| gpu::failure(error, &path))?;
     match (&arguments.record, script) {

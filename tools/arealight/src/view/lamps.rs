@@ -11,7 +11,7 @@ const NEAR: f64 = 0.03;
 /// The lamp that is seen in a direction from the camera, and how far along the view; `heights` is the direction's place in heights of the
 /// picture from the middle, to the right and down.
 pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize, f64)> {
-    let tan = 2.0 * camera.tan_half_height;
+    let tan = 2.0 * camera.half_height;
     let direction = camera.forward + (camera.right * heights[0] - camera.up * heights[1]) * tan;
     // The first triangle along the ray, in lengths along the view
     let mut first: Option<(usize, f64)> = None;
@@ -79,7 +79,7 @@ mod tests {
     /// Where a point is in the picture, in heights from the middle.
     fn place(camera: &Camera, point: DVec3) -> [f64; 2] {
         let to = point - camera.position;
-        let depth = 2.0 * camera.tan_half_height * to.dot(camera.forward);
+        let depth = 2.0 * camera.half_height * to.dot(camera.forward);
         [to.dot(camera.right) / depth, -to.dot(camera.up) / depth]
     }
 

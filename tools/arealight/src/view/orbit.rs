@@ -39,7 +39,7 @@ impl Orbit {
             distance,
             yaw: back.x.atan2(back.z),
             pitch: back.y.atan2(back.x.hypot(back.z)).clamp(-MOST_PITCH, MOST_PITCH),
-            tan_half_height: camera.tan_half_height,
+            tan_half_height: camera.half_height,
         }
     }
 
@@ -77,7 +77,8 @@ impl Orbit {
             forward: -back,
             up: back.cross(right),
             right,
-            tan_half_height: self.tan_half_height,
+            orthographic: false,
+            half_height: self.tan_half_height,
             aspect: None,
         }
     }
@@ -133,7 +134,7 @@ mod tests {
         let after = orbit.camera();
         let seen = |camera: &Camera| {
             let to = point - camera.position;
-            let depth = to.dot(camera.forward) * 2.0 * camera.tan_half_height;
+            let depth = to.dot(camera.forward) * 2.0 * camera.half_height;
             [to.dot(camera.right) / depth, -to.dot(camera.up) / depth]
         };
         let (before, after) = (seen(&before), seen(&after));

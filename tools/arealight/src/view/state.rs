@@ -374,7 +374,7 @@ mod tests {
         state.apply(Event::Press { at: lit, second: false }, &scene, ASPECT);
         state.apply(Event::Move([lit[0] + 0.1, lit[1]]), &scene, ASPECT);
         assert_eq!(state.picked, Some(lamp));
-        let expected = camera.right * (0.1 * ASPECT * 2.0 * camera.tan_half_height * distance);
+        let expected = camera.right * (0.1 * ASPECT * 2.0 * camera.half_height * distance);
         assert!((state.offsets[lamp] - expected).length() < 1e-9);
         assert_eq!(state.orbit, state.home);
         state.apply(Event::Wheel(1.0), &scene, ASPECT);

@@ -117,6 +117,7 @@ impl SceneRenderer<'_> {
         (filter, history): (ShadowFilter, ShadowHistory),
     ) -> Result<ShadowedView, EngineError> {
         let (engine, host) = (self.engine, self.engine.host());
+        let options = self.seen(options);
         // doc: passes
         // SAFETY: The passes are dropped when no frame uses them, before the device.
         let (shade, shadow) = unsafe {

@@ -154,7 +154,9 @@ impl SceneRenderer<'_> {
         let engine = self.engine;
         let host = engine.host();
         // SAFETY: As in Engine::pass.
-        let pass = unsafe { ShadePass::with_tiles(engine.context(), options, tiles, engine.table_size()) }?;
+        let pass = unsafe {
+            ShadePass::with_tiles(engine.context(), self.seen(options), tiles, engine.table_size())
+        }?;
         let pass = Kept::new(host, pass);
         let lobe_horizons =
             engine.storage("lobe horizons", engine.lobe_horizons(options.quality.specular_lobes))?;

@@ -1,13 +1,13 @@
 //! Closed emissive meshes shine outwards only, whatever their material says of sides.
 
 use crate::shapes::{capsule, cuboid, cylinder, panel, sphere};
-use crate::writer::Shape;
+use crate::writer::{Shape, Writer};
 use crate::{emitter_with, load, warnings};
 use arealight::Light;
 use arealight_oracle::polygon::form_factor;
 use arealight_scene::{Scene, SceneBuffers};
 use glam::DVec3;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::f64::consts::TAU;
 
 const NOTE: &str = "light 'lamp' (node 0): doubleSided, but a closed surface: it shines outwards only";
@@ -118,6 +118,72 @@ fn each_part_of_a_mesh_is_judged_by_itself() {
     let sides: Vec<(usize, bool)> =
         lamp(&both, true).lights.iter().map(|l| (l.shape.outlines().count(), l.two_sided)).collect();
     assert_eq!(sides, [(6, false), (1, true)]);
+}
+
+/// A doubly sided cube of two primitives: all but its last face, which emits, and a lid of another material. Both have the corners of the
+/// cube.
+fn with_lid(lid: Value) -> Writer {
+    let cube = cuboid([1.0; 3]);
+    let (sides, face) = cube.indices.split_at(30);
+    let mut writer = emitter_with(&Shape { indices: sides.to_vec(), ..cube.clone() }, json!({}));
+    writer.root["materials"][0]["doubleSided"] = json!(true);
+    let material = writer.push("materials", lid);
+    let mut primitive = writer.primitive(&Shape { indices: face.to_vec(), ..cube.clone() });
+    primitive["material"] = json!(material);
+    writer.root["meshes"][0]["primitives"].as_array_mut().unwrap().push(primitive);
+    writer
+}
+
+#[test]
+fn a_mesh_is_closed_by_what_does_not_shine() {
+    let scene = load(with_lid(json!({})));
+    let [light] = &scene.lights[..] else { panic!("{} lights", scene.lights.len()) };
+    assert_eq!((light.shape.outlines().count(), light.two_sided), (5, false));
+    assert_eq!((scene.notes[0].to_string().as_str(), scene.notes.len()), (NOTE, 1));
+    assert_eq!((scene.lamps.len(), scene.triangles.iter().filter(|triangle| triangle.lamp).count()), (1, 10));
+    // The twins: the lid is away, looks inwards, is elsewhere, or has holes
+    let mut away = with_lid(json!({}));
+    away.root["meshes"][0]["primitives"].as_array_mut().unwrap().pop();
+    let mut inwards = with_lid(json!({}));
+    let turned = inwards.indices(&cuboid([1.0; 3]).indices[30..].iter().rev().copied().collect::<Vec<_>>());
+    inwards.root["meshes"][0]["primitives"][1]["indices"] = json!(turned);
+    let mut elsewhere = with_lid(json!({}));
+    let moved: Vec<_> = cuboid([1.0; 3]).positions.iter().map(|[x, y, z]| [x + 0.01, *y, *z]).collect();
+    elsewhere.root["meshes"][0]["primitives"][1]["attributes"]["POSITION"] = json!(elsewhere.floats(&moved));
+    for (name, open) in [
+        ("away", away),
+        ("inwards", inwards),
+        ("elsewhere", elsewhere),
+        ("holes", with_lid(json!({ "alphaMode": "MASK" }))),
+    ] {
+        let scene = load(open);
+        assert!(scene.lights.iter().all(|light| light.two_sided) && scene.notes.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_mesh_is_closed_by_several_that_shine() {
+    let lid = json!({ "emissiveFactor": [0, 1, 0], "doubleSided": true });
+    let scene = load(with_lid(lid));
+    let sides: Vec<(usize, bool)> =
+        scene.lights.iter().map(|light| (light.shape.outlines().count(), light.two_sided)).collect();
+    assert_eq!(sides, [(5, false), (1, false)]);
+}
+
+#[test]
+fn what_touches_a_closed_primitive_does_not_open_it() {
+    // A fin at an edge of a cube that is closed by itself: three triangles meet there
+    let mut writer = emitter_with(&cuboid([1.0; 3]), json!({}));
+    writer.root["materials"][0]["doubleSided"] = json!(true);
+    let corners = cuboid([1.0; 3]);
+    let [a, b] = [corners.indices[0], corners.indices[1]].map(|index| corners.positions[index as usize]);
+    let fin = Shape { positions: vec![a, b, [3.0; 3]], indices: vec![0, 1, 2], ..Shape::default() };
+    let mut primitive = writer.primitive(&fin);
+    primitive["material"] = json!(0);
+    writer.root["meshes"][0]["primitives"].as_array_mut().unwrap().push(primitive);
+    let scene = load(writer);
+    let sides: Vec<bool> = scene.lights.iter().map(|light| light.two_sided).collect();
+    assert_eq!(sides, [false, true]);
 }
 
 #[test]

@@ -46,8 +46,8 @@ fn fields_that_break_rules_are_named() {
     type Change = (fn(&mut Value), &'static str);
     let changes: &[Change] = &[
         (
-            |r| r["extensionsRequired"] = json!(["EXT_meshopt_compression"]),
-            "extensionsRequired: EXT_meshopt_compression is not supported",
+            |r| r["extensionsRequired"] = json!(["KHR_texture_basisu"]),
+            "extensionsRequired: KHR_texture_basisu is not supported",
         ),
         (|r| r["nodes"][0]["mesh"] = json!(7), "nodes[0].mesh: Index out of bounds"),
         (|r| r["scene"] = json!(3), "scene: Index out of bounds"),

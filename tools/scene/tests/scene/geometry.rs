@@ -1,7 +1,7 @@
 //! Triangles, nodes, cameras and containers.
 
 use crate::shapes::{floor, panel, sphere};
-use crate::writer::{Writer, look_at};
+use crate::writer::Writer;
 use crate::{emitter_with, load, panel_with, warnings};
 use arealight_scene::{Scene, SceneBuffers};
 use glam::{DQuat, DVec3, Vec2, Vec3};
@@ -144,31 +144,45 @@ fn cameras_look_along_minus_z() {
     let camera = scene.camera(Some("front"), 1.0).unwrap();
     assert_eq!((camera.position, camera.forward), (DVec3::new(1.0, 2.0, 8.0), DVec3::NEG_Z));
     assert_eq!((camera.right, camera.up, camera.aspect), (DVec3::X, DVec3::Y, Some(1.5)));
-    assert!((camera.tan_half_height - 0.5_f64.tan()).abs() < 1e-7);
+    assert!((camera.half_height - 0.5_f64.tan()).abs() < 1e-7);
     assert_eq!(scene.camera(None, 1.0), Some(camera));
     assert_eq!(scene.camera(Some("back"), 1.0), None);
 }
 
-#[test]
-fn orthographic_cameras_become_framing_ones() {
+/// A panel, and an orthographic camera of this half width and half height.
+fn orthographic(name: &str, eye: [f64; 3], target: [f64; 3], [x, y]: [f64; 2]) -> Writer {
     let mut writer = panel_with(json!({}));
-    let camera = json!({ "type": "orthographic",
-        "orthographic": { "xmag": 1, "ymag": 1, "znear": 0.1, "zfar": 10 } });
-    writer.push("cameras", camera);
-    let mut node = look_at([5.0, 0.0, 0.0], [0.0; 3]);
-    node["name"] = json!("side");
-    node["camera"] = json!(0);
-    writer.node(node);
+    writer.camera(name, eye, target, 1.0, 1.0);
+    writer.root["cameras"][0] = json!({ "type": "orthographic",
+        "orthographic": { "xmag": x, "ymag": y, "znear": 0.0, "zfar": 100.0 } });
+    writer
+}
+
+#[test]
+fn orthographic_cameras_see_along_parallel_lines() {
+    let mut writer = orthographic("side", [5.0, 0.0, 1.0], [0.0, 0.0, 1.0], [3.0, 1.5]);
+    // A camera's scale does not matter
+    writer.root["nodes"][1]["scale"] = json!([7, 7, 7]);
     let scene = load(writer);
     let camera = &scene.cameras[0];
-    assert!((camera.forward - DVec3::NEG_X).length() < 1e-6);
-    // It sees the panel's edge, half of it up and down
-    let reach = 0.5 / (camera.position.x * camera.tan_half_height);
-    assert!(reach > 0.3 && reach < 1.0, "{reach}");
-    assert_eq!(
-        warnings(&scene),
-        ["camera 'side': orthographic: a perspective camera that looks along it is used"]
-    );
+    assert_eq!((camera.orthographic, camera.half_height, camera.aspect), (true, 1.5, Some(2.0)));
+    let seen = |expected: [DVec3; 2], found: [DVec3; 2]| {
+        expected.iter().zip(found).all(|(a, b)| a.distance(b) < 1e-5)
+    };
+    let corner = [DVec3::new(5.0, 1.5, -2.0), DVec3::NEG_X];
+    assert!(seen(corner, camera.ray([1.0, 1.0], 2.0)), "{:?}", camera.ray([1.0, 1.0], 2.0));
+    assert_eq!(warnings(&scene), [""; 0]);
+    // The twin: a pinhole camera sees along others
+    assert!(!seen(corner, camera.clone().pinhole(DVec3::ZERO).ray([1.0, 1.0], 2.0)));
+}
+
+#[test]
+fn orthographic_cameras_without_a_size_are_left_out() {
+    for size in [[0.0, 1.0], [1.0, 0.0], [1.0, -1.0]] {
+        let scene = load(orthographic("bad", [0.0, 0.0, 1.0], [0.0; 3], size));
+        assert!(scene.cameras.is_empty());
+        assert_eq!(warnings(&scene), ["camera 'bad': xmag and ymag must be more than 0: left out"]);
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Scenes from files made here, good and bad, and the project's own.
 
 mod closed_lights;
+mod compressed_views;
 mod draco;
 mod errors;
 mod extensions;

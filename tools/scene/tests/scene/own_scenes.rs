@@ -21,7 +21,8 @@ fn load(name: &str) -> Scene {
     let buffers = SceneBuffers::new(&scene, DVec3::ZERO).unwrap();
     // The camera sees a surface in the middle of its lower half, and all shading normals face outwards
     let camera = scene.camera(None, 16.0 / 9.0).unwrap();
-    assert!(buffers.closest_hit(camera.position, camera.direction([0.0, -0.5], 16.0 / 9.0)).is_some());
+    let [start, direction] = camera.ray([0.0, -0.5], 16.0 / 9.0);
+    assert!(buffers.closest_hit(start, direction).is_some());
     for triangle in &scene.triangles {
         let [p, q, r] = triangle.positions;
         let flat = (q - p).cross(r - p);

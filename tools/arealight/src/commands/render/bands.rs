@@ -46,12 +46,16 @@ impl Band {
         // The plane at distance 1 from y = -1, the bottom, to 1; rows count from the top
         let middle = 1.0 - of_height(self.rendered.start + self.rendered.end);
         let part = of_height(self.rendered.end - self.rendered.start);
-        let (forward, up) = (Vec3::from(picture.forward).as_dvec3(), Vec3::from(picture.up).as_dvec3());
-        VisibilityConstants {
-            forward: (forward + middle * up).as_vec3().to_array(),
-            up: (part * up).as_vec3().to_array(),
-            ..picture
+        let up = Vec3::from(picture.up).as_dvec3();
+        let moved = |from: [f32; 3]| (Vec3::from(from).as_dvec3() + middle * up).as_vec3().to_array();
+        let mut band = VisibilityConstants { up: (part * up).as_vec3().to_array(), ..picture };
+        // A pinhole turns, and lines of sight that are parallel begin elsewhere
+        if picture.orthographic == 0 {
+            band.forward = moved(picture.forward);
+        } else {
+            band.camera = moved(picture.camera);
         }
+        band
     }
 
     /// Of the values of what is rendered, row by row, those of what is kept.
@@ -89,7 +93,7 @@ mod tests {
     fn a_band_sees_what_the_picture_does_there() {
         let picture = VisibilityConstants {
             camera: [1.0, 2.0, 3.0],
-            reserved0: 0,
+            orthographic: 0,
             right: [0.5, 0.0, 0.0],
             reserved1: 0,
             up: [0.0, 0.4, 0.1],
@@ -99,21 +103,26 @@ mod tests {
             background: [0.0; 3],
             reserved4: 0,
         };
-        // As the kernel sends a ray through the middle of a row
+        // As the kernel sends a ray through the middle of a row: where it starts, and its direction
         let ray = |camera: &VisibilityConstants, row: u32, rows: u32| {
-            let y = 1.0 - (row as f32 + 0.5) / rows as f32 * 2.0;
-            Vec3::from(camera.forward) + y * Vec3::from(camera.up)
+            let across = Vec3::from(camera.up) * (1.0 - (row as f32 + 0.5) / rows as f32 * 2.0);
+            let [start, forward] = [camera.camera, camera.forward].map(Vec3::from);
+            if camera.orthographic == 0 { [start, forward + across] } else { [start + across, forward] }
         };
-        for band in Band::of([10, 200], 10 * 60) {
-            let camera = band.camera(picture, 200);
-            let rows = band.size(10)[1];
-            for row in band.kept.clone() {
-                let (expected, found) =
-                    (ray(&picture, row, 200), ray(&camera, row - band.rendered.start, rows));
-                assert!((expected - found).length() < 1e-6, "{row}: {found}, not {expected}");
+        let off = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| a.distance(c) + b.distance(d);
+        for orthographic in [0, 1] {
+            let picture = VisibilityConstants { orthographic, ..picture };
+            for band in Band::of([10, 200], 10 * 60) {
+                let camera = band.camera(picture, 200);
+                let rows = band.size(10)[1];
+                for row in band.kept.clone() {
+                    let (expected, found) =
+                        (ray(&picture, row, 200), ray(&camera, row - band.rendered.start, rows));
+                    assert!(off(expected, found) < 1e-6, "{row}: {found:?}, not {expected:?}");
+                }
             }
+            // The twin: of another row
+            assert!(off(ray(&picture, 3, 200), ray(&picture, 4, 200)) > 1e-3);
         }
-        // The twin: of another row
-        assert!((ray(&picture, 3, 200) - ray(&picture, 4, 200)).length() > 1e-3);
     }
 }

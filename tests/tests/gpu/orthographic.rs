@@ -1,0 +1,204 @@
+//! Scenes through an orthographic camera: what it sees, and what it is shaded like, with shadows and without. The twin of each is a
+//! perspective camera that sees as much.
+
+use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
+use arealight::{Light, LightShape, Quality};
+use arealight_engine::host::Usage;
+use arealight_engine::{EngineError, EvalPoint, Reference, SceneRenderer};
+use arealight_oracle::material::Material;
+use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_tests::TestEngine;
+use arealight_tests::scenes::{box_of, lambert, scene_of, without_textures};
+use glam::{DVec3, Vec3};
+use std::time::Duration;
+
+const SIZE: [u32; 2] = [48, 32];
+const ASPECT: f64 = 1.5;
+const HALF_HEIGHT: f64 = 1.5;
+
+/// A floor with a box above it, and a lamp.
+fn scene(material: Material) -> Scene {
+    let corner = |x: f64, z: f64| DVec3::new(x, 0.0, z);
+    let (a, b, c, d) = (corner(-9.0, 9.0), corner(9.0, 9.0), corner(9.0, -9.0), corner(-9.0, -9.0));
+    let block = box_of(DVec3::new(-0.5, 0.4, -0.4), DVec3::new(0.4, 0.7, 0.3));
+    let mut scene = scene_of(&[vec![[a, b, c], [a, c, d]], block].concat(), without_textures(material));
+    let outline = [(-0.8, -0.45), (0.8, -0.45), (0.8, 0.45), (-0.8, 0.45)];
+    let outline = outline.map(|(x, z)| DVec3::new(x, 2.0, z - 0.8)).to_vec();
+    let shape = LightShape::Polygon(outline);
+    scene.lights = vec![Light { radiance: Vec3::splat(5.0), shape, ..Light::default() }];
+    scene
+}
+
+fn metal() -> Material {
+    Material { metalness: 1.0, roughness: 0.4, ..lambert(0.75) }
+}
+
+fn camera() -> Camera {
+    let bounds = [DVec3::NEG_ONE, DVec3::ONE].into_iter().collect();
+    let framing = Camera::framing("", bounds, DVec3::new(-0.2, -1.0, -0.7), DVec3::Y, ASPECT);
+    Camera { orthographic: true, half_height: HALF_HEIGHT, ..framing }
+}
+
+/// A scene as a camera sees it.
+struct View<'a> {
+    scene: &'a Scene,
+    buffers: SceneBuffers,
+    renderer: SceneRenderer<'a>,
+}
+
+impl<'a> View<'a> {
+    fn new(engine: &'a TestEngine, scene: &'a Scene, camera: &Camera) -> Self {
+        let buffers = SceneBuffers::new(scene, camera.position).unwrap();
+        let constants = buffers.constants(camera, SIZE, Vec3::ZERO);
+        let mut renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, SIZE).unwrap();
+        renderer.visibility().unwrap();
+        Self { scene, buffers, renderer }
+    }
+
+    /// World positions, and normals.
+    fn surfaces(&self) -> Vec<[DVec3; 2]> {
+        let g_buffer = self.renderer.g_buffer();
+        let [positions, normals]: [Vec<[f32; 4]>; 2] =
+            [&g_buffer.position, &g_buffer.normal].map(|image| image.download(Usage::COMPUTE_READ).unwrap());
+        let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z).as_dvec3();
+        let pixels = positions.into_iter().zip(normals);
+        pixels.map(|(position, normal)| [vector(position) + self.buffers.origin, vector(normal)]).collect()
+    }
+
+    /// What `shade` adds, in the first channel.
+    fn shaded(
+        &mut self,
+        shade: impl FnOnce(&mut SceneRenderer<'_>) -> Result<Option<Duration>, EngineError>,
+    ) -> Vec<f64> {
+        self.renderer.visibility().unwrap();
+        shade(&mut self.renderer).unwrap();
+        self.renderer.radiance().unwrap().iter().map(|texel| f64::from(texel.x)).collect()
+    }
+
+    /// What each pixel's surface reflects along `view`, by the kernel that shades points.
+    fn evaluated(&self, engine: &TestEngine, view: impl Fn(DVec3) -> DVec3) -> Vec<f64> {
+        let point = |[position, normal]: [DVec3; 2]| EvalPoint {
+            surface: self.scene.materials[0].material.coupled_surface(),
+            position,
+            normal,
+            view: view(position),
+            light: self.scene.lights[0].clone(),
+        };
+        let points: Vec<_> = self.surfaces().into_iter().map(point).collect();
+        let answers = engine.eval(&points, Quality::default()).unwrap();
+        answers.into_iter().map(|radiance| f64::from(radiance.x)).collect()
+    }
+
+    fn options(&self) -> ShadeOptions {
+        ShadeOptions { surfaces: self.scene.effects(), ..ShadeOptions::default() }
+    }
+}
+
+/// Where a pixel's centre is in the image, from -1 to 1, y up.
+fn place(pixel: usize) -> [f64; 2] {
+    let at = |index: usize, size: u32| (index as f64 + 0.5) / f64::from(size) * 2.0 - 1.0;
+    let width = SIZE[0] as usize;
+    [at(pixel % width, SIZE[0]), -at(pixel / width, SIZE[1])]
+}
+
+/// The root mean square of the differences over the mean of what is right.
+fn error(found: &[f64], right: &[f64]) -> f64 {
+    let count = right.len() as f64;
+    let square = found.iter().zip(right).map(|(found, right)| (found - right).powi(2)).sum::<f64>() / count;
+    square.sqrt() / (right.iter().sum::<f64>() / count)
+}
+
+#[test]
+fn everything_is_as_large_at_any_distance() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (scene, camera) = (scene(metal()), camera());
+    // How far surfaces are from where the camera's parallel lines of sight are, and at what distances
+    let off_lines = |seen: &Camera| {
+        let surfaces = View::new(&engine, &scene, seen).surfaces();
+        let offsets = surfaces.iter().map(|[position, _]| *position - camera.position);
+        let off = offsets.clone().enumerate().map(|(pixel, offset)| {
+            let [x, y] = place(pixel);
+            let across = [offset.dot(camera.right), offset.dot(camera.up)];
+            (across[0] - x * ASPECT * HALF_HEIGHT).abs() + (across[1] - y * HALF_HEIGHT).abs()
+        });
+        let depths: Vec<f64> = offsets.map(|offset| offset.dot(camera.forward)).collect();
+        let spread =
+            depths.iter().copied().fold(f64::MIN, f64::max) - depths.iter().copied().fold(f64::MAX, f64::min);
+        (off.fold(0.0, f64::max), spread)
+    };
+    let (off, spread) = off_lines(&camera);
+    // Positions of some five units, as f32
+    assert!(off < 1e-5 && spread > 1.5, "{off} at depths over {spread}");
+    let (off, _) = off_lines(&camera.clone().pinhole(DVec3::ZERO));
+    assert!(off > 0.3, "{off}");
+}
+
+#[test]
+fn surfaces_reflect_along_one_direction() {
+    let Some(engine) = TestEngine::new() else { return };
+    let (scene, camera) = (scene(metal()), camera());
+    let mut view = View::new(&engine, &scene, &camera);
+    let expected = view.evaluated(&engine, |_| -camera.forward);
+    // The twin: seen from where a perspective camera would be
+    let eye = camera.clone().pinhole(DVec3::ZERO).position;
+    let other = view.evaluated(&engine, |position| eye - position);
+    let options = ShadeOptions { output: Output::Add, ..view.options() };
+    let plain = view.shaded(|renderer| renderer.shade_as(options));
+    let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
+    let tiled = view.shaded(|renderer| {
+        let view = renderer.tiled(options, tiles)?;
+        renderer.shade_tiled(&view)
+    });
+    for (name, found) in [("plain", plain), ("tiled", tiled)] {
+        let (off, twin) = (error(&found, &expected), error(&found, &other));
+        println!("{name}: {off:.1e}, from one place {twin:.3}");
+        // Both round a lobe of f32
+        assert!(off < 1e-4 && twin > 0.1, "{name}: {off}, {twin}");
+    }
+    // The reference samples the true BRDF: what is left is its noise and the fit
+    let samples = Reference { samples: 1024, ..Reference::default() };
+    let sampled = view.shaded(|renderer| renderer.reference(samples, |_| {}));
+    let (off, twin) = (error(&sampled, &expected), error(&sampled, &other));
+    println!("reference: {off:.3}, from one place {twin:.3}");
+    assert!(off < 0.06 && twin > 2.0 * off, "{off}, {twin}");
+}
+
+#[test]
+fn shadows_are_those_of_the_reference() {
+    let Some(engine) = TestEngine::new() else { return };
+    let camera = camera();
+    for (name, material, bound) in [("lambert", lambert(0.75), 0.03), ("metal", metal(), 0.08)] {
+        let scene = scene(material);
+        let picture = |camera: &Camera, filter, history, frames: u32| {
+            let mut view = View::new(&engine, &scene, camera);
+            let options = ShadeOptions { shadow_rays: 4, ..view.options() };
+            let mut sum = vec![0.0; (SIZE[0] * SIZE[1]) as usize];
+            let mut last = vec![];
+            let shadowed = view.renderer.shadowed(&view.buffers, options, (filter, history)).unwrap();
+            for seed in 0..frames {
+                last = view.shaded(|renderer| renderer.shade_shadowed(&shadowed, seed));
+                sum.iter_mut().zip(&last).for_each(|(sum, one)| *sum += one / f64::from(frames));
+            }
+            [sum, last]
+        };
+        let reference = |camera: &Camera, shadows| {
+            let samples = Reference { samples: 1024, shadows, ..Reference::default() };
+            let mut view = View::new(&engine, &scene, camera);
+            view.shaded(|renderer| renderer.reference(samples, |_| {}))
+        };
+        let right = reference(&camera, true);
+        // Rays alone are right in the mean
+        let [mean, one] = picture(&camera, ShadowFilter::Off, ShadowHistory::Off, 32);
+        let error_of_mean = error(&mean, &right);
+        let unshadowed = error(&mean, &reference(&camera, false));
+        let other = error(&mean, &reference(&camera.clone().pinhole(DVec3::ZERO), true));
+        println!("{name}: {error_of_mean:.3}, without shadows {unshadowed:.3}, perspective {other:.3}");
+        assert!(error_of_mean < bound && unshadowed > 2.0 * bound && other > 2.0 * bound);
+        // The filter finds neighbours, and the history what was there before
+        let [_, gathered] = picture(&camera, ShadowFilter::Gather, ShadowHistory::Off, 1);
+        let [_, kept] = picture(&camera, ShadowFilter::Off, ShadowHistory::Camera, 16);
+        let [one, gathered, kept] = [one, gathered, kept].map(|found| error(&found, &mean));
+        println!("{name}: noise {one:.3}, filtered {gathered:.3}, of 16 frames {kept:.3}");
+        assert!(gathered < 0.8 * one && kept < 0.5 * one, "{one}, {gathered}, {kept}");
+    }
+}
