@@ -235,8 +235,10 @@ pub struct GpuMaterial {
     pub film_texture: u32,
     /// Linear texture whose green says how thick the film is.
     pub film_thickness_texture: u32,
-    /// Zero.
-    pub reserved: [u32; 2],
+    /// Linear texture: alpha times `dielectric_f0` and `dielectric_f90`.
+    pub specular_texture: u32,
+    /// sRGB texture times `dielectric_f0`, which is cut off at `dielectric_f90` after it.
+    pub specular_color_texture: u32,
 }
 
 impl VisibilityConstants {

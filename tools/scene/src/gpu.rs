@@ -119,6 +119,8 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
         let textures = [
             ("base_color_texture", material.base_color_texture),
             ("metallic_roughness_texture", material.metallic_roughness_texture),
+            ("specular_texture", material.specular_texture),
+            ("specular_color_texture", material.specular_color_texture),
             ("normal_texture", material.normal_texture),
             ("emission_texture", material.emission_texture),
             ("coat_texture", material.coat_texture),
@@ -232,7 +234,8 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         film_thickness: film.thickness as f32,
         film_texture: texture(material.film_texture),
         film_thickness_texture: texture(material.film_thickness_texture),
-        reserved: [0; 2],
+        specular_texture: texture(material.specular_texture),
+        specular_color_texture: texture(material.specular_color_texture),
     }
 }
 

@@ -168,7 +168,8 @@ fn structures_of_scenes_have_the_same_offsets() {
                 film_thickness,
                 film_texture,
                 film_thickness_texture,
-                reserved as "reserved0"
+                specular_texture,
+                specular_color_texture
             ),
         ),
         (
