@@ -366,7 +366,7 @@ fn layered(
 ) -> DVec3 {
     let below = match &surface.sheen {
         None => below,
-        Some(sheen) => with_sheen(sheen, frame, below, &lobe),
+        Some(sheen) => with_sheen(sheen, surface.coat.is_some(), frame, below, &lobe),
     };
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
@@ -408,9 +408,9 @@ fn glossy_part(
     }
     let sample = surface_sample(quality, table, surface, frame);
     let scale = Rescattered::new(surface, &sample).scale;
-    // Below two layers there is one lobe, as in options.glsl
-    let two_layers = surface.coat.is_some() && surface.sheen.is_some();
-    let lobes = if two_layers { SpecularLobes::One } else { quality.specular_lobes };
+    // Below sheen there is one lobe, below black sheen where there is a coat, too: as in material.glsl
+    let has_sheen = surface.sheen.is_some_and(|sheen| surface.coat.is_some() || sheen.color != DVec3::ZERO);
+    let lobes = if has_sheen { SpecularLobes::One } else { quality.specular_lobes };
     let lobes = sample.lobes(lobes, surface.f0, surface.f90).into_iter();
     let parts = lobes.filter(|(_, albedo)| *albedo != DVec3::ZERO);
     let shown = parts.map(|(inverse, albedo)| albedo * lobe(&inverse, share_above_surface(&inverse)));

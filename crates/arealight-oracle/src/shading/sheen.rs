@@ -8,6 +8,7 @@ use crate::material::Sheen;
 use crate::sheen::{Charlie, MIN_ROUGHNESS, SheenLobe};
 use arealight::table::share_above_surface;
 use glam::{DMat3, DVec3};
+use std::slice;
 
 /// What a surface with sheen reflects, `base` being what the lobes below do: Charlie, and the base times what its albedo at the view
 /// leaves.
@@ -32,15 +33,20 @@ pub(super) fn sheen_truth(
 }
 
 /// What is left of what the lobes below reflect, with what sheen does: the twin of `arealight_sheen_layer`. `lobe` is the form factor
-/// of the light in the cosine space of a lobe, a channel, of which a part lies above the surface.
+/// of the light in the cosine space of a lobe, a channel, of which a part lies above the surface. Below a coat there is one lobe of sheen.
 pub(super) fn with_sheen(
     sheen: &Sheen,
+    is_coated: bool,
     frame: &SurfaceFrame,
     below: DVec3,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
-    let fitted = SheenLobe::new(sheen.roughness, frame.cos_view());
-    let above_surface = share_above_surface(&fitted.inverse);
-    below * sheen.left_below(fitted.albedo)
-        + sheen.color * fitted.albedo * lobe(&fitted.inverse, above_surface)
+    let cos_view = frame.cos_view();
+    let one = SheenLobe::one(sheen.roughness, cos_view);
+    let two = SheenLobe::two(sheen.roughness, cos_view);
+    let lobes = if is_coated { slice::from_ref(&one) } else { two.as_slice() };
+    let sent = lobes
+        .iter()
+        .map(|fitted| fitted.albedo * lobe(&fitted.inverse, share_above_surface(&fitted.inverse)));
+    below * sheen.left_below(one.albedo) + sheen.color * sent.sum::<DVec3>()
 }
