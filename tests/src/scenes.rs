@@ -31,6 +31,8 @@ pub fn without_textures(material: Material) -> SceneMaterial {
         emission: Vec3::ZERO,
         base_color_texture: None,
         metallic_roughness_texture: None,
+        specular_texture: None,
+        specular_color_texture: None,
         normal_texture: None,
         normal_scale: 1.0,
         emission_texture: None,

@@ -144,6 +144,7 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
         quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
         quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
+        quads("quads", "two specular lobes, sheen", LOBES | Effects::SHEEN, two_lobes),
         quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
         quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),

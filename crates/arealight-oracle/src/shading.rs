@@ -352,21 +352,27 @@ pub fn ltc_on(
         _ => lobe(&inverse, share_above_surface(&inverse)),
     };
     let diffuse = albedo * shown;
-    light.radiance * layered(quality, table, surface, &frame, diffuse + glossy, lobe)
+    light.radiance * layered(quality, table, surface, &frame, [diffuse, glossy], lobe)
 }
 
-/// What is left of what the lobes below reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`].
+/// What is left of what the diffuse lobe and the specular ones reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`].
 fn layered(
     quality: Quality,
     table: &LightTable,
     surface: &Surface,
     frame: &SurfaceFrame,
-    below: DVec3,
+    [diffuse, glossy]: [DVec3; 2],
     lobe: impl Fn(&DMat3, f64) -> DVec3,
 ) -> DVec3 {
     let below = match &surface.sheen {
-        None => below,
-        Some(sheen) => with_sheen(sheen, frame, below, &lobe),
+        None => diffuse + glossy,
+        Some(sheen) => {
+            // As in options.glsl
+            let lobes =
+                if surface.coat.is_some() { SpecularLobes::One } else { quality.specular_lobes };
+            let sheen = with_sheen(sheen, lobes, frame, &lobe);
+            diffuse * sheen.left_below + (glossy * sheen.left_below + sheen.radiance).max(DVec3::ZERO)
+        }
     };
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
@@ -408,9 +414,9 @@ fn glossy_part(
     }
     let sample = surface_sample(quality, table, surface, frame);
     let scale = Rescattered::new(surface, &sample).scale;
-    // Below two layers there is one lobe, as in options.glsl
-    let two_layers = surface.coat.is_some() && surface.sheen.is_some();
-    let lobes = if two_layers { SpecularLobes::One } else { quality.specular_lobes };
+    // Below sheen there is one lobe, below black sheen where there is a coat, too: as in material.glsl
+    let has_sheen = surface.sheen.is_some_and(|sheen| surface.coat.is_some() || sheen.color != DVec3::ZERO);
+    let lobes = if has_sheen { SpecularLobes::One } else { quality.specular_lobes };
     let lobes = sample.lobes(lobes, surface.f0, surface.f90).into_iter();
     let parts = lobes.filter(|(_, albedo)| *albedo != DVec3::ZERO);
     let shown = parts.map(|(inverse, albedo)| albedo * lobe(&inverse, share_above_surface(&inverse)));

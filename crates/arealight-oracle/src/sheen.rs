@@ -74,14 +74,17 @@ impl Charlie {
     }
 }
 
-/// The transformed cosine that stands for Charlie at a view: the twin of `arealight_sheen_layer`.
+/// One of the transformed cosines that stand for Charlie at a view: a lobe of `arealight_sheen_layer`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SheenLobe {
     /// M⁻¹ from the surface frame into cosine space.
     pub inverse: DMat3,
-    /// What a colour of 1 reflects of light from everywhere.
+    /// What a colour of 1 reflects of light from everywhere; below 0 for a lobe that takes light away.
     pub albedo: f64,
 }
+
+/// What the second of two lobes has of Charlie's albedo, and takes away.
+pub const HOLE_SHARE: f64 = 0.25;
 
 /// `(q00 - 1) / sin²`, `q02 / sin`, `q20 / sin` and `q22`: a row for each monomial `1, y, y², y³, x, xy, xy², x², x²y, x³` of
 /// `x = MIN_ROUGHNESS / roughness` and the view's cosine `y`.
@@ -98,6 +101,32 @@ const LOBE: [[f64; 4]; 10] = [
     [1.08156, 6.405, 2.79909, -15.2336],
 ];
 
+/// Likewise of the first of two lobes, and of the second.
+const FIRST_LOBE: [[f64; 4]; 10] = [
+    [-0.13149, 0.361569, 0.0752426, 1.31949],
+    [0.0795685, -0.750933, -0.507509, -1.0286],
+    [-0.797448, 1.23546, 1.07581, 1.66252],
+    [0.822861, -0.777411, -1.23096, -0.977043],
+    [1.15234, -2.78307, -0.922504, 3.82266],
+    [3.37522, 4.03748, 3.75964, -8.12919],
+    [-0.434047, -3.39555, 2.05407, 9.60216],
+    [-1.44889, -3.17878, 0.119249, 19.0531],
+    [0.757793, -67.8161, -2.09296, -12.5886],
+    [0.51529, 2.82687, 0.574435, -12.1523],
+];
+const HOLE: [[f64; 4]; 10] = [
+    [0.278544, 1.59541, 0.20479, 1.31666],
+    [-1.72316, -3.21944, -1.83265, -1.42049],
+    [1.86359, 3.12397, 4.81223, 2.68942],
+    [-1.25023, -0.213376, -3.4335, -1.23521],
+    [-2.70468, -4.03953, -2.25019, -3.96172],
+    [2.36349, 7.43148, 9.86338, -1.06574],
+    [2.96525, 1.01746, -12.8099, -5.95062],
+    [3.645, 11.4033, 2.76699, 15.824],
+    [1.70914, -48.2181, -5.23448, 29.5173],
+    [-1.60811, -5.13065, -1.12835, -9.8566],
+];
+
 /// The exponent of what is left of the albedo: a row for each power of `x`, of the powers of `sqrt(y)`.
 const ALBEDO: [&[f64]; 6] = [
     &[0.474986, -0.81853, 3.2161, -8.37422, 9.68834, -3.20163],
@@ -109,15 +138,26 @@ const ALBEDO: [&[f64]; 6] = [
 ];
 
 impl SheenLobe {
-    /// The lobe of a roughness and a view's cosine, clamped to their ranges.
-    pub fn new(roughness: f64, cos_view: f64) -> Self {
+    /// The one lobe of a roughness and a view's cosine, clamped to their ranges.
+    pub fn one(roughness: f64, cos_view: f64) -> Self {
+        Self::of(&LOBE, 1.0, roughness, cos_view)
+    }
+
+    /// Likewise, of two: what Charlie has and more, and what it lacks about the mirror direction.
+    pub fn two(roughness: f64, cos_view: f64) -> [Self; 2] {
+        [(&FIRST_LOBE, 1.0 + HOLE_SHARE), (&HOLE, -HOLE_SHARE)]
+            .map(|(lobe, share)| Self::of(lobe, share, roughness, cos_view))
+    }
+
+    /// That of these coefficients, with a share of Charlie's albedo.
+    fn of(coefficients: &[[f64; 4]; 10], share: f64, roughness: f64, cos_view: f64) -> Self {
         let roughness = if roughness > MIN_ROUGHNESS { roughness.min(1.0) } else { MIN_ROUGHNESS };
         let cos_view = clamped_cosine(cos_view);
         let sin_view = (1.0 - cos_view * cos_view).sqrt();
         let (x, y) = (MIN_ROUGHNESS / roughness, cos_view.max(MIN_COS_VIEW));
         // Entries
         let monomials = [1.0, y, y * y, y * y * y, x, x * y, x * y * y, x * x, x * x * y, x * x * x];
-        let entry = |k: usize| -> f64 { monomials.iter().zip(&LOBE).map(|(m, row)| m * row[k]).sum() };
+        let entry = |k: usize| -> f64 { monomials.iter().zip(coefficients).map(|(m, row)| m * row[k]).sum() };
         let inverse = DMat3::from_cols(
             DVec3::new(1.0 + sin_view * sin_view * entry(0), 0.0, sin_view * entry(2)),
             DVec3::Y,
@@ -128,6 +168,6 @@ impl SheenLobe {
             |coefficients: &[f64], at: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * at + c);
         let rows = ALBEDO.map(|row| polynomial(row, y.sqrt()));
         let masking = Charlie { roughness }.masking(y);
-        Self { inverse, albedo: polynomial(&rows, x).exp() / (4.0 * y * (1.0 + masking)) }
+        Self { inverse, albedo: share * polynomial(&rows, x).exp() / (4.0 * y * (1.0 + masking)) }
     }
 }

@@ -12,10 +12,10 @@
 
 const int AREALIGHT_LOBE_DIFFUSE = 0;
 const int AREALIGHT_LOBE_SPECULAR = 1;
-const int AREALIGHT_LOBE_SECOND = 2; // of two specular lobes
+const int AREALIGHT_LOBE_SECOND = 2; // of two specular lobes, or of two of sheen
 const int AREALIGHT_LOBE_COAT = 3;
 const int AREALIGHT_LOBES = 4;
-// Sheen has the coat's place, below a coat the second specular lobe's (there is one then): with five lobes ArealightPoint is larger than
+// Sheen has the coat's place and the second specular lobe's, below a coat the latter alone: with five lobes ArealightPoint is larger than
 // what drivers keep in registers where a loop indexes it (RADV: 256 bytes), whether a surface has them or not.
 const int AREALIGHT_LOBE_SHEEN = AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SECOND : AREALIGHT_LOBE_COAT;
 
@@ -37,7 +37,13 @@ bool arealight_has_lobe(int lobe) {
     return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
          : AREALIGHT_HAS_LAYER && lobe == AREALIGHT_LOBE_COAT ? true
          : AREALIGHT_HAS_SHEEN && lobe == AREALIGHT_LOBE_SHEEN ? true
+         : AREALIGHT_HAS_TWO_SHEEN_LOBES && lobe == AREALIGHT_LOBE_SECOND ? true
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
+}
+
+// Whether this surface's specular lobe is two: one that has sheen leaves the second place to that.
+bool arealight_has_two_specular_lobes(ArealightSurface surface) {
+    return AREALIGHT_HAS_SHEEN && surface.sheen.color != vec3(0.0) ? false : AREALIGHT_HAS_TWO_SPECULAR_LOBES;
 }
 
 // Puts two specular lobes of these spaces into `point`, exact in the reflectance and its colour: TableSample::lobes.
@@ -50,17 +56,18 @@ void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surfac
 
 // Puts the specular lobes of a surface into `point`. Their albedos, without Fresnel term and of Schlick's weight.
 ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
+    bool has_two = arealight_has_two_specular_lobes(surface);
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
-        ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface);
-        if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+        ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface, has_two);
+        if (has_two) {
             arealight_put_two_lobes(point, surface, stretched.table, stretched.space, stretched.schlick_space);
         } else {
             point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
         }
         return stretched.table;
     }
-    ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, AREALIGHT_HAS_TWO_SPECULAR_LOBES);
-    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+    ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, has_two);
+    if (has_two) {
         arealight_put_two_lobes(point, surface, table, arealight_table_space(frame, table.matrix, table.alpha),
                                 arealight_table_space(frame, table.schlick_matrix, table.alpha));
     } else {
@@ -97,9 +104,12 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         }
     }
     if (AREALIGHT_HAS_SHEEN) {
-        ArealightLayer sheen = arealight_sheen_layer(frame, surface.sheen);
+        ArealightSheenLayer sheen = arealight_sheen_layer(frame, surface.sheen);
         arealight_dim_base(point, sheen.base);
         point.lobes[AREALIGHT_LOBE_SHEEN] = sheen.lobe;
+        if (AREALIGHT_HAS_TWO_SHEEN_LOBES && !arealight_has_two_specular_lobes(surface)) {
+            point.lobes[AREALIGHT_LOBE_SECOND] = sheen.hole;
+        }
     }
     if (AREALIGHT_HAS_COAT) {
         ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
@@ -108,6 +118,12 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     }
     return point;
 }
+
+// Sheen's second lobe takes light away, of a small light more than there is by 3e-3 of its radiance: no light is reflected as less than none.
+#define AREALIGHT_FROM_ZERO(sum)                                                      \
+    if (AREALIGHT_HAS_TWO_SHEEN_LOBES) {                                              \
+        sum.specular = max(sum.specular, vec3(0.0));                                  \
+    }
 
 // Adds what each lobe reflects, its albedo times arealight_lobe_weight: one after the other, or in a loop. For light_kind.glsl.
 #define AREALIGHT_UNROLLED_LOBES(sum, point, local)                                  \
@@ -127,7 +143,8 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     }                                                                                 \
     if (AREALIGHT_HAS_LAYER) {                                                        \
         sum.specular += layer * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \
-    }
+    }                                                                                 \
+    AREALIGHT_FROM_ZERO(sum)
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
     for (int i = 0; i < AREALIGHT_LOBE_END; i++) {                                    \
         if (!arealight_has_lobe(i)) {                                                 \
@@ -139,6 +156,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         } else {                                                                      \
             sum.specular += reflected;                                                \
         }                                                                             \
-    }
+    }                                                                                 \
+    AREALIGHT_FROM_ZERO(sum)
 
 #endif

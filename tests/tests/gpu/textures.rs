@@ -85,14 +85,17 @@ fn scene(uvs: &[[f32; 2]], texture: GpuTexture, texels: &[u32]) -> SceneBuffers 
             transmission_color_texture: GpuMaterial::NO_TEXTURE,
             transmission_color: [1.0; 3],
             transmission: 0.0,
+            specular_texture: GpuMaterial::NO_TEXTURE,
+            specular_color_texture: GpuMaterial::NO_TEXTURE,
+            reserved: [0; 2],
         }],
         textures: vec![texture],
         texels: texels.to_vec(),
     }
 }
 
-/// The roughness that the kernel finds at each pixel of the row: the green channel, bilinear.
-fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
+/// What sees the triangles of [`scene`], whose G-buffer is filled.
+fn renderer<'a>(engine: &'a TestEngine, scene: &SceneBuffers) -> SceneRenderer<'a> {
     let camera = VisibilityConstants {
         camera: [0.0; 3],
         orthographic: 0,
@@ -108,6 +111,12 @@ fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
     let mut renderer =
         SceneRenderer::new(engine, scene, &[], camera, [scene.triangles.len() as u32, 1]).unwrap();
     renderer.visibility().unwrap();
+    renderer
+}
+
+/// The roughness that the kernel finds at each pixel of the row: the green channel, bilinear.
+fn sampled(engine: &TestEngine, scene: &SceneBuffers) -> Vec<f64> {
+    let renderer = renderer(engine, scene);
     let normal: Vec<[f32; 4]> = renderer.g_buffer().normal.download(Usage::COMPUTE_READ).unwrap();
     normal.iter().map(|texel| texel[3].into()).collect()
 }
@@ -178,6 +187,40 @@ fn textures_wrap_wherever_the_coordinate_is() {
             if bound < 0.1 {
                 comparison.add(found, expected(uv, texture, &texels), bound, || format!("{uv:?} {flags}"));
             }
+        }
+    }
+    comparison.assert_all();
+}
+
+#[test]
+fn textures_multiply_a_dielectrics_reflectances() {
+    let Some(engine) = TestEngine::new() else { return };
+    // The colour is sRGB, the weight is not. Red is cut off where the weight is 1, before the weight
+    let (texel, weight) = (0x8040_80ff, f64::from(0x80) / 255.0);
+    let linear = |byte: f64| ((byte / 255.0 + 0.055) / 1.055).powf(2.4);
+    let color = [1.0, linear(128.0), linear(64.0)];
+    let (f0, f90) = ([0.9, 0.04, 0.25], 0.5);
+    let texture = GpuTexture { first_texel: 0, width: 1, height: 1, flags: 0 };
+    let found = |specular_texture: u32, specular_color_texture: u32| {
+        let mut scene = scene(&[[0.5; 2]], texture, &[texel]);
+        scene.textures.push(GpuTexture { flags: GpuTexture::SRGB, ..texture });
+        let material = &mut scene.materials[0];
+        (material.dielectric_f0, material.dielectric_f90) = (f0.map(|f| f as f32), f90 as f32);
+        (material.specular_texture, material.specular_color_texture) =
+            (specular_texture, specular_color_texture);
+        let specular: Vec<[f32; 4]> =
+            renderer(&engine, &scene).g_buffer().specular.download(Usage::COMPUTE_READ).unwrap();
+        specular[0].map(f64::from)
+    };
+    let none = GpuMaterial::NO_TEXTURE;
+    let mut comparison = Comparison::new("reflectances of a dielectric");
+    for (specular, color_texture) in [(none, none), (0, none), (none, 1), (0, 1)] {
+        let weight = if specular == none { 1.0 } else { weight };
+        let color = if color_texture == none { [1.0; 3] } else { color };
+        let [r, g, b] = [0, 1, 2].map(|c| (f0[c] * color[c]).min(f90) * weight);
+        for (found, expected) in found(specular, color_texture).into_iter().zip([r, g, b, f90 * weight]) {
+            // Bytes are decoded by a power of 2.4: a few of its last places, of numbers below 1
+            comparison.add(found, expected, 1e-6, || format!("{specular} {color_texture}"));
         }
     }
     comparison.assert_all();

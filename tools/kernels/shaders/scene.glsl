@@ -72,6 +72,10 @@ struct ArealightGpuMaterial {
     uint transmission_color_texture;
     vec3 transmission_color;
     float transmission;
+    uint specular_texture;
+    uint specular_color_texture;
+    uint reserved0;
+    uint reserved1;
 };
 
 struct ArealightGpuTexture {
@@ -264,8 +268,11 @@ ScenePoint scene_point(BvhHit hit) {
     point.metalness = material.metalness * metallic_roughness.b;
     point.roughness = material.roughness * metallic_roughness.g;
     point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);
-    point.dielectric_f0 = material.dielectric_f0;
-    point.dielectric_f90 = material.dielectric_f90;
+    // KHR_materials_specular: min(reflectance by index and colour, 1) times the weight, which is the grazing reflectance
+    float specular_weight = sample_texture(material.specular_texture, uv).a;
+    point.dielectric_f90 = material.dielectric_f90 * specular_weight;
+    point.dielectric_f0 = min(material.dielectric_f0 * specular_weight * sample_texture(material.specular_color_texture, uv).rgb,
+                              vec3(point.dielectric_f90));
     point.film.weight = material.film_weight * sample_texture(material.film_texture, uv).r;
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,

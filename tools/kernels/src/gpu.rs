@@ -243,6 +243,12 @@ pub struct GpuMaterial {
     pub transmission_color: [f32; 3],
     /// How much of the diffuse part is let through instead of reflected.
     pub transmission: f32,
+    /// Linear texture: alpha times `dielectric_f0` and `dielectric_f90`.
+    pub specular_texture: u32,
+    /// sRGB texture times `dielectric_f0`, which is cut off at `dielectric_f90` after it.
+    pub specular_color_texture: u32,
+    /// Zero.
+    pub reserved: [u32; 2],
 }
 
 /// How far an orthographic camera's position is, in lengths of the direction to it: directions to it differ by this part of a radian.

@@ -92,7 +92,8 @@ fn has_specular_input(material: &SceneMaterial) -> bool {
     // 1e-6: an index of 1.5, computed in f32, must count as 0.04
     let usual = (material.material.dielectric_f0 - Vec3::splat(0.04)).abs().max_element() < 1e-6
         && material.material.dielectric_f90 == 1.0;
-    is_dielectric_somewhere(material) && (!usual || material.material.film.is_some())
+    let textured = material.specular_texture.is_some() || material.specular_color_texture.is_some();
+    is_dielectric_somewhere(material) && (!usual || textured || material.material.film.is_some())
 }
 
 fn has_coat(material: &SceneMaterial) -> bool {

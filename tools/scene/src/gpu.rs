@@ -119,6 +119,8 @@ fn check_indices(scene: &Scene) -> Result<(), BufferError> {
         let textures = [
             ("base_color_texture", material.base_color_texture),
             ("metallic_roughness_texture", material.metallic_roughness_texture),
+            ("specular_texture", material.specular_texture),
+            ("specular_color_texture", material.specular_color_texture),
             ("normal_texture", material.normal_texture),
             ("emission_texture", material.emission_texture),
             ("coat_texture", material.coat_texture),
@@ -238,6 +240,9 @@ fn pack_material(material: &SceneMaterial) -> GpuMaterial {
         transmission_color_texture: texture(material.transmission_color_texture),
         transmission_color: material.material.transmission_color.to_array(),
         transmission: material.material.transmission,
+        specular_texture: texture(material.specular_texture),
+        specular_color_texture: texture(material.specular_color_texture),
+        reserved: [0; 2],
     }
 }
 

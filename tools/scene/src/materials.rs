@@ -8,6 +8,7 @@ use arealight_oracle::material::Material;
 use arealight_oracle::thin_film::ThinFilm;
 use glam::Vec3;
 use gltf::json;
+use gltf::json::extensions::material::Specular;
 use gltf::json::material::AlphaMode;
 use gltf::json::validation::Checked;
 use serde::Deserialize;
@@ -30,6 +31,8 @@ pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32,
     let textured = [
         material.base_color_texture,
         material.metallic_roughness_texture,
+        material.specular_texture,
+        material.specular_color_texture,
         material.normal_texture,
         material.emission_texture,
         material.coat_texture,
@@ -69,7 +72,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     let [r, g, b, alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
     let [metalness] = reader.fractions("metallicFactor", [pbr.metallic_factor.0]);
     let [roughness] = reader.fractions("roughnessFactor", [pbr.roughness_factor.0]);
-    let (dielectric_f0, dielectric_f90) = reader.dielectric(&source);
+    let specular = specular(&source);
+    let (dielectric_f0, dielectric_f90) = reader.dielectric(&source, &specular);
     let clearcoat = reader.clearcoat(&source)?;
     let [coat] = reader.fractions("clearcoatFactor", [clearcoat.factor]);
     let [coat_roughness] = reader.fractions("clearcoatRoughnessFactor", [clearcoat.roughness_factor]);
@@ -100,6 +104,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     // Textures
     let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), true)?;
     let metallic_roughness_texture = reader.texture(pbr.metallic_roughness_texture.as_ref(), false)?;
+    let specular_texture = reader.texture(specular.specular_texture.as_ref(), false)?;
+    let specular_color_texture = reader.texture(specular.specular_color_texture.as_ref(), true)?;
     let emission_texture = reader.texture(source.emissive_texture.as_ref(), true)?;
     let (normal_texture, normal_scale) = reader.normal_texture(source.normal_texture.as_ref())?;
     let coat_texture = reader.texture(clearcoat.texture.as_ref(), false)?;
@@ -129,6 +135,8 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         emission,
         base_color_texture,
         metallic_roughness_texture,
+        specular_texture,
+        specular_color_texture,
         normal_texture,
         normal_scale,
         emission_texture,
@@ -172,24 +180,21 @@ impl Reader<'_> {
 
     /// Reflectance of the dielectric at normal and at grazing incidence, by `KHR_materials_ior` and
     /// `KHR_materials_specular`.
-    fn dielectric(&mut self, source: &json::Material) -> (Vec3, f32) {
-        let extensions = source.extensions.as_ref();
+    fn dielectric(&mut self, source: &json::Material, specular: &Specular) -> (Vec3, f32) {
+        let ior = source.extensions.as_ref().and_then(|e| e.ior.as_ref());
         // An index of zero means a reflectance of one
-        let mut index = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |ior| f64::from(ior.ior.0));
+        let mut index = ior.map_or(1.5, |ior| f64::from(ior.ior.0));
         if !index.is_finite() || (index < 1.0 && index != 0.0) {
             self.warn(format!("KHR_materials_ior: {index} is below 1: 1.5 is used"));
             index = 1.5;
         }
         let by_index = (((index - 1.0) / (index + 1.0)) * ((index - 1.0) / (index + 1.0))) as f32;
-        let Some(specular) = extensions.and_then(|e| e.specular.as_ref()) else {
-            return (Vec3::splat(by_index), 1.0);
-        };
-        if specular.specular_texture.is_some() || specular.specular_color_texture.is_some() {
-            self.warn("KHR_materials_specular: its textures are not supported: ignored");
-        }
         let [weight] = self.fractions("specularFactor", [specular.specular_factor.0]);
         let color = Vec3::from_array(specular.specular_color_factor.0.map(|c| c.clamp(0.0, f32::MAX)));
-        ((color * by_index).min(Vec3::ONE) * weight, weight)
+        let f0 = color * by_index;
+        // What is above 1 is cut off where the colour's texture has been multiplied in
+        let f0 = if specular.specular_color_texture.is_some() { f0 } else { f0.min(Vec3::ONE) };
+        (f0 * weight, weight)
     }
 
     /// What an extension says that the gltf crate does not read; its defaults without it.
@@ -300,6 +305,15 @@ impl Reader<'_> {
             self.warn(format!("{extension} is not supported: ignored"));
         }
     }
+}
+
+/// `KHR_materials_specular`; no textures of it where its factor is zero.
+fn specular(source: &json::Material) -> Specular {
+    let mut specular = source.extensions.as_ref().and_then(|e| e.specular.clone()).unwrap_or_default();
+    if specular.specular_factor.0 <= 0.0 {
+        (specular.specular_texture, specular.specular_color_texture) = (None, None);
+    }
+    specular
 }
 
 /// Whether a material is shaded by its surface's tangents.

@@ -99,6 +99,10 @@ pub struct SceneMaterial {
     pub base_color_texture: Option<u32>,
     /// Of a linear texture: green times roughness, blue times metalness.
     pub metallic_roughness_texture: Option<u32>,
+    /// Of a linear texture: alpha times the dielectric's reflectances, normal and grazing.
+    pub specular_texture: Option<u32>,
+    /// Of an sRGB texture times the dielectric's reflectance at normal incidence, which it cuts off at that at grazing incidence.
+    pub specular_color_texture: Option<u32>,
     /// Of a linear texture of tangent-space normals.
     pub normal_texture: Option<u32>,
     /// Scale of the normal texture's x and y.

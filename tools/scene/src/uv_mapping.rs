@@ -94,11 +94,14 @@ fn textures(material: &json::Material) -> Vec<(String, UvMapping)> {
         let transform = info.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
         ("normalTexture".to_owned(), UvMapping::new(info.tex_coord, transform))
     });
+    let specular = material.extensions.as_ref().and_then(|e| e.specular.as_ref());
     let mut found: Vec<(String, UvMapping)> = [
         of_info("baseColorTexture", &pbr.base_color_texture),
         of_info("metallicRoughnessTexture", &pbr.metallic_roughness_texture),
         normal,
         of_info("emissiveTexture", &material.emissive_texture),
+        specular.and_then(|s| of_info("specularTexture", &s.specular_texture)),
+        specular.and_then(|s| of_info("specularColorTexture", &s.specular_color_texture)),
     ]
     .into_iter()
     .flatten()

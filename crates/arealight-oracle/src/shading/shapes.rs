@@ -51,8 +51,8 @@ pub fn shape_ltc_on(
     } else {
         lobe(&inverse, share_above_surface(&inverse))
     };
-    let base = albedo * diffuse + glossy;
-    Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, base, lobe))
+    let parts = [albedo * diffuse, glossy];
+    Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, parts, lobe))
 }
 
 /// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the

@@ -6,8 +6,10 @@ use crate::formula::MIN_COS_VIEW;
 use crate::frame::SurfaceFrame;
 use crate::material::Sheen;
 use crate::sheen::{Charlie, MIN_ROUGHNESS, SheenLobe};
+use arealight::SpecularLobes;
 use arealight::table::share_above_surface;
 use glam::{DMat3, DVec3};
+use std::slice;
 
 /// What a surface with sheen reflects, `base` being what the lobes below do: Charlie, and the base times what its albedo at the view
 /// leaves.
@@ -31,16 +33,28 @@ pub(super) fn sheen_truth(
     }
 }
 
-/// What is left of what the lobes below reflect, with what sheen does: the twin of `arealight_sheen_layer`. `lobe` is the form factor
-/// of the light in the cosine space of a lobe, a channel, of which a part lies above the surface.
+/// What sheen reflects of a light of unit radiance.
+pub(super) struct SheenLight {
+    /// Below 0 where the second of two lobes takes more away than the first has.
+    pub radiance: DVec3,
+    /// The part of the light that the lobes below get.
+    pub left_below: f64,
+}
+
+/// The twin of `arealight_sheen_layer`. `lobe` is the form factor of the light in the cosine space of a lobe, a channel, of which a part lies above the
+/// surface.
 pub(super) fn with_sheen(
     sheen: &Sheen,
+    lobes: SpecularLobes,
     frame: &SurfaceFrame,
-    below: DVec3,
     lobe: impl Fn(&DMat3, f64) -> DVec3,
-) -> DVec3 {
-    let fitted = SheenLobe::new(sheen.roughness, frame.cos_view());
-    let above_surface = share_above_surface(&fitted.inverse);
-    below * sheen.left_below(fitted.albedo)
-        + sheen.color * fitted.albedo * lobe(&fitted.inverse, above_surface)
+) -> SheenLight {
+    let cos_view = frame.cos_view();
+    let one = SheenLobe::one(sheen.roughness, cos_view);
+    let two = SheenLobe::two(sheen.roughness, cos_view);
+    let lobes = if lobes == SpecularLobes::One { slice::from_ref(&one) } else { two.as_slice() };
+    let sent = lobes
+        .iter()
+        .map(|fitted| fitted.albedo * lobe(&fitted.inverse, share_above_surface(&fitted.inverse)));
+    SheenLight { radiance: sheen.color * sent.sum::<DVec3>(), left_below: sheen.left_below(one.albedo) }
 }

@@ -141,7 +141,7 @@ mat3 arealight_anisotropic_space(ArealightFrame frame, vec4 texel, float alpha, 
 // The two lobes of a distribution that is stretched along a tangent, in the place of arealight_specular_sample's. Continuous in
 // view, tangent and roughness; of equal roughnesses what isotropic lobes are, to 1e-6.
 // Cost a point: two least squares of nine directions and four lookups of a layer each; nothing a light.
-ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, ArealightSurface surface) {
+ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, ArealightSurface surface, bool has_two_lobes) {
     vec2 roughness = arealight_axis_roughness(surface);
     vec2 alpha = roughness * roughness;
     vec2 axis = arealight_surface_axis(frame, surface.anisotropy.tangent);
@@ -156,7 +156,7 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     float lobe_alpha = lobe_roughness * lobe_roughness;
     ArealightAxisView lobe_view = arealight_stretched_view(view, alpha / lobe_alpha);
     mat3 lobe_map = arealight_isotropic_map(view, lobe_view, alpha, lobe_alpha, mean);
-    ArealightTableSample lobe = arealight_axis_sample(frame, lobe_view, lobe_roughness, AREALIGHT_HAS_TWO_SPECULAR_LOBES);
+    ArealightTableSample lobe = arealight_axis_sample(frame, lobe_view, lobe_roughness, has_two_lobes);
 
     // Albedos, from the lobe of the mean square at the view that it sees, and from that of the view's azimuth
     vec2 weights = view.azimuth * view.azimuth * (view.sin_view * view.sin_view) + vec2(0.5 * AREALIGHT_AZIMUTH_START);
@@ -170,7 +170,7 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     result.table.schlick = min(arealight_axis_sample(frame, view, azimuth_roughness, false).schlick, result.table.albedo);
     float scale = mean / lobe_alpha;
     result.space = arealight_anisotropic_space(frame, lobe.matrix, lobe.alpha, lobe_map, scale);
-    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+    if (has_two_lobes) {
         result.schlick_space = arealight_anisotropic_space(frame, lobe.schlick_matrix, lobe.alpha, lobe_map, scale);
         result.table.second_shares = lobe.second_shares;
     } else {

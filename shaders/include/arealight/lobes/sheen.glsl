@@ -5,11 +5,13 @@
 #include "arealight/lobes/lobe.glsl"
 
 // Sheen above other lobes: KHR_materials_sheen, the Charlie BRDF of Estevez and Kulla 2017, by formulas: no table is read.
+// With AREALIGHT_TWO_SPECULAR_LOBES it is two lobes, the second of which takes light away: Charlie has a hole about the mirror direction. Else, and where
+// surfaces may have coats, it is one.
 
 // The smallest sheen roughness; a smaller one counts as this. Below it the lobe is seen at grazing angles alone.
 const float AREALIGHT_SHEEN_MIN_ROUGHNESS = 0.07;
 
-// Entries (q00 - 1) / sin^2, q02 / sin, q20 / sin, q22 of the lobe, sin being that of the view: the cubic of
+// Entries (q00 - 1) / sin^2, q02 / sin, q20 / sin, q22 of the one lobe, sin being that of the view: the cubic of
 // arealight_formula_cubic in AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness and the view's cosine.
 const vec4 AREALIGHT_SHEEN_LOBE[10] = vec4[10](
     vec4(-0.0267666, 0.293183, 0.0270966, 1.45411),
@@ -22,6 +24,31 @@ const vec4 AREALIGHT_SHEEN_LOBE[10] = vec4[10](
     vec4(-2.85413, -8.55474, -3.64936, 24.8031),
     vec4(0.275537, -118.524, -2.21212, -12.7155),
     vec4(1.08156, 6.405, 2.79909, -15.2336));
+
+// Likewise of the first of two lobes, and of the second, which takes this part of the albedo away from it.
+const vec4 AREALIGHT_SHEEN_FIRST_LOBE[10] = vec4[10](
+    vec4(-0.13149, 0.361569, 0.0752426, 1.31949),
+    vec4(0.0795685, -0.750933, -0.507509, -1.0286),
+    vec4(-0.797448, 1.23546, 1.07581, 1.66252),
+    vec4(0.822861, -0.777411, -1.23096, -0.977043),
+    vec4(1.15234, -2.78307, -0.922504, 3.82266),
+    vec4(3.37522, 4.03748, 3.75964, -8.12919),
+    vec4(-0.434047, -3.39555, 2.05407, 9.60216),
+    vec4(-1.44889, -3.17878, 0.119249, 19.0531),
+    vec4(0.757793, -67.8161, -2.09296, -12.5886),
+    vec4(0.51529, 2.82687, 0.574435, -12.1523));
+const vec4 AREALIGHT_SHEEN_HOLE[10] = vec4[10](
+    vec4(0.278544, 1.59541, 0.20479, 1.31666),
+    vec4(-1.72316, -3.21944, -1.83265, -1.42049),
+    vec4(1.86359, 3.12397, 4.81223, 2.68942),
+    vec4(-1.25023, -0.213376, -3.4335, -1.23521),
+    vec4(-2.70468, -4.03953, -2.25019, -3.96172),
+    vec4(2.36349, 7.43148, 9.86338, -1.06574),
+    vec4(2.96525, 1.01746, -12.8099, -5.95062),
+    vec4(3.645, 11.4033, 2.76699, 15.824),
+    vec4(1.70914, -48.2181, -5.23448, 29.5173),
+    vec4(-1.60811, -5.13065, -1.12835, -9.8566));
+const float AREALIGHT_SHEEN_HOLE_SHARE = 0.25;
 
 // L(x) = a / (1 + b x^c) + d x + e of the masking of Charlie, for p = (1 - alpha)^2 = 0 and 1: (a, b, c, d), e.
 const vec4 AREALIGHT_SHEEN_MASKING[2] = vec4[2](
@@ -59,25 +86,40 @@ float arealight_sheen_albedo(float roughness, float cos_view) {
     return exp(exponent) / (4.0 * cos_view * (1.0 + arealight_sheen_masking(cos_view, roughness)));
 }
 
-// The space of the lobe, from the shading frame: its own surface's, since Charlie does not lean towards the mirror direction. At the
-// normal it is symmetric about it. For the ranges of arealight_sheen_albedo; determinants are above 0 at every one.
-mat3 arealight_sheen_space(ArealightFrame frame, float roughness, float cos_view) {
-    vec4 entries = arealight_formula_cubic(AREALIGHT_SHEEN_LOBE, AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness, cos_view);
+// The space of a lobe of these coefficients, from the shading frame: its own surface's, since Charlie does not lean towards the mirror
+// direction. At the normal it is symmetric about it. For the ranges of arealight_sheen_albedo; determinants are above 0 at every one.
+mat3 arealight_sheen_space(vec4 coefficients[10], ArealightFrame frame, float roughness, float cos_view) {
+    vec4 entries = arealight_formula_cubic(coefficients, AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness, cos_view);
     float s = frame.sin_view;
     return mat3(1.0 + s * s * entries.x, 0.0, s * entries.z, 0.0, 1.0, 0.0, s * entries.y, 0.0, entries.w);
 }
 
-// Sheen's lobe, and what it keeps from the lobes below: radiance = sheen + base * those. The part of the light that the base gets is a
+// Sheen's lobes.
+struct ArealightSheenLayer {
+    ArealightLobe lobe; // the one, or the first of two
+    ArealightLobe hole; // the second, with AREALIGHT_HAS_TWO_SHEEN_LOBES alone: its albedo is 0 or below
+    float base;         // of the light that the lobes below get, in [0, 1]
+};
+
+// Sheen's lobes, and what they keep from the lobes below: radiance = sheen + base * those. The part of the light that the base gets is a
 // scalar of the view alone, the same for each channel: 1 - the largest channel of the colour times the albedo, from 0 on.
 //
-// Mean error of the reflected radiance, for a colour of 1 and random quads of unit radiance, roughness 0.1 to 1: 1.3e-3. No
-// sampler, no memory. Source: docs/decisions/0019-sheen.md.
-ArealightLayer arealight_sheen_layer(ArealightFrame frame, ArealightSheen sheen) {
+// Mean error of the reflected radiance, for a colour of 1 and random quads of unit radiance, roughness 0.1 to 1: .6e-3 by two lobes, 1.8e-3 by
+// one. No sampler, no memory. Source: docs/decisions/0019-sheen.md.
+ArealightSheenLayer arealight_sheen_layer(ArealightFrame frame, ArealightSheen sheen) {
     float roughness = arealight_clamped_roughness(sheen.roughness, AREALIGHT_SHEEN_MIN_ROUGHNESS);
     float cos_view = max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW);
     float albedo = arealight_sheen_albedo(roughness, cos_view);
-    mat3 space = arealight_sheen_space(frame, roughness, cos_view);
-    return ArealightLayer(arealight_lobe(space, sheen.color * albedo), max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
+    float base = max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0);
+    vec3 color = sheen.color * albedo;
+    if (!AREALIGHT_HAS_TWO_SHEEN_LOBES) {
+        ArealightLobe lobe = arealight_lobe(arealight_sheen_space(AREALIGHT_SHEEN_LOBE, frame, roughness, cos_view), color);
+        return ArealightSheenLayer(lobe, lobe, base);
+    }
+    mat3 first = arealight_sheen_space(AREALIGHT_SHEEN_FIRST_LOBE, frame, roughness, cos_view);
+    mat3 hole = arealight_sheen_space(AREALIGHT_SHEEN_HOLE, frame, roughness, cos_view);
+    return ArealightSheenLayer(arealight_lobe(first, (1.0 + AREALIGHT_SHEEN_HOLE_SHARE) * color),
+                               arealight_lobe(hole, -AREALIGHT_SHEEN_HOLE_SHARE * color), base);
 }
 
 #endif

@@ -171,7 +171,10 @@ fn structures_of_scenes_have_the_same_offsets() {
                 transmission_texture,
                 transmission_color_texture,
                 transmission_color,
-                transmission
+                transmission,
+                specular_texture,
+                specular_color_texture,
+                reserved as "reserved0"
             ),
         ),
         (

@@ -52,6 +52,37 @@ fn index_and_specular_make_the_dielectric() {
     close(with(both), Vec3::splat(0.1), 1.0);
 }
 
+fn with_specular(values: &Value) -> Value {
+    json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": { "KHR_materials_specular": values } })
+}
+
+#[test]
+fn specular_is_read_with_its_textures() {
+    let scene = load(textured(with_specular(&json!({
+        "specularFactor": 0.5, "specularTexture": { "index": 0 },
+        "specularColorFactor": [1, 0.5, 50], "specularColorTexture": { "index": 0 } }))));
+    assert_eq!(warnings(&scene), [""; 0]);
+    let read = &scene.materials[0];
+    // The colour is sRGB, the weight is not
+    let textures = [read.specular_texture, read.specular_color_texture].map(Option::unwrap);
+    assert_eq!(textures.map(|index| scene.textures[index as usize].srgb), [false, true]);
+    let gpu = SceneBuffers::new(&scene, DVec3::ZERO).unwrap().materials[0];
+    assert_eq!([gpu.specular_texture, gpu.specular_color_texture], textures);
+    // What is above 1 is cut off by the kernel, below the colour's texture
+    let f0 = Vec3::from_array(gpu.dielectric_f0);
+    assert!((f0 - Vec3::new(0.02, 0.01, 1.0)).length() < 1e-6 && gpu.dielectric_f90 == 0.5, "{f0}");
+    // A texture makes a usual dielectric unusual; none of either is read where the factor is zero
+    let effects = |values: Value| {
+        let scene = load(textured(with_specular(&values)));
+        (scene.effects().contains(Effects::SPECULAR_INPUT), scene.textures.len())
+    };
+    for texture in ["specularTexture", "specularColorTexture"] {
+        assert_eq!(effects(json!({ texture: { "index": 0 } })), (true, 1));
+        assert_eq!(effects(json!({ "specularFactor": 0, texture: { "index": 0 } })), (true, 0));
+    }
+    assert_eq!(effects(json!({})), (false, 0));
+}
+
 #[test]
 fn what_is_out_of_range_or_unknown_is_said() {
     for (value, text) in [
@@ -319,8 +350,7 @@ fn texture_features_that_are_missing_are_said() {
     attributes.as_object_mut().unwrap().remove("TEXCOORD_0");
     let expected = [
         "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_0: its emissive texture is read at (0, 0)",
-        "material '#0': normalTexture, emissiveTexture: mapped otherwise than baseColorTexture, drawn as that is",
-        "material '#0': KHR_materials_specular: its textures are not supported: ignored",
+        "material '#0': normalTexture, emissiveTexture, specularTexture: mapped otherwise than baseColorTexture, drawn as that is",
         "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_1: its textures are read at (0, 0)",
     ];
     assert_eq!(warnings(&load(writer)), expected);
