@@ -368,8 +368,7 @@ fn layered(
         None => diffuse + glossy,
         Some(sheen) => {
             // As in options.glsl
-            let lobes =
-                if surface.coat.is_some() { SpecularLobes::One } else { quality.specular_lobes };
+            let lobes = if surface.coat.is_some() { SpecularLobes::One } else { quality.specular_lobes };
             let sheen = with_sheen(sheen, lobes, frame, &lobe);
             diffuse * sheen.left_below + (glossy * sheen.left_below + sheen.radiance).max(DVec3::ZERO)
         }

@@ -38,7 +38,8 @@ pub enum SpecularLobes {
     /// stays exact in each.
     #[default]
     One = 0,
-    /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. One all the same of a surface that has sheen, where one may have sheen and a coat
+    /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. Of a surface that has sheen the second goes to that, at a third to a half of
+    /// its error. One all the same where a surface may have sheen and a coat
     /// ([`crate::Effects`]), where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
     Two = 1,
 }
