@@ -41,9 +41,9 @@ bool arealight_has_lobe(int lobe) {
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 }
 
-// Whether this surface's specular lobe is two: one that has sheen leaves the second place to that.
-bool arealight_has_two_specular_lobes(ArealightSurface surface) {
-    return AREALIGHT_HAS_SHEEN && surface.sheen.color != vec3(0.0) ? false : AREALIGHT_HAS_TWO_SPECULAR_LOBES;
+// Whether the specular lobe of a surface is two, whose sheen has this colour: one that has any leaves the second place to that.
+bool arealight_has_two_specular_lobes(vec3 sheen) {
+    return AREALIGHT_HAS_SHEEN && sheen != vec3(0.0) ? false : AREALIGHT_HAS_TWO_SPECULAR_LOBES;
 }
 
 // Puts two specular lobes of these spaces into `point`, exact in the reflectance and its colour: TableSample::lobes.
@@ -54,25 +54,29 @@ void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surfac
     point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(second, second_albedo);
 }
 
-// Puts the specular lobes of a surface into `point`. Their albedos, without Fresnel term and of Schlick's weight.
+// Puts the specular lobes of a surface into `point`; what there may not be is a branch of its own, which is removed before a driver gets it. Their albedos, without Fresnel term and of Schlick's weight.
 ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
-    bool has_two = arealight_has_two_specular_lobes(surface);
+    bool has_two = arealight_has_two_specular_lobes(surface.sheen.color);
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface, has_two);
-        if (has_two) {
-            arealight_put_two_lobes(point, surface, stretched.table, stretched.space, stretched.schlick_space);
-        } else {
-            point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
+        if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+            if (has_two) {
+                arealight_put_two_lobes(point, surface, stretched.table, stretched.space, stretched.schlick_space);
+                return stretched.table;
+            }
         }
+        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_anisotropic_lobe(stretched, surface.f0, surface.f90);
         return stretched.table;
     }
     ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, has_two);
-    if (has_two) {
-        arealight_put_two_lobes(point, surface, table, arealight_table_space(frame, table.matrix, table.alpha),
-                                arealight_table_space(frame, table.schlick_matrix, table.alpha));
-    } else {
-        point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
+    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+        if (has_two) {
+            arealight_put_two_lobes(point, surface, table, arealight_table_space(frame, table.matrix, table.alpha),
+                                    arealight_table_space(frame, table.schlick_matrix, table.alpha));
+            return table;
+        }
     }
+    point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_specular_lobe(frame, table, surface.f0, surface.f90);
     return table;
 }
 
@@ -107,7 +111,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         ArealightSheenLayer sheen = arealight_sheen_layer(frame, surface.sheen);
         arealight_dim_base(point, sheen.base);
         point.lobes[AREALIGHT_LOBE_SHEEN] = sheen.lobe;
-        if (AREALIGHT_HAS_TWO_SHEEN_LOBES && !arealight_has_two_specular_lobes(surface)) {
+        if (AREALIGHT_HAS_TWO_SHEEN_LOBES && !arealight_has_two_specular_lobes(surface.sheen.color)) {
             point.lobes[AREALIGHT_LOBE_SECOND] = sheen.hole;
         }
     }

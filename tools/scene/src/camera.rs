@@ -1,6 +1,6 @@
 //! Cameras: pinholes, and orthographic ones.
 
-use crate::Bounds;
+use crate::{Bounds, MAX_COORDINATE};
 use arealight_tool_kernels::gpu::VisibilityConstants;
 use glam::{DVec3, Vec3};
 
@@ -42,11 +42,17 @@ impl Camera {
         (in_range && half_height.is_finite()).then_some(Self { half_height, aspect, ..self })
     }
 
-    /// None if the image has no width or no height.
+    /// None if the image has no width or no height, or either is beyond [`MAX_COORDINATE`].
     pub(crate) fn orthographic(self, orthographic: &gltf::json::camera::Orthographic) -> Option<Self> {
         let [width, half_height] = [orthographic.xmag, orthographic.ymag].map(f64::from);
         let aspect = Some(width / half_height);
-        (width > 0.0 && half_height > 0.0).then_some(Self { orthographic: true, half_height, aspect, ..self })
+        let in_range = |size: f64| size > 0.0 && size <= MAX_COORDINATE;
+        (in_range(width) && in_range(half_height)).then_some(Self {
+            orthographic: true,
+            half_height,
+            aspect,
+            ..self
+        })
     }
 
     /// A camera that looks along `forward` from where it just sees all of `bounds` in an image of `aspect`.

@@ -10,7 +10,7 @@
 use crate::images::halved;
 use crate::load::Loader;
 use crate::shown::{Images, Key, Rectangle, Shown};
-use crate::small_parts::{self, Simplified};
+use crate::small_parts;
 use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{Light, LightShape, LightTexture, TexturePart};
@@ -150,10 +150,8 @@ pub(crate) fn assign(loader: &mut Loader) {
     }
     scene.light_textures = layers.made;
     scale_down(scene);
-    for Simplified { small, faint, lost } in simplified {
+    for small in simplified {
         warn_of(loader, &small, "small, one of many parts of its surface: its mean colour is everywhere");
-        let share = lost * 100.0;
-        warn_of(loader, &faint, &format!("with {share:.2} % of its surface's light in all: left out"));
     }
     for (loss, lights) in losses {
         warn_of(loader, &lights, &format!("{loss}: its mean colour is everywhere"));

@@ -176,7 +176,7 @@ pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
         let (made, wrong) = match (&camera.perspective, &camera.orthographic) {
             (Some(perspective), _) => (looking.perspective(perspective), "yfov must be between 0 and pi"),
             (None, Some(orthographic)) => {
-                (looking.orthographic(orthographic), "xmag and ymag must be more than 0")
+                (looking.orthographic(orthographic), "xmag and ymag must be more than 0 and at most 1e15")
             }
             (None, None) => (None, "it is neither perspective nor orthographic"),
         };

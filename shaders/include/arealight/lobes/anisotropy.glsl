@@ -170,15 +170,17 @@ ArealightStretchedSample arealight_stretched_sample(ArealightFrame frame, Areali
     result.table.schlick = min(arealight_axis_sample(frame, view, azimuth_roughness, false).schlick, result.table.albedo);
     float scale = mean / lobe_alpha;
     result.space = arealight_anisotropic_space(frame, lobe.matrix, lobe.alpha, lobe_map, scale);
-    if (has_two_lobes) {
-        result.schlick_space = arealight_anisotropic_space(frame, lobe.schlick_matrix, lobe.alpha, lobe_map, scale);
-        result.table.second_shares = lobe.second_shares;
-    } else {
-        ArealightAxisView schlick_view = arealight_stretched_view(view, alpha / mean);
-        mat3 schlick_map = arealight_isotropic_map(view, schlick_view, alpha, mean, mean);
-        ArealightTableSample schlick_lobe = arealight_axis_sample(frame, schlick_view, mean_roughness, false);
-        result.schlick_space = arealight_anisotropic_space(frame, schlick_lobe.schlick_matrix, schlick_lobe.alpha, schlick_map, 1.0);
+    if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+        if (has_two_lobes) {
+            result.schlick_space = arealight_anisotropic_space(frame, lobe.schlick_matrix, lobe.alpha, lobe_map, scale);
+            result.table.second_shares = lobe.second_shares;
+            return result;
+        }
     }
+    ArealightAxisView schlick_view = arealight_stretched_view(view, alpha / mean);
+    mat3 schlick_map = arealight_isotropic_map(view, schlick_view, alpha, mean, mean);
+    ArealightTableSample schlick_lobe = arealight_axis_sample(frame, schlick_view, mean_roughness, false);
+    result.schlick_space = arealight_anisotropic_space(frame, schlick_lobe.schlick_matrix, schlick_lobe.alpha, schlick_map, 1.0);
     return result;
 }
 

@@ -178,10 +178,13 @@ fn orthographic_cameras_see_along_parallel_lines() {
 
 #[test]
 fn orthographic_cameras_without_a_size_are_left_out() {
-    for size in [[0.0, 1.0], [1.0, 0.0], [1.0, -1.0]] {
+    for size in [[0.0, 1.0], [1.0, 0.0], [1.0, -1.0], [1e16, 1.0], [1.0, 1e30]] {
         let scene = load(orthographic("bad", [0.0, 0.0, 1.0], [0.0; 3], size));
         assert!(scene.cameras.is_empty());
-        assert_eq!(warnings(&scene), ["camera 'bad': xmag and ymag must be more than 0: left out"]);
+        assert_eq!(
+            warnings(&scene),
+            ["camera 'bad': xmag and ymag must be more than 0 and at most 1e15: left out"]
+        );
     }
 }
 

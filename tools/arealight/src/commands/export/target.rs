@@ -133,7 +133,7 @@ mod tests {
         ("diffuse,glossy,polygon,mesh,textured", 134_000),
         ("diffuse,glossy,ellipse,sphere,tube", 224_000),
         ("diffuse,glossy,ellipse,textured_ellipse", 162_000),
-        ("diffuse,glossy,coat,coat_normal", 91_000),
+        ("diffuse,glossy,coat,coat_normal", 92_000),
         ("diffuse,glossy,coupled,coupled_by_albedo,multiple_scattering", 92_000),
         ("diffuse,glossy,sheen,anisotropy,diffuse_roughness", 132_000),
         (
