@@ -44,6 +44,8 @@ pub struct MaterialResult {
     pub error: f64,
     /// `error` with two specular lobes ([`SpecularLobes::Two`]).
     pub two_lobes: f64,
+    /// `error` over half vectors ([`SpecularLobes::HalfVectors`]).
+    pub half_vectors: f64,
     /// The same of the reference itself, of one of the two: its noise.
     pub noise: f64,
 }
@@ -78,14 +80,14 @@ pub enum MaterialsError {
 
 /// Two independent pictures of the truth, and ours.
 struct Pixels {
-    /// By one specular lobe and by two.
-    ours: [Vec<DVec3>; 2],
+    /// By one specular lobe, by two, and over half vectors.
+    ours: [Vec<DVec3>; 3],
     truths: [Vec<DVec3>; 2],
     /// Index into the scene's materials; none where nothing or a lamp is seen.
     materials: Vec<Option<usize>>,
 }
 
-/// Renders a scene without shadows, at the exact level by one specular lobe and by two, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
+/// Renders a scene without shadows, at the exact level by one specular lobe, by two and over half vectors, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
 /// [`Options::samples`].
 ///
 /// # Errors
@@ -155,7 +157,7 @@ fn render(
         }
         Ok(found)
     };
-    let ours = [ours(SpecularLobes::One)?, ours(SpecularLobes::Two)?];
+    let ours = [ours(SpecularLobes::One)?, ours(SpecularLobes::Two)?, ours(SpecularLobes::HalfVectors)?];
     let mut truth = |seed| {
         let mut told = 0;
         pictures.begin()?;
@@ -179,7 +181,7 @@ impl Pixels {
     fn errors(&self, material: usize) -> Option<MaterialResult> {
         let mut pixels = 0;
         let [mut mean, mut truth, mut noise] = [0.0; 3];
-        let mut squares = [0.0; 2];
+        let mut squares = [0.0; 3];
         for (index, shown) in self.materials.iter().enumerate() {
             if *shown != Some(material) {
                 continue;
@@ -203,6 +205,7 @@ impl Pixels {
             ratio: mean / truth,
             error: error(squares[0]),
             two_lobes: error(squares[1]),
+            half_vectors: error(squares[2]),
             noise: (noise / count).sqrt() / reference,
         })
     }
@@ -217,13 +220,15 @@ impl MaterialErrors {
     /// The table.
     pub fn to_text(&self) -> String {
         let mut text = format!("{}: {} samples a pixel, two references\n\n", self.device, self.samples);
-        text +=
-            "material              pixels  mean / reference  RMSE / mean  by two lobes  reference's noise\n";
-        for MaterialResult { name, pixels, ratio, error, two_lobes, noise, .. } in &self.materials {
-            let [error, two_lobes, noise] = [error, two_lobes, noise].map(|part| 100.0 * part);
+        text += "material              pixels  mean / reference  RMSE / mean  by two lobes  half vectors  reference's noise\n";
+        for MaterialResult { name, pixels, ratio, error, two_lobes, half_vectors, noise, .. } in
+            &self.materials
+        {
+            let [error, two_lobes, half_vectors, noise] =
+                [error, two_lobes, half_vectors, noise].map(|part| 100.0 * part);
             let _ = writeln!(
                 text,
-                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {noise:15.2} %"
+                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {half_vectors:10.2} %  {noise:15.2} %"
             );
         }
         text
@@ -232,13 +237,16 @@ impl MaterialErrors {
     /// The same as Markdown, with the command that repeats it.
     pub fn to_markdown(&self, command: &str) -> String {
         let mut text = format!(
-            "By `{command}` on {}: the exact level, by one specular lobe and by two, beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
+            "By `{command}` on {}: the exact level, by one specular lobe, by two and over half vectors, beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
             self.device
         );
-        text += "| material | effects | mean over reference | RMSE over mean | by two lobes |\n|---|---|---|---|---|\n";
-        for MaterialResult { name, effects, ratio, error, two_lobes, .. } in &self.materials {
-            let [error, two_lobes] = [error, two_lobes].map(|part| 100.0 * part);
-            let _ = writeln!(text, "| {name} | {effects} | {ratio:.4} | {error:.2} % | {two_lobes:.2} % |");
+        text += "| material | effects | mean over reference | RMSE over mean | by two lobes | over half vectors |\n|---|---|---|---|---|---|\n";
+        for MaterialResult { name, effects, ratio, error, two_lobes, half_vectors, .. } in &self.materials {
+            let [error, two_lobes, half_vectors] = [error, two_lobes, half_vectors].map(|part| 100.0 * part);
+            let _ = writeln!(
+                text,
+                "| {name} | {effects} | {ratio:.4} | {error:.2} % | {two_lobes:.2} % | {half_vectors:.2} % |"
+            );
         }
         text
     }
@@ -257,7 +265,7 @@ mod tests {
         let truths = [noisy(1), noisy(2)];
         let mut materials = vec![Some(3); 4096];
         materials.push(None);
-        let ours = [off_by, 0.5 * off_by].map(|off_by| vec![DVec3::splat(1.0 + off_by); 4096]);
+        let ours = [off_by, 0.5 * off_by, 0.2 * off_by].map(|off_by| vec![DVec3::splat(1.0 + off_by); 4096]);
         let mut pixels = Pixels { ours, truths, materials };
         for ours in &mut pixels.ours {
             ours.push(DVec3::splat(100.0));
@@ -275,6 +283,7 @@ mod tests {
         assert!((right.noise - 0.5).abs() < 1e-9, "{right:?}");
         let wrong = pixels(0.05).errors(3).unwrap();
         assert!((wrong.two_lobes - 0.025).abs() < 1e-9, "{wrong:?}");
+        assert!((wrong.half_vectors - 0.01).abs() < 1e-9, "{wrong:?}");
         assert!((wrong.error - 0.05).abs() < 1e-9 && (wrong.ratio - 1.05).abs() < 1e-9, "{wrong:?}");
         assert_eq!(wrong.pixels, 4096);
         assert!(pixels(0.0).errors(2).is_none(), "no pixel shows it");

@@ -45,8 +45,8 @@ int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
     float sum = 0.0;
     for (int lobe = AREALIGHT_LOBE_SPECULAR; lobe < AREALIGHT_LOBE_END; lobe++) {
         if (arealight_has_lobe(lobe)) {
-            float albedo = arealight_luminance(point.lobes[lobe].albedo);
-            float weight = albedo * picked_light_weight(light, point.lobes[lobe].space * point.to_frame);
+            ArealightLobe fitted = arealight_lobe_at(point, lobe);
+            float weight = arealight_luminance(fitted.albedo) * picked_light_weight(light, fitted.space * point.to_frame);
             if (weight > 0.0 && arealight_choose(random, sum, weight)) {
                 chosen = lobe;
             }
@@ -103,7 +103,7 @@ vec2 traced(uint pick, ArealightPoint point, float alpha, vec3 origin, vec2 rand
     PickedLight light = picked_light(pick, point.position);
     bool is_specular = (pick & PICK_SPECULAR) != 0u;
     int lobe = is_specular ? chosen_lobe(point, light, random.x) : AREALIGHT_LOBE_DIFFUSE;
-    mat3 space = point.lobes[lobe].space;
+    mat3 space = arealight_lobe_at(point, lobe).space;
     ArealightShadowOutline outline = chosen_outline(light, space * point.to_frame, random.x);
     ArealightShadowRay ray;
     if (!arealight_draw_ray(outline, point.to_frame, space, random, ray)) {

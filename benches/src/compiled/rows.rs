@@ -102,6 +102,7 @@ pub fn rows() -> Vec<Row> {
     let difference = Quality { form_factor: FormFactor::Difference, ..exact };
     let both = Quality { horizon: Horizon::Both, ..exact };
     let two_lobes = Quality { specular_lobes: SpecularLobes::Two, ..exact };
+    let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
     let formula = Quality { lobes: Lobes::Formula, ..exact };
     let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
     let footprint = |footprint| Quality { footprint, ..exact };
@@ -120,6 +121,7 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact", LOBES, exact),
         quads("quads", "both horizons", LOBES, both),
         quads("quads", "two specular lobes", LOBES, two_lobes),
+        quads("quads", "half vectors", LOBES, half_vectors),
         quads("quads", "difference", LOBES, difference),
         quads("quads", "formula", LOBES, formula),
         quads("quads", "difference, both horizons, two specular lobes", LOBES, everything),
@@ -143,9 +145,11 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "exact, coat", LOBES | Effects::COAT, exact),
         quads("quads", "exact, coat with its own normal", LOBES | COATS, exact),
         quads("quads", "both horizons, coat with its own normal", LOBES | COATS, both),
+        quads("quads", "half vectors, coat", LOBES | Effects::COAT, half_vectors),
         quads("quads", "exact, sheen", LOBES | Effects::SHEEN, exact),
         quads("quads", "two specular lobes, sheen", LOBES | Effects::SHEEN, two_lobes),
         quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
+        quads("quads", "half vectors, anisotropy", LOBES | Effects::ANISOTROPY, half_vectors),
         quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
         quads(
@@ -158,6 +162,7 @@ pub fn rows() -> Vec<Row> {
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),
         others("polygons", "difference", polygon, difference),
+        others("polygons", "half vectors", polygon, half_vectors),
         others("textured quads", "exact, round footprint", Effects::TEXTURED, exact),
         others("textured quads", "exact, ellipse", Effects::TEXTURED, footprint(Footprint::Ellipse)),
         others("textured quads", "exact, split", Effects::TEXTURED, footprint(Footprint::Split)),

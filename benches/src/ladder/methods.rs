@@ -129,6 +129,11 @@ pub fn workloads() -> Vec<Workload> {
         plain(DEFAULT, "the default: clipped in cosine space", EXACT),
         plain("formula", "lobes by formula, no table", Quality { lobes: Lobes::Formula, ..EXACT }),
         plain("two lobes", "two specular lobes", Quality { specular_lobes: SpecularLobes::Two, ..EXACT }),
+        plain(
+            "half vectors",
+            "GGX over half vectors",
+            Quality { specular_lobes: SpecularLobes::HalfVectors, ..EXACT },
+        ),
         plain("both horizons", "nothing leaks from below", Quality { horizon: Horizon::Both, ..EXACT }),
         plain("difference", "precise for small lights", DIFFERENCE),
         plain(

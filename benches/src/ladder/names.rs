@@ -33,7 +33,8 @@ pub struct UnknownLevel {
 const FORM_FACTORS: [(&str, FormFactor); 2] =
     [("exact", FormFactor::Exact), ("difference", FormFactor::Difference)];
 const HORIZONS: [(&str, Horizon); 2] = [("cosine", Horizon::Cosine), ("both", Horizon::Both)];
-const SPECULAR_LOBES: [(&str, SpecularLobes); 2] = [("one", SpecularLobes::One), ("two", SpecularLobes::Two)];
+const SPECULAR_LOBES: [(&str, SpecularLobes); 3] =
+    [("one", SpecularLobes::One), ("two", SpecularLobes::Two), ("half_vectors", SpecularLobes::HalfVectors)];
 const LOBES: [(&str, Lobes); 2] = [("table", Lobes::Table), ("formula", Lobes::Formula)];
 const FOOTPRINTS: [(&str, Footprint); 3] =
     [("round", Footprint::Round), ("ellipse", Footprint::Ellipse), ("split", Footprint::Split)];

@@ -74,7 +74,7 @@ pub(crate) fn shade_options(options: &ArealightPassOptions) -> Result<ShadeOptio
 
 /// One of AREALIGHT_SPECULAR_LOBES_*.
 pub(crate) fn specular_lobes_of(number: u32, field: &str) -> Result<SpecularLobes, Failure> {
-    level(number, &[SpecularLobes::One, SpecularLobes::Two], field)
+    level(number, &[SpecularLobes::One, SpecularLobes::Two, SpecularLobes::HalfVectors], field)
 }
 
 /// How many shadow rays a pixel may have.
@@ -150,7 +150,7 @@ mod tests {
             (ArealightPassOptions { surfaces: 16, ..zero }, "options.surfaces: polygon are what lights need"),
             (ArealightPassOptions { form_factor: 2, ..zero }, "options.form_factor"),
             (ArealightPassOptions { horizon: 2, ..zero }, "options.horizon"),
-            (ArealightPassOptions { specular_lobes: 2, ..zero }, "options.specular_lobes"),
+            (ArealightPassOptions { specular_lobes: 3, ..zero }, "options.specular_lobes"),
             (ArealightPassOptions { lobes: 2, ..zero }, "options.lobes"),
             (ArealightPassOptions { footprint: 3, ..zero }, "options.footprint"),
             (ArealightPassOptions { position: 2, ..zero }, "options.position"),

@@ -72,13 +72,15 @@ pub fn above_horizon(vertices: &[DVec3]) -> Vec<DVec3> {
 pub fn vector_form_factor(vertices: &[DVec3]) -> DVec3 {
     let clipped = clip(vertices, 0.0);
     let next = clipped.iter().cycle().skip(1);
-    let edge = |(a, b): (&DVec3, &DVec3)| {
-        let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
-        let cross = a.cross(b - a);
-        let sine = cross.length();
-        if sine > 0.0 { cross * (sine.atan2(a.dot(b)) / sine) } else { DVec3::ZERO }
-    };
+    let edge = |(a, b): (&DVec3, &DVec3)| vector_of_arc(a.normalize_or_zero(), b.normalize_or_zero());
     -clipped.iter().zip(next).map(edge).sum::<DVec3>() / TAU
+}
+
+/// The angle from a to b, unit vectors, times the unit normal of their plane.
+pub(crate) fn vector_of_arc(a: DVec3, b: DVec3) -> DVec3 {
+    let cross = a.cross(b - a);
+    let sine = cross.length();
+    if sine > 0.0 { cross * (sine.atan2(a.dot(b)) / sine) } else { DVec3::ZERO }
 }
 
 /// What a light of signed form factor `signed` sends: its front only, or both sides. In [0, 1].

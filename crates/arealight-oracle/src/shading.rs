@@ -5,6 +5,7 @@ mod anisotropy;
 mod coat;
 mod diffuse;
 pub mod footprint;
+mod half_vectors;
 pub mod poses;
 mod rescattered;
 mod shapes;
@@ -27,6 +28,7 @@ use arealight::table::share_above_surface;
 use arealight::{Horizon, Light, LightFault, LightTable, Lobes, Quality, SpecularLobes, TableSample};
 use coat::CoatLobe;
 use glam::{DMat3, DVec3};
+use half_vectors::HalfVectors;
 use rescattered::Rescattered;
 use sheen::{sheen_truth, with_sheen};
 use std::convert::Infallible;
@@ -339,7 +341,12 @@ pub fn ltc_on(
             }
         }
     };
-    let glossy = glossy_part(quality, table, surface, &frame, lobe);
+    let over_half_vectors = quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none();
+    let glossy = if over_half_vectors {
+        half_vector_part(quality, table, surface, &frame, &visible, light.two_sided)
+    } else {
+        glossy_part(quality, table, surface, &frame, lobe)
+    };
     // Integrate the cosine, or the diffuse lobe's transformed one
     let (inverse, albedo) = diffuse::lobe(quality, table, surface, &frame);
     let shown = match &image {
@@ -352,17 +359,22 @@ pub fn ltc_on(
         _ => lobe(&inverse, share_above_surface(&inverse)),
     };
     let diffuse = albedo * shown;
-    light.radiance * layered(quality, table, surface, &frame, [diffuse, glossy], lobe)
+    let of_coat = |coat: &CoatLobe| match &coat.half_vectors {
+        Some(facets) if over_half_vectors => facets.reflected(&visible, light.two_sided),
+        _ => coat.albedo * lobe(&coat.inverse, coat.above_surface),
+    };
+    light.radiance * layered(quality, table, surface, &frame, [diffuse, glossy], (lobe, of_coat))
 }
 
-/// What is left of what the diffuse lobe and the specular ones reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`].
+/// What is left of what the diffuse lobe and the specular ones reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`], and
+/// `of_coat` what a coat reflects.
 fn layered(
     quality: Quality,
     table: &LightTable,
     surface: &Surface,
     frame: &SurfaceFrame,
     [diffuse, glossy]: [DVec3; 2],
-    lobe: impl Fn(&DMat3, f64) -> DVec3,
+    (lobe, of_coat): (impl Fn(&DMat3, f64) -> DVec3, impl Fn(&CoatLobe) -> DVec3),
 ) -> DVec3 {
     let below = match &surface.sheen {
         None => diffuse + glossy,
@@ -375,7 +387,7 @@ fn layered(
     };
     let Some(coat) = &surface.coat else { return below };
     let coat = CoatLobe::new(quality, table, coat, frame);
-    below * (1.0 - coat.share) + coat.albedo * lobe(&coat.inverse, coat.above_surface)
+    below * (1.0 - coat.share) + of_coat(&coat)
 }
 
 /// What the table or the formula holds for a lobe.
@@ -397,6 +409,23 @@ fn surface_sample(
         None => fitted_sample(quality, table, surface.alpha, frame.cos_view()),
         Some(lobe) => anisotropy::sample(quality, table, &lobe, frame.view()),
     }
+}
+
+/// What the specular lobe reflects of a polygon of unit radiance by [`SpecularLobes::HalfVectors`], a channel.
+fn half_vector_part(
+    quality: Quality,
+    table: &LightTable,
+    surface: &Surface,
+    frame: &SurfaceFrame,
+    vertices: &[DVec3],
+    two_sided: bool,
+) -> DVec3 {
+    if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
+        return DVec3::ZERO;
+    }
+    let sample = surface_sample(quality, table, surface, frame);
+    let scale = Rescattered::new(surface, &sample).scale;
+    scale * HalfVectors::of_surface(surface, frame, &sample).reflected(vertices, two_sided)
 }
 
 /// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel, of which a part

@@ -30,7 +30,7 @@ pub enum Horizon {
     Both = 1,
 }
 
-/// How many transformed cosines stand for the specular lobe. Errors: docs/fit.md.
+/// How the specular lobe is integrated: by how many transformed cosines that stand for it, or over half vectors. Errors: docs/fit.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum SpecularLobes {
@@ -42,6 +42,11 @@ pub enum SpecularLobes {
     /// its error. One all the same where a surface may have sheen and a coat
     /// ([`crate::Effects`]), where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
     Two = 1,
+    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, at one to two of the others' integrals a light. Of lamps
+    /// that a lobe sees as a part of the hemisphere it errs a third to a tenth of what two lobes do, of two roughnesses (anisotropy) a tenth to a
+    /// thirtieth; of lights that fill the lobe, as a sky does, two to three times as much. Lights that are polygons or meshes without an image alone;
+    /// all others have [`SpecularLobes::One`]. The table is read for albedos. Sheen has two lobes, as with [`SpecularLobes::Two`].
+    HalfVectors = 2,
 }
 
 /// Where the glossy lobe comes from.

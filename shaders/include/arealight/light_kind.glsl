@@ -4,13 +4,17 @@
 #include "arealight/material.glsl"
 
 // The sum of a light over lobes. A kind of light is a record with `radiance`, a type for it in the shading
-// frame of a point, and three functions:
+// frame of a point, and functions:
 //
 //     // The light in the shading frame; false where it does not shine onto the point's side
 //     bool arealight_to_local(ArealightPoint point, Light light, out Local local);
 //     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the light comes from,
 //     // and its z is the form factor
 //     vec3 arealight_vector_form_factor(mat3 space, Local local);
+//     // The vector form factor of facets, over half vectors, and whether there is one: of polygons alone (with AREALIGHT_HALF_VECTORS)
+//     vec3 arealight_facet_form_factor(ArealightFacets facets, Local local);
+//     bool arealight_has_facet_form_factor(Local local);
+//     // which AREALIGHT_WITHOUT_HALF_VECTORS(Local) makes for a kind that has none
 //     // The colour of its image averaged over a lobe, 1 without: what the radiance is multiplied with
 //     vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
 //
@@ -24,17 +28,19 @@ struct ArealightReflected {
     vec3 specular;
 };
 
-// A form factor from z of a vector form factor: in [0, 1] for any bits, 0 for NaN. It compares bits, where no compiler may assume
-// that there is no NaN: the patterns of [0, 1] are those up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN
-// lies beyond.
-float arealight_form_factor(vec3 vector) {
-    uint bits = floatBitsToUint(vector.z);
-    return bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
-}
+// Of a kind of light without half vectors: one whose edges are no straight ones. Its lobes are the fitted ones.
+#define AREALIGHT_WITHOUT_HALF_VECTORS(Local)                                                       \
+    bool arealight_has_facet_form_factor(Local local) {                                             \
+        return false;                                                                               \
+    }                                                                                               \
+    vec3 arealight_facet_form_factor(ArealightFacets facets, Local local) {                         \
+        return vec3(0.0);                                                                           \
+    }
 
 // What AREALIGHT_LIGHT_KIND makes of them:
 // arealight_lobe_weight: of one lobe, its form factor times the image's mean. What is left of a lobe above the surface keeps its albedo
-// (gain); rounding of a small part may not exceed it, which arealight_form_factor sees to.
+// (gain); rounding of a small part may not exceed it, which arealight_form_factor sees to. By half vectors what it reflects.
+// arealight_lobe_albedo: what that is multiplied with; by half vectors it is 1.
 // arealight_reflected: of a light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off.
 // arealight_radiance: outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
 //
@@ -45,10 +51,26 @@ float arealight_form_factor(vec3 vector) {
         if (!arealight_has_lobe(lobe)) {                                                            \
             return vec3(0.0);                                                                       \
         }                                                                                           \
-        mat3 space = point.lobes[lobe].space;                                                       \
+        if (AREALIGHT_HAS_HALF_VECTORS && arealight_has_facet_form_factor(local)) {                 \
+            if (lobe == AREALIGHT_LOBE_SPECULAR) {                                                  \
+                return arealight_half_vectors_reflected(                                            \
+                    point.half_vectors, arealight_facet_form_factor(point.half_vectors.facets, local)); \
+            }                                                                                       \
+            if (AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT) {                                \
+                return arealight_half_vectors_reflected(                                            \
+                    point.coat_half_vectors, arealight_facet_form_factor(point.coat_half_vectors.facets, local)); \
+            }                                                                                       \
+        }                                                                                           \
+        ArealightLobe fitted = arealight_lobe_at(point, lobe);                                      \
+        mat3 space = fitted.space;                                                                  \
         vec3 vector = arealight_vector_form_factor(space, local);                                   \
-        float gain = AREALIGHT_CLIPS_AT_SURFACE ? point.lobes[lobe].gain : 1.0;                     \
+        float gain = AREALIGHT_CLIPS_AT_SURFACE ? fitted.gain : 1.0;                                \
         return arealight_form_factor(gain * vector) * arealight_image_average(space, local, vector); \
+    }                                                                                               \
+    vec3 arealight_lobe_albedo(ArealightPoint point, int lobe, Local local) {                       \
+        bool is_weighed = AREALIGHT_HAS_HALF_VECTORS && arealight_has_facet_form_factor(local)      \
+                       && (lobe == AREALIGHT_LOBE_SPECULAR || (AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT)); \
+        return is_weighed ? vec3(1.0) : arealight_lobe_at(point, lobe).albedo;                      \
     }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \

@@ -4,6 +4,7 @@
 #include "arealight/lobes/anisotropy.glsl"
 #include "arealight/lobes/coat.glsl"
 #include "arealight/lobes/diffuse.glsl"
+#include "arealight/lobes/half_vectors.glsl"
 #include "arealight/lobes/rescattered.glsl"
 #include "arealight/lobes/sheen.glsl"
 #include "arealight/lobes/specular.glsl"
@@ -30,6 +31,8 @@ struct ArealightPoint {
     vec3 position;
     mat3 to_frame; // offsets from the point into the shading frame: x to the viewer's side, z the normal
     ArealightLobe lobes[AREALIGHT_LOBES];
+    ArealightHalfVectors half_vectors;      // of the specular lobe and of the coat's, with AREALIGHT_HALF_VECTORS
+    ArealightHalfVectors coat_half_vectors;
 };
 
 // Whether surfaces have a lobe before AREALIGHT_LOBE_END: constant for a literal `lobe`.
@@ -39,6 +42,19 @@ bool arealight_has_lobe(int lobe) {
          : AREALIGHT_HAS_SHEEN && lobe == AREALIGHT_LOBE_SHEEN ? true
          : AREALIGHT_HAS_TWO_SHEEN_LOBES && lobe == AREALIGHT_LOBE_SECOND ? true
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
+}
+
+// The lobe of an index that a loop counts: by choices, since compilers keep all that an index reaches in memory, all of the point with it.
+ArealightLobe arealight_lobe_at(ArealightPoint point, int index) {
+    ArealightLobe lobe = point.lobes[AREALIGHT_LOBE_DIFFUSE];
+    if (index == AREALIGHT_LOBE_SPECULAR) {
+        lobe = point.lobes[AREALIGHT_LOBE_SPECULAR];
+    } else if (index == AREALIGHT_LOBE_SECOND) {
+        lobe = point.lobes[AREALIGHT_LOBE_SECOND];
+    } else if (index == AREALIGHT_LOBE_COAT) {
+        lobe = point.lobes[AREALIGHT_LOBE_COAT];
+    }
+    return lobe;
 }
 
 // Whether the specular lobe of a surface is two, whose sheen has this colour: one that has any leaves the second place to that.
@@ -85,6 +101,9 @@ void arealight_dim_base(inout ArealightPoint point, float base) {
     point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= base;
     point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= base;
     point.lobes[AREALIGHT_LOBE_SECOND].albedo *= base;
+    if (AREALIGHT_HAS_HALF_VECTORS) {
+        arealight_scale_half_vectors(point.half_vectors, vec3(base));
+    }
 }
 
 // Prepares a surface: its frame, and one lookup in the table (or the formula) where it has a specular lobe.
@@ -96,6 +115,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
     if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_put_specular_lobes(point, frame, surface);
+        if (AREALIGHT_HAS_HALF_VECTORS) {
+            point.half_vectors = arealight_specular_half_vectors(frame, surface, table);
+        }
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
             vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
@@ -104,6 +126,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
             ArealightRescattered more = arealight_rescattered(table, surface.f0, surface.f90);
             point.lobes[AREALIGHT_LOBE_SPECULAR].albedo *= more.scale;
             point.lobes[AREALIGHT_LOBE_SECOND].albedo *= more.scale;
+            if (AREALIGHT_HAS_HALF_VECTORS) {
+                arealight_scale_half_vectors(point.half_vectors, more.scale);
+            }
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo += more.diffuse;
         }
     }
@@ -119,6 +144,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
         arealight_dim_base(point, coat.base);
         point.lobes[AREALIGHT_LOBE_COAT] = coat.lobe;
+        if (AREALIGHT_HAS_HALF_VECTORS) {
+            point.coat_half_vectors = arealight_coat_half_vectors(frame, surface.coat);
+        }
     }
     return point;
 }
@@ -140,13 +168,13 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     }                                                                                 \
     sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
     if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
-        sum.specular = specular * point.lobes[AREALIGHT_LOBE_SPECULAR].albedo;        \
+        sum.specular = specular * arealight_lobe_albedo(point, AREALIGHT_LOBE_SPECULAR, local); \
     }                                                                                 \
     if (arealight_has_lobe(AREALIGHT_LOBE_SECOND)) {                                 \
         sum.specular += second * point.lobes[AREALIGHT_LOBE_SECOND].albedo;          \
     }                                                                                 \
     if (AREALIGHT_HAS_LAYER) {                                                        \
-        sum.specular += layer * point.lobes[AREALIGHT_LOBE_COAT].albedo;               \
+        sum.specular += layer * arealight_lobe_albedo(point, AREALIGHT_LOBE_COAT, local); \
     }                                                                                 \
     AREALIGHT_FROM_ZERO(sum)
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \
@@ -154,7 +182,7 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         if (!arealight_has_lobe(i)) {                                                 \
             continue;                                                                 \
         }                                                                             \
-        vec3 reflected = point.lobes[i].albedo * arealight_lobe_weight(point, i, local); \
+        vec3 reflected = arealight_lobe_albedo(point, i, local) * arealight_lobe_weight(point, i, local); \
         if (i == AREALIGHT_LOBE_DIFFUSE) {                                            \
             sum.diffuse = reflected;                                                  \
         } else {                                                                      \

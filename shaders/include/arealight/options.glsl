@@ -64,6 +64,11 @@
 #define AREALIGHT_TWO_SPECULAR_LOBES 0
 #endif
 
+// The specular lobe, and a coat's, by half vectors of polygons without an image (arealight::SpecularLobes::HalfVectors): lobes/half_vectors.glsl.
+#ifndef AREALIGHT_HALF_VECTORS
+#define AREALIGHT_HALF_VECTORS 0
+#endif
+
 // The specular lobe by formulas (arealight::Lobes::Formula): the table's bridges are not called.
 #ifndef AREALIGHT_FORMULA
 #define AREALIGHT_FORMULA 0
@@ -135,9 +140,11 @@ const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
 const bool AREALIGHT_HAS_TWO_LAYERS = AREALIGHT_HAS_COAT ? AREALIGHT_HAS_SHEEN : false;
 const bool AREALIGHT_HAS_ONE_SPECULAR_LOBE = AREALIGHT_HAS_TWO_LAYERS ? true : AREALIGHT_USES_FORMULA;
 const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_HAS_ONE_SPECULAR_LOBE ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
+const bool AREALIGHT_HAS_HALF_VECTORS = bool(AREALIGHT_HALF_VECTORS);
 // Likewise of sheen, where there may be no coat.
 const bool AREALIGHT_MAY_HAVE_TWO_SHEEN_LOBES = AREALIGHT_HAS_COAT ? false : AREALIGHT_HAS_SHEEN;
-const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_MAY_HAVE_TWO_SHEEN_LOBES ? bool(AREALIGHT_TWO_SPECULAR_LOBES) : false;
+const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true : bool(AREALIGHT_TWO_SPECULAR_LOBES);
+const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_MAY_HAVE_TWO_SHEEN_LOBES ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
 const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch

@@ -136,11 +136,15 @@ fn choices_have_the_same_numbers_in_glsl() {
     for (prefix, name, value) in [
         ("FORM_FACTOR_", "DIFFERENCE", FormFactor::Difference as u32),
         ("HORIZON_", "BOTH", Horizon::Both as u32),
-        ("SPECULAR_LOBES_", "TWO", SpecularLobes::Two as u32),
         ("LOBES_", "FORMULA", Lobes::Formula as u32),
     ] {
         assert_constants(EFFECTS_GLSL, prefix, &[(name, number(value))]);
     }
+    let specular_lobes = [
+        ("TWO", number(SpecularLobes::Two as u32)),
+        ("HALF_VECTORS", number(SpecularLobes::HalfVectors as u32)),
+    ];
+    assert_constants(EFFECTS_GLSL, "SPECULAR_LOBES_", &specular_lobes);
     let footprints = [
         ("ROUND", number(Footprint::Round as u32)),
         ("ELLIPSE", number(Footprint::Ellipse as u32)),

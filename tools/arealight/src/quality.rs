@@ -13,9 +13,9 @@ pub struct QualityArguments {
     /// Where lights are clipped
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Clip::Cosine)]
     horizon: Clip,
-    /// How many lobes the specular one is made of [default: one for render, two for eval]
-    #[arg(long, value_enum, value_name = "COUNT")]
-    specular_lobes: Option<LobeCount>,
+    /// How the specular lobe is integrated [default: one for render, two for eval]
+    #[arg(long, value_enum, value_name = "HOW")]
+    specular_lobes: Option<Specular>,
     /// Where the glossy lobe comes from
     #[arg(long, value_enum, value_name = "WHERE", default_value_t = Source::Table)]
     lobes: Source,
@@ -52,6 +52,27 @@ pub enum Source {
     Table,
     /// Formulas, without a texture
     Formula,
+}
+
+/// How specular lobes are integrated.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum Specular {
+    /// By one transformed cosine: an integral a light
+    One,
+    /// By two: two integrals a light, at .6 to .8 times the error
+    Two,
+    /// GGX itself over half vectors of polygons and meshes: closest to lamps, and to brushed metals
+    HalfVectors,
+}
+
+impl From<Specular> for SpecularLobes {
+    fn from(specular: Specular) -> Self {
+        match specular {
+            Specular::One => Self::One,
+            Specular::Two => Self::Two,
+            Specular::HalfVectors => Self::HalfVectors,
+        }
+    }
 }
 
 /// How many lobes are integrated.

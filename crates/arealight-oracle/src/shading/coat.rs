@@ -1,12 +1,13 @@
 //! A clear coat above other lobes, in float64: its true BRDF, and its fitted lobe.
 
+use super::half_vectors::HalfVectors;
 use super::{Truth, fitted_sample, hemisphere_albedo};
 use crate::cubature::Settings;
 use crate::frame::SurfaceFrame;
 use crate::ggx::Ggx;
 use crate::material::{Coat, Surface};
 use arealight::table::share_above_surface;
-use arealight::{LightTable, Quality};
+use arealight::{LightTable, Quality, SpecularLobes};
 use glam::{DMat3, DVec3};
 
 /// What a coated surface reflects: `uncoated` says what a surface without a coat does, with its normal and a direction to the viewer.
@@ -54,6 +55,8 @@ pub(super) struct CoatLobe {
     pub albedo: f64,
     /// The part of the light that it takes from what is below.
     pub share: f64,
+    /// The same lobe by [`SpecularLobes::HalfVectors`]; none on other levels.
+    pub half_vectors: Option<HalfVectors>,
 }
 
 impl CoatLobe {
@@ -64,15 +67,17 @@ impl CoatLobe {
         let sample = fitted_sample(quality, table, coat.alpha, own.cos_view());
         let to_own =
             DMat3::from_cols(own.to_surface(DVec3::X), own.to_surface(DVec3::Y), own.to_surface(DVec3::Z));
-        let (in_own, albedo, share) = if coat.by_albedo {
+        let (in_own, albedo, share, reflectances) = if coat.by_albedo {
             let albedo = coat.weight * (Coat::F0 * sample.albedo + (1.0 - Coat::F0) * sample.schlick);
-            (sample.inverse_by_f0(Coat::F0, 1.0), albedo, albedo)
+            (sample.inverse_by_f0(Coat::F0, 1.0), albedo, albedo, [coat.weight * Coat::F0, coat.weight])
         } else {
             let share = coat.share(own.cos_view());
-            (sample.inverse, share * sample.albedo, share)
+            (sample.inverse, share * sample.albedo, share, [share; 2])
         };
         let inverse = in_own * to_own;
         let above_surface = share_above_surface(&in_own).max(share_above_surface(&inverse));
-        Self { inverse, above_surface, albedo, share }
+        let half_vectors = (quality.specular_lobes == SpecularLobes::HalfVectors)
+            .then(|| HalfVectors::of_coat(quality, table, coat.alpha, reflectances, (&own, to_own)));
+        Self { inverse, above_surface, albedo, share, half_vectors }
     }
 }

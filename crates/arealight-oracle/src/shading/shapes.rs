@@ -1,6 +1,6 @@
 //! Disks, spheres and tubes on a surface, by the fitted table in float64.
 
-use super::coat;
+use super::coat::{self, CoatLobe};
 use super::{RelativeLight, ShownImage, Truth, diffuse, glossy_part, layered, reflected};
 use crate::cubature::{Region, Settings};
 use crate::ellipse::{self, Ellipse};
@@ -52,7 +52,8 @@ pub fn shape_ltc_on(
         lobe(&inverse, share_above_surface(&inverse))
     };
     let parts = [albedo * diffuse, glossy];
-    Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, parts, lobe))
+    let of_coat = |coat: &CoatLobe| coat.albedo * lobe(&coat.inverse, coat.above_surface);
+    Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, parts, (lobe, of_coat)))
 }
 
 /// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the

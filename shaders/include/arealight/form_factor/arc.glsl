@@ -72,4 +72,12 @@ vec3 arealight_cut(vec3 above, vec3 below) {
     return vec3((below.xy * above.z - above.xy * below.z) / (above.z - below.z), 0.0);
 }
 
+// A form factor from z of a vector form factor: in [0, 1] for any bits, 0 for NaN. It compares bits, where no compiler may assume
+// that there is no NaN: the patterns of [0, 1] are those up to 0x3f800000, infinity is 0x7f800000, and everything negative or NaN
+// lies beyond.
+float arealight_form_factor(vec3 vector) {
+    uint bits = floatBitsToUint(vector.z);
+    return bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;
+}
+
 #endif

@@ -74,6 +74,7 @@ vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) 
     return vec3(1.0);
 }
 
+AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalDisk)
 AREALIGHT_LIGHT_KIND(ArealightDiskLight, ArealightLocalDisk, AREALIGHT_UNROLLED_LOBES)
 
 #endif

@@ -53,6 +53,26 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
     return sum;
 }
 
+bool arealight_has_facet_form_factor(ArealightLocalMesh local) {
+    return true;
+}
+
+vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalMesh local) {
+    vec3 center = local.to_frame * local.offset;
+    vec3 sum = vec3(0.0);
+    for (uint row = local.first; row + 1u < local.end;) {
+        vec4 face = arealight_bridge_face(row);
+        uint first = row + 1u;
+        uint end = first + clamp(uint(face.w), 1u, local.end - first);
+        float side = arealight_lit_side(local.offset + arealight_bridge_vertex(first), face.xyz, local.two_sided);
+        if (side != 0.0) {
+            sum += side * arealight_facet_outline(facets, center, local.to_frame, first, end);
+        }
+        row = end;
+    }
+    return sum;
+}
+
 vec3 arealight_image_average(mat3 space, ArealightLocalMesh local, vec3 vector) {
     return vec3(1.0);
 }

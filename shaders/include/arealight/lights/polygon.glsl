@@ -123,6 +123,33 @@ vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint 
     return arealight_outline_in_space(space, center, to_frame, first, end, front);
 }
 
+// The vector form factor of facets of the outline of vertices `first` to `end` - 1, not empty.
+vec3 arealight_facet_outline(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+    vec3 in_axes = facets.to_axes * center;
+    mat3 to_axes = facets.to_axes * to_frame;
+    ArealightFacetOutline outline = arealight_facet_begin(in_axes + to_axes * arealight_bridge_vertex(end - 1u));
+    float heights = 0.0;
+    for (uint index = first; index < end; index++) {
+        vec3 vertex = in_axes + to_axes * arealight_bridge_vertex(index);
+        arealight_facet_vertex(outline, facets, vertex);
+        heights += vertex.z;
+    }
+    return arealight_is_finite(heights) ? arealight_facet_vector(outline, facets) : vec3(0.0);
+}
+
+bool arealight_has_facet_form_factor(ArealightLocalPolygon local) {
+#if AREALIGHT_LIGHT_TEXTURES
+    return !AREALIGHT_HAS_TEXTURED_POLYGONS || local.image.layer == AREALIGHT_NO_IMAGE;
+#else
+    return true;
+#endif
+}
+
+vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalPolygon local) {
+    float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
+    return front * arealight_facet_outline(facets, local.center, local.to_frame, local.first, local.end);
+}
+
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalPolygon local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
     return front * arealight_outline_form_factor(space, local.center, local.to_frame, local.first, local.end, front);

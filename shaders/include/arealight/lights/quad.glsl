@@ -96,6 +96,19 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     return front * vector;
 }
 
+bool arealight_has_facet_form_factor(ArealightLocalQuad local) {
+    return true;
+}
+
+vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalQuad local) {
+    vec3 from = AREALIGHT_USES_DIFFERENCE ? local.center : vec3(0.0);
+    vec3 vector = arealight_facet_quad(facets, arealight_moved(local.quad, from));
+    if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
+        vector += arealight_facet_quad(facets, arealight_moved(local.triangle, from));
+    }
+    return AREALIGHT_HAS_TWO_SIDED ? local.side * vector : vector;
+}
+
 vec3 arealight_image_average(mat3 space, ArealightLocalQuad local, vec3 vector) {
     return vec3(1.0);
 }

@@ -52,6 +52,7 @@ vec3 arealight_image_average(mat3 space, ArealightLocalSphere local, vec3 vector
     return vec3(1.0);
 }
 
+AREALIGHT_WITHOUT_HALF_VECTORS(ArealightLocalSphere)
 AREALIGHT_LIGHT_KIND(ArealightSphereLight, ArealightLocalSphere, AREALIGHT_UNROLLED_LOBES)
 
 #endif

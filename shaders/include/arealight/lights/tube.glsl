@@ -32,6 +32,7 @@ vec3 arealight_image_average(mat3 space, ArealightTube local, vec3 vector) {
     return vec3(1.0);
 }
 
+AREALIGHT_WITHOUT_HALF_VECTORS(ArealightTube)
 AREALIGHT_LIGHT_KIND(ArealightTubeLight, ArealightTube, AREALIGHT_UNROLLED_LOBES)
 
 #endif

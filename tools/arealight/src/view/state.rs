@@ -17,7 +17,7 @@ pub struct Level {
 }
 
 /// The levels that keys choose, from 1 on: the default, and what each option adds.
-pub fn levels() -> [Level; 5] {
+pub fn levels() -> [Level; 6] {
     let exact = Quality::default();
     let all = Quality {
         specular_lobes: SpecularLobes::Two,
@@ -28,6 +28,10 @@ pub fn levels() -> [Level; 5] {
     [
         Level { name: "exact", quality: exact },
         Level { name: "two lobes", quality: Quality { specular_lobes: SpecularLobes::Two, ..exact } },
+        Level {
+            name: "half vectors",
+            quality: Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact },
+        },
         Level { name: "both horizons", quality: Quality { horizon: Horizon::Both, ..exact } },
         Level { name: "everything", quality: all },
         Level { name: "formula", quality: Quality { lobes: Lobes::Formula, ..exact } },

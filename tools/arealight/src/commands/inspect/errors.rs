@@ -59,6 +59,7 @@ impl ErrorMap {
         match self.specular_lobes {
             SpecularLobes::One => "one lobe",
             SpecularLobes::Two => "two lobes",
+            SpecularLobes::HalfVectors => "half vectors",
         }
     }
 

@@ -104,6 +104,7 @@ impl Material {
         let specular_lobes = match self.specular_lobes {
             SpecularLobes::One => "one lobe",
             SpecularLobes::Two => "two lobes",
+            SpecularLobes::HalfVectors => "half vectors",
         };
         format!("F0 = {}, {specular_lobes}", self.f0)
     }

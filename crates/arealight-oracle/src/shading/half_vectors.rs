@@ -1,0 +1,154 @@
+//! GGX integrated over half vectors, in float64: the twin of `lobes/half_vectors.glsl`.
+//!
+//! The visible normals of GGX are a clamped cosine about the stretched view (Heitz 2018), so that the normals which mirror a light to the viewer are
+//! integrated in closed form once their outline is known. An edge of a light is an arc of directions; its half vectors are an arc of a conic, which is
+//! drawn by chords. What is left beside, masking and the Fresnel term, is taken at the mean of these normals.
+
+use super::fitted_sample;
+use crate::frame::SurfaceFrame;
+use crate::ggx::AnisotropicGgx;
+use crate::material::Surface;
+use crate::polygon::{above_horizon, vector_of_arc};
+use arealight::{LightTable, Quality, TableSample};
+use glam::{DMat3, DVec2, DVec3};
+use std::f64::consts::TAU;
+
+/// An edge is halved where the middle of its half vectors is farther from an end than this cosine, and the halves again where it is farther than the
+/// second.
+const BENT: [f64; 2] = [0.7, 0.35];
+
+/// What two chords of a conic lack, over the triangle that they make with the third.
+const SEGMENT: f64 = 0.4;
+
+/// The facets of a surface as a viewer sees them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HalfVectors {
+    /// From the surface frame into the axes of the distribution: x along the first alpha, z the normal.
+    to_axes: DMat3,
+    alpha: DVec2,
+    /// The direction to the viewer, in these axes.
+    view: DVec3,
+    /// Reflectances at normal and at grazing incidence.
+    f0: DVec3,
+    f90: DVec3,
+    /// What a light from everywhere counts more or less than by its mean normal.
+    gain: DVec3,
+}
+
+impl HalfVectors {
+    /// Of a surface's specular lobe; `sample` has its albedos.
+    pub fn of_surface(surface: &Surface, frame: &SurfaceFrame, sample: &TableSample) -> Self {
+        let (axis, alpha) = match AnisotropicGgx::of(surface, frame) {
+            None => (DVec2::X, DVec2::splat(surface.alpha)),
+            Some(lobe) => (lobe.axis, lobe.alpha.max(DVec2::splat(lobe.alpha.max_element() / MOST_ASPECT))),
+        };
+        let to_axes = DMat3::from_cols(
+            axis.with_y(-axis.y).extend(0.0),
+            DVec2::new(axis.y, axis.x).extend(0.0),
+            DVec3::Z,
+        );
+        let alpha = alpha.max(DVec2::splat(arealight::MIN_ALPHA));
+        Self::new(to_axes, alpha, frame.view(), [surface.f0, DVec3::splat(surface.f90)], sample)
+    }
+
+    /// Of a coat: a surface of its own, of one alpha.
+    pub fn of_coat(
+        quality: Quality,
+        table: &LightTable,
+        alpha: f64,
+        [f0, f90]: [f64; 2],
+        (own, to_own): (&SurfaceFrame, DMat3),
+    ) -> Self {
+        let sample = fitted_sample(quality, table, alpha, own.cos_view());
+        let alpha = DVec2::splat(alpha.max(arealight::MIN_ALPHA));
+        Self {
+            to_axes: to_own,
+            ..Self::new(DMat3::IDENTITY, alpha, own.view(), [f0, f90].map(DVec3::splat), &sample)
+        }
+    }
+
+    fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, [f0, f90]: [DVec3; 2], sample: &TableSample) -> Self {
+        let view = to_axes * view;
+        let mut facets = Self { to_axes, alpha, view, f0, f90, gain: DVec3::ONE };
+        // Light from everywhere: the facets on the viewer's side of both horizons
+        let whole = facets.reflectance(facets.pole() + DVec3::Z);
+        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
+        facets.gain = (albedo / whole.max(DVec3::splat(1e-30))).min(DVec3::ONE);
+        facets
+    }
+
+    /// The middle of the visible normals where alpha is 1.
+    fn pole(&self) -> DVec3 {
+        (self.view * self.alpha.extend(1.0)).normalize_or(DVec3::Z)
+    }
+
+    /// What the facet of this normal, where alpha is 1, reflects to the viewer, with masking of the light: a channel.
+    fn reflectance(&self, normal: DVec3) -> DVec3 {
+        let stretch = self.alpha.extend(1.0);
+        let half = (normal * stretch).normalize_or(DVec3::Z);
+        let cosine = self.view.dot(half).clamp(0.0, 1.0);
+        let light = 2.0 * cosine * half - self.view;
+        let height = light.z.max(0.0);
+        let (by_view, by_light) = ((self.view * stretch).length(), (light.with_z(height) * stretch).length());
+        let shadowing =
+            (by_view + self.view.z) * height / (by_view * height + by_light * self.view.z).max(1e-30);
+        shadowing.min(1.0) * (self.f0 + (self.f90 - self.f0) * (1.0 - cosine).powi(5))
+    }
+
+    /// What they reflect of a polygon of unit radiance in the surface frame, a channel; a polygon that is seen from its back counts if `two_sided`.
+    pub fn reflected(&self, vertices: &[DVec3], two_sided: bool) -> DVec3 {
+        let in_axes: Vec<DVec3> = vertices.iter().map(|vertex| self.to_axes * *vertex).collect();
+        let outline: Vec<DVec3> =
+            above_horizon(&in_axes).iter().map(|vertex| vertex.normalize_or(DVec3::Z)).collect();
+        let next = outline.iter().cycle().skip(1);
+        let arcs: DVec3 = outline.iter().zip(next).map(|(from, to)| self.edge(*from, *to)).sum();
+        let pole = self.pole();
+        let vector = -arcs / TAU;
+        let vector = if two_sided && vector.dot(pole) < 0.0 { -vector } else { vector };
+        let share = (vector.dot(pole) * 2.0 / (1.0 + pole.z)).clamp(0.0, 1.0);
+        if share == 0.0 {
+            return DVec3::ZERO;
+        }
+        share * self.reflectance(vector) * (DVec3::ONE + (self.gain - DVec3::ONE) * (share * share))
+    }
+
+    /// The arcs of the conic that the edge between two directions makes.
+    fn edge(&self, from: DVec3, to: DVec3) -> DVec3 {
+        let shrink = self.alpha.recip().extend(1.0);
+        let chord = (from + to).length().max(1e-19);
+        let conic = [from + self.view, (from + to) / chord + 0.5 * chord * self.view, to + self.view]
+            .map(|half| half * shrink);
+        let [ends, middle] =
+            [[conic[0], conic[2]], [shoulder(conic)[1]; 2]].map(|v| v.map(DVec3::normalize_or_zero));
+        let bend = ends[0].dot(middle[0]).min(ends[1].dot(middle[1]));
+        let mut pieces = vec![conic];
+        for _ in BENT.iter().filter(|bent| bend < **bent) {
+            pieces = pieces.into_iter().flat_map(halves).collect();
+        }
+        pieces.into_iter().map(chords).sum()
+    }
+}
+
+/// How many times the smaller alpha the larger one may be: `LEAST_ROUGHNESS_RATIO` of the fitted lobes.
+const MOST_ASPECT: f64 = 400.0;
+
+/// The points between which a conic is halved where both halves are alike: those of its control polygon, and the shoulder between them.
+fn shoulder([first, control, last]: [DVec3; 3]) -> [DVec3; 3] {
+    let ratio = (last.length() / first.length().max(1e-30)).sqrt();
+    let part = 1.0 / (1.0 + ratio);
+    let left = control + (first - control) * (1.0 - part);
+    let right = last + (control - last) * (1.0 - part);
+    [left, right + (left - right) * (1.0 - part), right]
+}
+
+fn halves(conic: [DVec3; 3]) -> [[DVec3; 3]; 2] {
+    let [left, middle, right] = shoulder(conic);
+    [[conic[0], left, middle], [middle, right, conic[2]]]
+}
+
+/// Two chords of a conic, as arcs, and what they lack.
+fn chords(conic: [DVec3; 3]) -> DVec3 {
+    let [from, middle, to] = [conic[0], shoulder(conic)[1], conic[2]].map(DVec3::normalize_or_zero);
+    let lacking = middle.dot((middle - from).cross(to - from));
+    vector_of_arc(from, middle) + vector_of_arc(middle, to) + SEGMENT * lacking * middle
+}

@@ -1,0 +1,160 @@
+#ifndef AREALIGHT_FORM_FACTOR_HALF_VECTORS_GLSL
+#define AREALIGHT_FORM_FACTOR_HALF_VECTORS_GLSL
+
+#include "arealight/form_factor/quad.glsl"
+
+// The vector form factor, of facets, of a polygon that they mirror to the viewer: the polygon's directions, turned into half vectors and stretched so
+// that GGX's alpha is 1. There the visible normals are a clamped cosine about the stretched view (Heitz 2018, Sampling the GGX Distribution of
+// Visible Normals), so that an outline of theirs is integrated by arcs as that of any polygon is.
+//
+// An edge of the light is an arc of a great circle, e(t) = (1 - t)^2 a + 2 t (1 - t) m + t^2 b up to its length, m being the middle direction over the
+// cosine of half the angle. Its half vectors e(t) + |e(t)| v are quadratic in t as well: an arc of a conic, whose control points are
+// a + v, (a + b) / |a + b| + v |a + b| / 2 and b + v. No linear map leads there; chords do, from the ends to the shoulder of the conic, with what they
+// lack added by the triangle that they make: two of an edge, four or eight of one that bends far. Where chords meet is fixed by the conic alone, so
+// that a light cut in two sends what it did, up to the chords' error: 1e-4 of lamps, and of any light at most 1e-2 of what is reflected of it.
+
+// What the facets of a surface are and who sees them.
+struct ArealightFacets {
+    mat3 to_axes; // a rotation, from the shading frame into the axes of the distribution: x along the first alpha, z the normal
+    vec2 alpha;   // along x and along y, from AREALIGHT_MIN_ALPHA
+    vec3 view;    // the direction to the viewer in these axes, unit, not below the surface
+};
+
+// An arc of a conic about the origin, by its control points: rational and quadratic, of the points' directions.
+struct ArealightConic {
+    vec3 first;
+    vec3 control;
+    vec3 last;
+};
+
+// An edge is halved where the middle of its half vectors is farther from an end than an angle of this cosine, and each half again where it is farther than
+// the second.
+const float AREALIGHT_BENT = 0.7;
+const float AREALIGHT_BENT_TWICE = 0.35;
+
+// What two chords of a conic lack, over the triangle that they make with the third: 1/3 of a parabola, 0.57 of a half circle.
+const float AREALIGHT_CONIC_SEGMENT = 0.4;
+
+// The shoulder of a conic, and what its halves have for control points: x control, y shoulder, z control. Both halves are alike there.
+mat3 arealight_conic_shoulder(ArealightConic conic) {
+    float first = inversesqrt(max(dot(conic.first, conic.first), AREALIGHT_LEAST_SQUARE));
+    float last = inversesqrt(max(dot(conic.last, conic.last), AREALIGHT_LEAST_SQUARE));
+    float part = 1.0 / (1.0 + sqrt(first / last));
+    vec3 left = mix(conic.first, conic.control, part);
+    vec3 right = mix(conic.control, conic.last, part);
+    return mat3(left, mix(left, right, part), right);
+}
+
+// The first half of a conic, or the second.
+ArealightConic arealight_conic_half(ArealightConic conic, bool second) {
+    mat3 at = arealight_conic_shoulder(conic);
+    return second ? ArealightConic(at[1], at[2], conic.last) : ArealightConic(conic.first, at[0], at[1]);
+}
+
+// The arcs of two chords of a conic, and what they lack.
+vec3 arealight_conic_arcs(ArealightConic conic) {
+    vec3 first = arealight_unit(conic.first);
+    vec3 middle = arealight_unit(arealight_conic_shoulder(conic)[1]);
+    vec3 last = arealight_unit(conic.last);
+    float lacking = dot(middle, cross(middle - first, last - first));
+    return arealight_arc(first, middle) + arealight_arc(middle, last) + (AREALIGHT_CONIC_SEGMENT * lacking) * middle;
+}
+
+// The arcs of the half vectors of an edge between two directions in the axes, unit vectors.
+vec3 arealight_facet_edge(ArealightFacets facets, vec3 from, vec3 to) {
+    vec3 sum = from + to;
+    float square = max(dot(sum, sum), AREALIGHT_LEAST_SQUARE);
+    float per_length = inversesqrt(square);
+    vec3 shrink = vec3(1.0 / facets.alpha, 1.0);
+    ArealightConic conic = ArealightConic(shrink * (from + facets.view), shrink * (per_length * (sum + (0.5 * square) * facets.view)),
+                                          shrink * (to + facets.view));
+    vec3 middle = arealight_unit(arealight_conic_shoulder(conic)[1]);
+    float bend = min(dot(arealight_unit(conic.first), middle), dot(arealight_unit(conic.last), middle));
+    if (!(bend < AREALIGHT_BENT)) {
+        return arealight_conic_arcs(conic);
+    }
+    vec3 arcs = vec3(0.0);
+    int pieces = bend < AREALIGHT_BENT_TWICE ? 4 : 2;
+    for (int piece = 0; piece < pieces; piece++) {
+        ArealightConic part = arealight_conic_half(conic, 2 * piece >= pieces);
+        if (pieces == 4) {
+            part = arealight_conic_half(part, (piece & 1) != 0);
+        }
+        arcs += arealight_conic_arcs(part);
+    }
+    return arcs;
+}
+
+// The vector form factor of a convex quad in the shading frame, clipped at the horizon of the axes. Of a light seen from its front its product with
+// arealight_facet_pole is not negative.
+vec3 arealight_facet_quad(ArealightFacets facets, ArealightQuad quad) {
+    quad = arealight_transformed(facets.to_axes, quad);
+    if (arealight_highest(quad) <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 fifth = quad.d;
+    int count = 4;
+    if (arealight_lowest(quad) < 0.0) {
+        ArealightCutQuad cut = arealight_cut_at_horizon(quad);
+        quad = ArealightQuad(cut.entry, cut.a, cut.b, cut.c);
+        fifth = cut.exit;
+        count = 5;
+    }
+    vec3 arcs = vec3(0.0);
+    vec3 from = arealight_unit(fifth);
+    for (int index = 0; index < count; index++) {
+        vec3 vertex = index == 0 ? quad.a : index == 1 ? quad.b : index == 2 ? quad.c : index == 3 ? quad.d : fifth;
+        vec3 to = arealight_unit(vertex);
+        arcs += arealight_facet_edge(facets, from, to);
+        from = to;
+    }
+    return AREALIGHT_PER_ARC * arcs;
+}
+
+// Any simple polygon, vertex by vertex in the axes, clipped at their horizon.
+struct ArealightFacetOutline {
+    vec3 arcs;
+    vec3 previous; // the vertex before
+    vec3 first;    // of what is left, unit vectors
+    vec3 last;
+    bool begun;
+};
+
+// Begins at the polygon's last vertex.
+ArealightFacetOutline arealight_facet_begin(vec3 last) {
+    return ArealightFacetOutline(vec3(0.0), last, vec3(0.0), vec3(0.0), false);
+}
+
+// Goes on to a vertex of what is left.
+void arealight_facet_add(inout ArealightFacetOutline outline, ArealightFacets facets, vec3 vertex) {
+    vec3 unit = arealight_unit(vertex);
+    if (outline.begun) {
+        outline.arcs += arealight_facet_edge(facets, outline.last, unit);
+    } else {
+        outline.first = unit;
+        outline.begun = true;
+    }
+    outline.last = unit;
+}
+
+// Goes on to the polygon's next vertex.
+void arealight_facet_vertex(inout ArealightFacetOutline outline, ArealightFacets facets, vec3 vertex) {
+    bool is_above = vertex.z > 0.0;
+    if (is_above != (outline.previous.z > 0.0)) {
+        arealight_facet_add(outline, facets, is_above ? arealight_cut(vertex, outline.previous) : arealight_cut(outline.previous, vertex));
+    }
+    if (is_above) {
+        arealight_facet_add(outline, facets, vertex);
+    }
+    outline.previous = vertex;
+}
+
+// Its vector form factor, when all vertices have come.
+vec3 arealight_facet_vector(ArealightFacetOutline outline, ArealightFacets facets) {
+    if (outline.begun) {
+        outline.arcs += arealight_facet_edge(facets, outline.last, outline.first);
+    }
+    return AREALIGHT_PER_ARC * outline.arcs;
+}
+
+#endif

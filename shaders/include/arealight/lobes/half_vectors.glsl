@@ -1,0 +1,98 @@
+#ifndef AREALIGHT_HALF_VECTORS_GLSL
+#define AREALIGHT_HALF_VECTORS_GLSL
+
+#include "arealight/form_factor/half_vectors.glsl"
+#include "arealight/lobes/anisotropy.glsl"
+#include "arealight/lobes/coat.glsl"
+
+// GGX integrated over half vectors (with AREALIGHT_HALF_VECTORS): no transformed cosine stands for the lobe. How much of the visible normals mirrors
+// a light to the viewer is known in closed form, up to the chords' error (form_factor/half_vectors.glsl); masking of the light and the Fresnel
+// term, which vary slowly, are those of these normals' mean. Of a light that all of them see the mean counts too much: `gain` makes the lobe's albedo
+// of that. What it errs: docs/materials.md, docs/decisions/0026-half-vectors.md. It needs polygons without an image; of other lights the lobe is the
+// fitted one.
+
+// A GGX lobe by its half vectors.
+struct ArealightHalfVectors {
+    ArealightFacets facets;
+    vec3 f0;  // reflectance at normal incidence
+    vec3 f90; // at grazing incidence
+    vec3 gain; // of a light from everywhere, in [0, 1]
+};
+
+// The middle of the visible normals where alpha is 1, unit: the stretched view.
+vec3 arealight_facet_pole(ArealightFacets facets) {
+    vec3 stretched = vec3(facets.alpha, 1.0) * facets.view;
+    return arealight_normalize_or(stretched, vec3(0.0, 0.0, 1.0));
+}
+
+// What the facet of a normal (where alpha is 1, of any length) reflects towards the viewer, with masking of the light: a channel, in [0, f90].
+vec3 arealight_facet_reflectance(ArealightHalfVectors lobe, vec3 normal) {
+    ArealightFacets facets = lobe.facets;
+    vec3 stretch = vec3(facets.alpha, 1.0);
+    vec3 half_vector = arealight_normalize_or(stretch * normal, vec3(0.0, 0.0, 1.0));
+    float cosine = clamp(dot(facets.view, half_vector), 0.0, 1.0);
+    vec3 light = (2.0 * cosine) * half_vector - facets.view;
+    light.z = max(light.z, 0.0);
+    // Height-correlated Smith masking of both over that of the view alone
+    float by_view = length(stretch * facets.view);
+    float by_light = length(stretch * light);
+    float shadowing = (by_view + facets.view.z) * light.z / max(by_view * light.z + by_light * facets.view.z, 1e-30);
+    float weight = 1.0 - cosine;
+    float square = weight * weight;
+    return min(shadowing, 1.0) * (lobe.f0 + (lobe.f90 - lobe.f0) * (square * square * weight));
+}
+
+// A lobe whose albedo is `albedo`.
+ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, vec3 albedo) {
+    ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(1.0));
+    vec3 whole = arealight_facet_reflectance(lobe, arealight_facet_pole(facets) + vec3(0.0, 0.0, 1.0));
+    lobe.gain = min(albedo / max(whole, vec3(1e-30)), vec3(1.0));
+    return lobe;
+}
+
+// The specular lobe of a surface; `table` has its albedos.
+ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, ArealightSurface surface, ArealightTableSample table) {
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), vec3(frame.sin_view, 0.0, frame.cos_view));
+    if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
+        vec2 roughness = arealight_axis_roughness(surface);
+        vec2 axis = arealight_surface_axis(frame, surface.anisotropy.tangent);
+        facets.alpha = roughness * roughness;
+        facets.to_axes = mat3(axis.x, -axis.y, 0.0, axis.y, axis.x, 0.0, 0.0, 0.0, 1.0);
+        facets.view = facets.to_axes * facets.view;
+    }
+    return arealight_half_vectors(facets, surface.f0, vec3(surface.f90), arealight_specular_albedo(table, surface.f0, surface.f90));
+}
+
+// That of a coat, in the shading frame of what is below it: clipped at its own horizon.
+ArealightHalfVectors arealight_coat_half_vectors(ArealightFrame frame, ArealightCoat coat) {
+    vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
+    ArealightFrame own = arealight_coat_frame(frame, coat, view);
+    ArealightTableSample table = arealight_specular_sample(own, coat.roughness, false);
+    vec2 reflectance = vec2(arealight_coat_share(coat, dot(own.normal, view)));
+    if (AREALIGHT_COATS_BY_ALBEDO) {
+        reflectance = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
+    }
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), vec3(own.sin_view, 0.0, own.cos_view));
+    if (AREALIGHT_HAS_COAT_NORMAL) {
+        facets.to_axes = arealight_frame_matrix(own);
+    }
+    vec3 albedo = arealight_specular_albedo(table, vec3(reflectance.x), reflectance.y);
+    return arealight_half_vectors(facets, vec3(reflectance.x), vec3(reflectance.y), albedo);
+}
+
+// The lobe below a layer that lets this part of the light through, or reflecting more.
+void arealight_scale_half_vectors(inout ArealightHalfVectors lobe, vec3 by) {
+    lobe.f0 *= by;
+    lobe.f90 *= by;
+}
+
+// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel, in [0, f90]; 0 for one seen from behind and for
+// NaN.
+vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector) {
+    vec3 pole = arealight_facet_pole(lobe.facets);
+    float along = dot(vector, pole) * 2.0 / (1.0 + pole.z);
+    float share = arealight_form_factor(vec3(0.0, 0.0, along));
+    return share * arealight_facet_reflectance(lobe, vector) * (1.0 + (lobe.gain - 1.0) * (share * share));
+}
+
+#endif
