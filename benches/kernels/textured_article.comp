@@ -47,7 +47,7 @@ void main() {
     if (arealight_to_local(point, light, local)) {
         for (int i = 0; i < AREALIGHT_LOBES; i++) {
             if (arealight_has_lobe(i)) {
-                ArealightLobe lobe = point.lobes[i];
+                ArealightLobe lobe = arealight_lobe_at(point, i);
                 float form_factor = arealight_form_factor(arealight_vector_form_factor(lobe.space, local));
                 reflected += lobe.albedo * form_factor * article_color(lobe.space, local);
             }

@@ -45,7 +45,7 @@ pub struct Level {
 }
 
 /// Every level that has an albedo of its own. Two lobes have those of one.
-pub fn levels() -> [Level; 6] {
+pub fn levels() -> [Level; 7] {
     let level = |name, horizon, lobes| Level {
         name,
         quality: Quality { horizon, lobes, form_factor: FormFactor::Difference, ..Quality::default() },
@@ -60,6 +60,11 @@ pub fn levels() -> [Level; 6] {
         Level {
             name: "both horizons, two lobes",
             quality: Quality { specular_lobes: SpecularLobes::Two, ..both.quality },
+            ..both
+        },
+        Level {
+            name: "half vectors",
+            quality: Quality { specular_lobes: SpecularLobes::HalfVectors, ..Quality::default() },
             ..both
         },
         level("both horizons, formula", Horizon::Both, Lobes::Formula),

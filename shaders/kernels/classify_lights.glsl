@@ -36,7 +36,8 @@ TileLight polygon_light(uint index) {
     light.least = light.area;
     // What an image shows may be brighter than the light, or black
     bool has_image = (EFFECTS & EFFECT_TEXTURED) != 0u && record.texture_layer != NO_LIGHT_TEXTURE;
-    light.is_bounded = light.normal != vec3(0.0) && !has_image;
+    light.over_half_vectors = AREALIGHT_HAS_HALF_VECTORS && !has_image;
+    light.is_bounded = light.normal != vec3(0.0) && !has_image && !light.over_half_vectors;
     return light;
 }
 
@@ -50,6 +51,7 @@ TileLight shape_light(uint index) {
     light.radiance = sum_of(shape.radiance);
     light.area = TILE_PI * (shape.radius * shape.radius);
     light.least = light.area;
+    light.over_half_vectors = false;
     light.is_bounded = true;
     if (shape.kind == SHAPE_DISK) {
         vec3 area = cross(shape.axis_u, shape.axis_v);
@@ -98,17 +100,20 @@ vec2 contribution(uint index) {
     heights.lobe = HAS_HORIZON ? tile_heights(tile_planes(LOBE_PAIR), light).y : 0.0;
     // A rough diffuse lobe leans, and its horizon with it
     bool is_below = !tile_is_diffuse() || (heights.surface.y < 0.0 && (!AREALIGHT_HAS_ROUGH_DIFFUSE || AREALIGHT_CLIPS_AT_SURFACE));
+    // Horizons of fitted lobes lean; GGX over half vectors ends where the surface does, and a coat where its own does
+    bool ends_at_surface = AREALIGHT_CLIPS_AT_SURFACE || light.over_half_vectors;
     if (HAS_GLOSSY) {
-        bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe();
-        is_below = is_below && (is_below_lobe || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
+        bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe() && !light.over_half_vectors;
+        is_below = is_below && (is_below_lobe || (ends_at_surface && heights.surface.y < 0.0));
     }
     if (AREALIGHT_HAS_SHEEN) {
         is_below = is_below && (tile_has_lobe() || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
     }
     if (tile_coat_spread() >= 0.0) {
         heights.coat.x = tile_heights(tile_planes(COAT_PAIR), light).y;
-        bool is_below_coat = heights.coat.x < 0.0 && tile_has_coat_horizon();
-        is_below = is_below && (is_below_coat || (AREALIGHT_CLIPS_AT_SURFACE && heights.surface.y < 0.0));
+        bool is_below_coat = heights.coat.x < 0.0 && tile_has_coat_horizon() && !light.over_half_vectors;
+        bool coat_ends_at_surface = AREALIGHT_HAS_COAT_NORMAL ? AREALIGHT_CLIPS_AT_SURFACE : ends_at_surface;
+        is_below = is_below && (is_below_coat || (coat_ends_at_surface && heights.surface.y < 0.0));
     }
     bool is_dark = light.radiance == 0.0;
     if (tile_is_known() && (is_behind || is_below || is_dark)) {

@@ -38,7 +38,7 @@ float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
 
 // The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each reflects of the light.
 int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
-    if (!AREALIGHT_HAS_LAYER && !AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
+    if (!AREALIGHT_HAS_COAT && !AREALIGHT_HAS_SHEEN && !AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
         return AREALIGHT_LOBE_SPECULAR;
     }
     int chosen = AREALIGHT_LOBE_SPECULAR;

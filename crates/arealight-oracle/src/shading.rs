@@ -376,18 +376,19 @@ fn layered(
     [diffuse, glossy]: [DVec3; 2],
     (lobe, of_coat): (impl Fn(&DMat3, f64) -> DVec3, impl Fn(&CoatLobe) -> DVec3),
 ) -> DVec3 {
-    let below = match &surface.sheen {
-        None => diffuse + glossy,
-        Some(sheen) => {
-            // As in options.glsl
-            let lobes = if surface.coat.is_some() { SpecularLobes::One } else { quality.specular_lobes };
-            let sheen = with_sheen(sheen, lobes, frame, &lobe);
-            diffuse * sheen.left_below + (glossy * sheen.left_below + sheen.radiance).max(DVec3::ZERO)
-        }
-    };
-    let Some(coat) = &surface.coat else { return below };
-    let coat = CoatLobe::new(quality, table, coat, frame);
-    below * (1.0 - coat.share) + of_coat(&coat)
+    let [mut diffuse, mut specular] = [diffuse, glossy];
+    if let Some(sheen) = &surface.sheen {
+        let sheen = with_sheen(sheen, quality.specular_lobes, frame, &lobe);
+        diffuse *= sheen.left_below;
+        specular = specular * sheen.left_below + sheen.radiance;
+    }
+    if let Some(coat) = &surface.coat {
+        let coat = CoatLobe::new(quality, table, coat, frame);
+        diffuse *= 1.0 - coat.share;
+        specular = specular * (1.0 - coat.share) + of_coat(&coat);
+    }
+    // Sheen's second lobe may take more away than there is
+    diffuse + specular.max(DVec3::ZERO)
 }
 
 /// What the table or the formula holds for a lobe.
@@ -442,8 +443,8 @@ fn glossy_part(
     }
     let sample = surface_sample(quality, table, surface, frame);
     let scale = Rescattered::new(surface, &sample).scale;
-    // Below sheen there is one lobe, below black sheen where there is a coat, too: as in material.glsl
-    let has_sheen = surface.sheen.is_some_and(|sheen| surface.coat.is_some() || sheen.color != DVec3::ZERO);
+    // Below sheen there is one lobe: the second place is that of sheen's own, as in material.glsl
+    let has_sheen = surface.sheen.is_some_and(|sheen| sheen.color != DVec3::ZERO);
     let lobes = if has_sheen { SpecularLobes::One } else { quality.specular_lobes };
     let lobes = sample.lobes(lobes, surface.f0, surface.f90).into_iter();
     let parts = lobes.filter(|(_, albedo)| *albedo != DVec3::ZERO);

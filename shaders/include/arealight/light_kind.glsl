@@ -61,10 +61,9 @@ struct ArealightReflected {
                     point.coat_half_vectors, arealight_facet_form_factor(point.coat_half_vectors.facets, local)); \
             }                                                                                       \
         }                                                                                           \
-        ArealightLobe fitted = arealight_lobe_at(point, lobe);                                      \
-        mat3 space = fitted.space;                                                                  \
+        mat3 space = arealight_lobe_at(point, lobe).space;                                          \
         vec3 vector = arealight_vector_form_factor(space, local);                                   \
-        float gain = AREALIGHT_CLIPS_AT_SURFACE ? fitted.gain : 1.0;                                \
+        float gain = AREALIGHT_CLIPS_AT_SURFACE ? arealight_lobe_at(point, lobe).gain : 1.0;        \
         return arealight_form_factor(gain * vector) * arealight_image_average(space, local, vector); \
     }                                                                                               \
     vec3 arealight_lobe_albedo(ArealightPoint point, int lobe, Local local) {                       \

@@ -13,18 +13,13 @@
 
 const int AREALIGHT_LOBE_DIFFUSE = 0;
 const int AREALIGHT_LOBE_SPECULAR = 1;
-const int AREALIGHT_LOBE_SECOND = 2; // of two specular lobes, or of two of sheen
+const int AREALIGHT_LOBE_SECOND = 2; // of two specular lobes, or of a surface that has sheen its second
 const int AREALIGHT_LOBE_COAT = 3;
-const int AREALIGHT_LOBES = 4;
-// Sheen has the coat's place and the second specular lobe's, below a coat the latter alone: with five lobes ArealightPoint is larger than
-// what drivers keep in registers where a loop indexes it (RADV: 256 bytes), whether a surface has them or not.
-const int AREALIGHT_LOBE_SHEEN = AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SECOND : AREALIGHT_LOBE_COAT;
-
-// Whether there is something at the last place.
-const bool AREALIGHT_HAS_LAYER = AREALIGHT_HAS_COAT ? true : AREALIGHT_HAS_SHEEN;
+const int AREALIGHT_LOBE_SHEEN = 4;
+const int AREALIGHT_LOBES = 5;
 
 // The lobes before this one may be there: what a loop over them goes through.
-const int AREALIGHT_LOBE_END = AREALIGHT_HAS_LAYER ? AREALIGHT_LOBES : AREALIGHT_LOBE_COAT;
+const int AREALIGHT_LOBE_END = AREALIGHT_HAS_SHEEN ? AREALIGHT_LOBES : AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SHEEN : AREALIGHT_LOBE_COAT;
 
 // A surface made ready for any number of lights: all that does not depend on the light.
 struct ArealightPoint {
@@ -38,8 +33,8 @@ struct ArealightPoint {
 // Whether surfaces have a lobe before AREALIGHT_LOBE_END: constant for a literal `lobe`.
 bool arealight_has_lobe(int lobe) {
     return lobe == AREALIGHT_LOBE_DIFFUSE ? AREALIGHT_HAS_DIFFUSE
-         : AREALIGHT_HAS_LAYER && lobe == AREALIGHT_LOBE_COAT ? true
-         : AREALIGHT_HAS_SHEEN && lobe == AREALIGHT_LOBE_SHEEN ? true
+         : lobe == AREALIGHT_LOBE_COAT ? AREALIGHT_HAS_COAT
+         : lobe == AREALIGHT_LOBE_SHEEN ? AREALIGHT_HAS_SHEEN
          : AREALIGHT_HAS_TWO_SHEEN_LOBES && lobe == AREALIGHT_LOBE_SECOND ? true
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 }
@@ -53,6 +48,8 @@ ArealightLobe arealight_lobe_at(ArealightPoint point, int index) {
         lobe = point.lobes[AREALIGHT_LOBE_SECOND];
     } else if (index == AREALIGHT_LOBE_COAT) {
         lobe = point.lobes[AREALIGHT_LOBE_COAT];
+    } else if (index == AREALIGHT_LOBE_SHEEN) {
+        lobe = point.lobes[AREALIGHT_LOBE_SHEEN];
     }
     return lobe;
 }
@@ -144,6 +141,9 @@ ArealightPoint arealight_point(ArealightSurface surface) {
         ArealightLayer coat = arealight_coat_layer(frame, surface.coat);
         arealight_dim_base(point, coat.base);
         point.lobes[AREALIGHT_LOBE_COAT] = coat.lobe;
+        if (AREALIGHT_HAS_SHEEN) {
+            point.lobes[AREALIGHT_LOBE_SHEEN].albedo *= coat.base;
+        }
         if (AREALIGHT_HAS_HALF_VECTORS) {
             point.coat_half_vectors = arealight_coat_half_vectors(frame, surface.coat);
         }
@@ -162,9 +162,13 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \
     vec3 second = arealight_lobe_weight(point, AREALIGHT_LOBE_SECOND, local);        \
-    vec3 layer = vec3(0.0);                                                           \
-    if (AREALIGHT_HAS_LAYER) {                                                        \
-        layer = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
+    vec3 coat = vec3(0.0);                                                            \
+    if (AREALIGHT_HAS_COAT) {                                                         \
+        coat = arealight_lobe_weight(point, AREALIGHT_LOBE_COAT, local);              \
+    }                                                                                 \
+    vec3 sheen = vec3(0.0);                                                           \
+    if (AREALIGHT_HAS_SHEEN) {                                                        \
+        sheen = arealight_lobe_weight(point, AREALIGHT_LOBE_SHEEN, local);            \
     }                                                                                 \
     sum.diffuse = diffuse * point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo;               \
     if (arealight_has_lobe(AREALIGHT_LOBE_SPECULAR)) {                                \
@@ -173,8 +177,11 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     if (arealight_has_lobe(AREALIGHT_LOBE_SECOND)) {                                 \
         sum.specular += second * point.lobes[AREALIGHT_LOBE_SECOND].albedo;          \
     }                                                                                 \
-    if (AREALIGHT_HAS_LAYER) {                                                        \
-        sum.specular += layer * arealight_lobe_albedo(point, AREALIGHT_LOBE_COAT, local); \
+    if (AREALIGHT_HAS_COAT) {                                                         \
+        sum.specular += coat * arealight_lobe_albedo(point, AREALIGHT_LOBE_COAT, local); \
+    }                                                                                 \
+    if (AREALIGHT_HAS_SHEEN) {                                                        \
+        sum.specular += sheen * point.lobes[AREALIGHT_LOBE_SHEEN].albedo;             \
     }                                                                                 \
     AREALIGHT_FROM_ZERO(sum)
 #define AREALIGHT_LOOPED_LOBES(sum, point, local)                                    \

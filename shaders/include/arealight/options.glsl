@@ -135,16 +135,12 @@ const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
-// Not where there may be a coat and sheen: two specular lobes and both layers are one lobe too many (material.glsl). Nor by formulas.
-// A choice, no logical operators: compilers would make branches of those.
-const bool AREALIGHT_HAS_TWO_LAYERS = AREALIGHT_HAS_COAT ? AREALIGHT_HAS_SHEEN : false;
-const bool AREALIGHT_HAS_ONE_SPECULAR_LOBE = AREALIGHT_HAS_TWO_LAYERS ? true : AREALIGHT_USES_FORMULA;
-const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_HAS_ONE_SPECULAR_LOBE ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
+// Not by formulas, which make one. A choice, no logical operators: compilers would make branches of those.
+const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_HAS_HALF_VECTORS = bool(AREALIGHT_HALF_VECTORS);
-// Likewise of sheen, where there may be no coat.
-const bool AREALIGHT_MAY_HAVE_TWO_SHEEN_LOBES = AREALIGHT_HAS_COAT ? false : AREALIGHT_HAS_SHEEN;
+// Sheen is two lobes wherever the level asks for more than one specular lobe.
 const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true : bool(AREALIGHT_TWO_SPECULAR_LOBES);
-const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_MAY_HAVE_TWO_SHEEN_LOBES ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
+const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_HAS_SHEEN ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
 const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch

@@ -239,6 +239,8 @@ fn every_bit_pattern_gives_a_form_factor() {
             ..Quality::default()
         };
         check(&engine, &given, effects, quality);
+        let quality = Quality { specular_lobes: SpecularLobes::HalfVectors, ..Quality::default() };
+        check(&engine, &given, effects, quality);
     }
 }
 

@@ -192,8 +192,10 @@ fn what_is_not_finite_gives_zero_to_the_bit() {
     let surface = arealight_oracle::material::Surface { diffuse_albedo: DVec3::ONE, ..glossy_surface(0.3) };
     let mut given = Cases::new(&vec![point(surface, DVec3::Z, square.into(), true); lights.len()]);
     given.vertices = lights.iter().flatten().map(|v| [v[0], v[1], v[2] - 2.0, 0.0]).collect();
-    for mut level in Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]) {
-        level.quality.specular_lobes = SpecularLobes::Two;
+    let levels = Level::of(&[Path::Quad, Path::Polygon], &[Horizon::Cosine, Horizon::Both]);
+    let lobes = [SpecularLobes::Two, SpecularLobes::HalfVectors];
+    for (mut level, lobes) in levels.into_iter().flat_map(|level| lobes.map(|lobes| (level, lobes))) {
+        level.quality.specular_lobes = lobes;
         let answers = engine.run(&given, level.effects(Effects::DIFFUSE | Effects::GLOSSY), level.quality);
         assert!(f32::from_bits(answers[0][0]) > 0.1, "{level}: the whole light shines");
         for (light, answer) in lights.iter().zip(&answers).skip(1) {

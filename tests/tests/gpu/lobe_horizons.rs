@@ -55,7 +55,7 @@ fn every_lookup_lies_within_the_horizons_of_its_cell() {
                 // Of two lobes any part, as the kernel has it
                 let part = match lobes {
                     SpecularLobes::One => weight.map(|weight| weight / (reflectance + weight + 1e-30)),
-                    SpecularLobes::Two => [0.0, 1.0],
+                    SpecularLobes::Two | SpecularLobes::HalfVectors => [0.0, 1.0],
                 };
                 let mixed = |end: usize, part: f64| {
                     f64::from(horizon.lobe[end]) * (1.0 - part) + f64::from(horizon.schlick[end]) * part

@@ -22,6 +22,7 @@ mod frames_in_flight;
 mod furnace;
 mod g_buffer;
 mod guard;
+mod half_vectors;
 mod host_mistakes;
 mod host_shadows;
 mod huge_lights;

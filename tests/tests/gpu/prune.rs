@@ -102,6 +102,7 @@ fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     for quality in [
         Quality { horizon: Horizon::Both, ..plain },
         Quality { specular_lobes: SpecularLobes::Two, ..plain },
+        Quality { specular_lobes: SpecularLobes::HalfVectors, ..plain },
         Quality { footprint: Footprint::Split, ..plain },
     ] {
         all.push(shade(Effects::all(), quality));

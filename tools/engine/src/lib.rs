@@ -105,7 +105,7 @@ pub struct Engine {
     // Dropped in this order: what is on the device goes before the device
     table: UploadedTable,
     light_table: LightTable,
-    lobe_horizons: [OnceCell<Vec<LobeHorizon>>; 2],
+    lobe_horizons: [OnceCell<Vec<LobeHorizon>>; 3],
     textures: Option<TextureArray>,
     shade_passes: RefCell<HashMap<ShadeOptions, Rc<Kept<ShadePass>>>>,
     passes: Passes,

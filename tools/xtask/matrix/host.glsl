@@ -20,6 +20,7 @@ layout(constant_id = 8) const bool COAT = false;
 layout(constant_id = 9) const bool COAT_NORMAL = false;
 layout(constant_id = 10) const bool ANISOTROPY = false;
 layout(constant_id = 11) const bool SHEEN = false;
+layout(constant_id = 12) const bool HALF_VECTORS = false;
 #define AREALIGHT_DIFFUSE DIFFUSE
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
@@ -32,6 +33,7 @@ layout(constant_id = 11) const bool SHEEN = false;
 #define AREALIGHT_COAT_NORMAL COAT_NORMAL
 #define AREALIGHT_ANISOTROPY ANISOTROPY
 #define AREALIGHT_SHEEN SHEEN
+#define AREALIGHT_HALF_VECTORS HALF_VECTORS
 #endif
 
 #include "arealight/arealight.glsl"

@@ -5,6 +5,7 @@
 //! drawn by chords. What is left beside, masking and the Fresnel term, is taken at the mean of these normals.
 
 use super::fitted_sample;
+use crate::formula::MIN_COS_VIEW;
 use crate::frame::SurfaceFrame;
 use crate::ggx::AnisotropicGgx;
 use crate::material::Surface;
@@ -31,7 +32,7 @@ pub(super) struct HalfVectors {
     /// Reflectances at normal and at grazing incidence.
     f0: DVec3,
     f90: DVec3,
-    /// What a light from everywhere counts more or less than by its mean normal.
+    /// How much more a light counts than its mean normal says, over its share of the visible normals: of light from everywhere what makes the albedo.
     gain: DVec3,
 }
 
@@ -68,12 +69,15 @@ impl HalfVectors {
     }
 
     fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, [f0, f90]: [DVec3; 2], sample: &TableSample) -> Self {
-        let view = to_axes * view;
-        let mut facets = Self { to_axes, alpha, view, f0, f90, gain: DVec3::ONE };
-        // Light from everywhere: the facets on the viewer's side of both horizons
-        let whole = facets.reflectance(facets.pole() + DVec3::Z);
+        // Along the surface the half vectors of light that passes straight on have no direction
+        let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
+        let mut facets = Self { to_axes, alpha, view, f0, f90, gain: DVec3::ZERO };
+        // Light from everywhere: all above the horizon
+        let sky = facets.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y]);
+        let share = facets.share(sky).max(1e-6);
         let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
-        facets.gain = (albedo / whole.max(DVec3::splat(1e-30))).min(DVec3::ONE);
+        let mean = albedo / share / facets.reflectance(sky).max(DVec3::splat(1e-30));
+        facets.gain = (mean - DVec3::ONE) / share;
         facets
     }
 
@@ -100,16 +104,26 @@ impl HalfVectors {
         let in_axes: Vec<DVec3> = vertices.iter().map(|vertex| self.to_axes * *vertex).collect();
         let outline: Vec<DVec3> =
             above_horizon(&in_axes).iter().map(|vertex| vertex.normalize_or(DVec3::Z)).collect();
-        let next = outline.iter().cycle().skip(1);
-        let arcs: DVec3 = outline.iter().zip(next).map(|(from, to)| self.edge(*from, *to)).sum();
-        let pole = self.pole();
-        let vector = -arcs / TAU;
-        let vector = if two_sided && vector.dot(pole) < 0.0 { -vector } else { vector };
-        let share = (vector.dot(pole) * 2.0 / (1.0 + pole.z)).clamp(0.0, 1.0);
+        let vector = self.vector(&outline);
+        let vector = if two_sided && vector.dot(self.pole()) < 0.0 { -vector } else { vector };
+        let share = self.share(vector);
         if share == 0.0 {
             return DVec3::ZERO;
         }
-        share * self.reflectance(vector) * (DVec3::ONE + (self.gain - DVec3::ONE) * (share * share))
+        share * self.reflectance(vector) * (DVec3::ONE + self.gain * share)
+    }
+
+    /// The vector form factor of an outline of directions in the axes, none below their horizon.
+    fn vector(&self, outline: &[DVec3]) -> DVec3 {
+        let next = outline.iter().cycle().skip(1);
+        let arcs: DVec3 = outline.iter().zip(next).map(|(from, to)| self.edge(*from, *to)).sum();
+        -arcs / TAU
+    }
+
+    /// The part of the visible normals that it is of.
+    fn share(&self, vector: DVec3) -> f64 {
+        let pole = self.pole();
+        (vector.dot(pole) * 2.0 / (1.0 + pole.z)).clamp(0.0, 1.0)
     }
 
     /// The arcs of the conic that the edge between two directions makes.

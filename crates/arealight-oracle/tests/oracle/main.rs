@@ -7,6 +7,7 @@ mod coupled;
 mod ellipse;
 mod footprints;
 mod ggx;
+mod half_vectors;
 mod ltsd;
 mod microsurface;
 mod polygon;

@@ -85,6 +85,18 @@ vec3 arealight_facet_edge(ArealightFacets facets, vec3 from, vec3 to) {
     return arcs;
 }
 
+// The vector form factor of light from everywhere above the horizon of the axes.
+vec3 arealight_facet_sky(ArealightFacets facets) {
+    vec3 arcs = vec3(0.0);
+    vec3 from = vec3(1.0, 0.0, 0.0);
+    for (int quarter = 0; quarter < 4; quarter++) {
+        vec3 to = vec3(from.y, -from.x, 0.0);
+        arcs += arealight_facet_edge(facets, from, to);
+        from = to;
+    }
+    return AREALIGHT_PER_ARC * arcs;
+}
+
 // The vector form factor of a convex quad in the shading frame, clipped at the horizon of the axes. Of a light seen from its front its product with
 // arealight_facet_pole is not negative.
 vec3 arealight_facet_quad(ArealightFacets facets, ArealightQuad quad) {
@@ -155,6 +167,36 @@ vec3 arealight_facet_vector(ArealightFacetOutline outline, ArealightFacets facet
         outline.arcs += arealight_facet_edge(facets, outline.last, outline.first);
     }
     return AREALIGHT_PER_ARC * outline.arcs;
+}
+
+// The same where the last vertex is not known before the others.
+struct ArealightFacetLoop {
+    ArealightFacetOutline outline;
+    vec3 start; // the first vertex, which comes again at the end
+    bool begun;
+};
+
+ArealightFacetLoop arealight_facet_loop() {
+    return ArealightFacetLoop(arealight_facet_begin(vec3(0.0)), vec3(0.0), false);
+}
+
+// Goes on to the polygon's next vertex, in the axes.
+void arealight_facet_loop_vertex(inout ArealightFacetLoop polygon, ArealightFacets facets, vec3 vertex) {
+    if (polygon.begun) {
+        arealight_facet_vertex(polygon.outline, facets, vertex);
+    } else {
+        polygon.start = vertex;
+        polygon.outline.previous = vertex;
+        polygon.begun = true;
+    }
+}
+
+// Its vector form factor, when all vertices have come.
+vec3 arealight_facet_loop_vector(ArealightFacetLoop polygon, ArealightFacets facets) {
+    if (polygon.begun) {
+        arealight_facet_vertex(polygon.outline, facets, polygon.start);
+    }
+    return arealight_facet_vector(polygon.outline, facets);
 }
 
 #endif

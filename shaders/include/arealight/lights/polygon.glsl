@@ -123,8 +123,8 @@ vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint 
     return arealight_outline_in_space(space, center, to_frame, first, end, front);
 }
 
-// The vector form factor of facets of the outline of vertices `first` to `end` - 1, not empty.
-vec3 arealight_facet_outline(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+// The vector form factor of facets of the outline of vertices `first` to `end` - 1, not empty, clipped at the horizon of their axes.
+vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
     vec3 in_axes = facets.to_axes * center;
     mat3 to_axes = facets.to_axes * to_frame;
     ArealightFacetOutline outline = arealight_facet_begin(in_axes + to_axes * arealight_bridge_vertex(end - 1u));
@@ -135,6 +135,35 @@ vec3 arealight_facet_outline(ArealightFacets facets, vec3 center, mat3 to_frame,
         heights += vertex.z;
     }
     return arealight_is_finite(heights) ? arealight_facet_vector(outline, facets) : vec3(0.0);
+}
+
+// The same, clipped at the surface's horizon first: that of a coat's axes is another one.
+vec3 arealight_facet_outline_above_surface(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+    ArealightFacetLoop outline = arealight_facet_loop();
+    vec3 previous = center + to_frame * arealight_bridge_vertex(end - 1u);
+    float heights = 0.0;
+    for (uint index = first; index < end; index++) {
+        vec3 vertex = center + to_frame * arealight_bridge_vertex(index);
+        bool is_above = vertex.z > 0.0;
+        if (is_above != (previous.z > 0.0)) {
+            vec3 cut = is_above ? arealight_cut(vertex, previous) : arealight_cut(previous, vertex);
+            arealight_facet_loop_vertex(outline, facets, facets.to_axes * cut);
+        }
+        if (is_above) {
+            arealight_facet_loop_vertex(outline, facets, facets.to_axes * vertex);
+        }
+        heights += vertex.z;
+        previous = vertex;
+    }
+    return arealight_is_finite(heights) ? arealight_facet_loop_vector(outline, facets) : vec3(0.0);
+}
+
+// The vector form factor of facets of an outline, as the options have it.
+vec3 arealight_facet_outline(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+    if (AREALIGHT_CLIPS_AT_SURFACE && AREALIGHT_HAS_COAT_NORMAL) {
+        return arealight_facet_outline_above_surface(facets, center, to_frame, first, end);
+    }
+    return arealight_facet_outline_in_axes(facets, center, to_frame, first, end);
 }
 
 bool arealight_has_facet_form_factor(ArealightLocalPolygon local) {

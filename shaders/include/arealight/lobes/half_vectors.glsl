@@ -4,11 +4,12 @@
 #include "arealight/form_factor/half_vectors.glsl"
 #include "arealight/lobes/anisotropy.glsl"
 #include "arealight/lobes/coat.glsl"
+#include "arealight/lobes/formula.glsl"
 
 // GGX integrated over half vectors (with AREALIGHT_HALF_VECTORS): no transformed cosine stands for the lobe. How much of the visible normals mirrors
 // a light to the viewer is known in closed form, up to the chords' error (form_factor/half_vectors.glsl); masking of the light and the Fresnel
-// term, which vary slowly, are those of these normals' mean. Of a light that all of them see the mean counts too much: `gain` makes the lobe's albedo
-// of that. What it errs: docs/materials.md, docs/decisions/0026-half-vectors.md. It needs polygons without an image; of other lights the lobe is the
+// term, which vary slowly, are those of these normals' mean. The more of them a light has the less the mean says: `gain`, in proportion to their share, makes
+// of light from everywhere the lobe's albedo. What it errs: docs/materials.md, docs/decisions/0026-half-vectors.md. It needs polygons without an image; of other lights the lobe is the
 // fitted one.
 
 // A GGX lobe by its half vectors.
@@ -16,8 +17,14 @@ struct ArealightHalfVectors {
     ArealightFacets facets;
     vec3 f0;  // reflectance at normal incidence
     vec3 f90; // at grazing incidence
-    vec3 gain; // of a light from everywhere, in [0, 1]
+    vec3 gain; // how much more a light counts than its mean normal says, over its share of the visible normals
 };
+
+// The direction to the viewer in a frame, for facets: a view that grazes more than AREALIGHT_FORMULA_MIN_COS_VIEW counts as that. Of one along the surface
+// half vectors of light that passes straight on have no direction.
+vec3 arealight_facet_view(ArealightFrame frame) {
+    return arealight_unit(vec3(frame.sin_view, 0.0, max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)));
+}
 
 // The middle of the visible normals where alpha is 1, unit: the stretched view.
 vec3 arealight_facet_pole(ArealightFacets facets) {
@@ -42,17 +49,24 @@ vec3 arealight_facet_reflectance(ArealightHalfVectors lobe, vec3 normal) {
     return min(shadowing, 1.0) * (lobe.f0 + (lobe.f90 - lobe.f0) * (square * square * weight));
 }
 
-// A lobe whose albedo is `albedo`.
+// The part of the visible normals that a vector form factor of facets is of, in [0, 1]; 0 for one seen from behind and for NaN.
+float arealight_facet_share(vec3 pole, vec3 vector) {
+    return arealight_form_factor(vec3(0.0, 0.0, dot(vector, pole) * 2.0 / (1.0 + pole.z)));
+}
+
+// A lobe whose albedo is `albedo`: what it reflects of light from everywhere.
 ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, vec3 albedo) {
-    ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(1.0));
-    vec3 whole = arealight_facet_reflectance(lobe, arealight_facet_pole(facets) + vec3(0.0, 0.0, 1.0));
-    lobe.gain = min(albedo / max(whole, vec3(1e-30)), vec3(1.0));
+    ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(0.0));
+    vec3 sky = arealight_facet_sky(facets);
+    float share = max(arealight_facet_share(arealight_facet_pole(facets), sky), 1e-6);
+    vec3 mean = albedo / share / max(arealight_facet_reflectance(lobe, sky), vec3(1e-30));
+    lobe.gain = (mean - 1.0) / share;
     return lobe;
 }
 
 // The specular lobe of a surface; `table` has its albedos.
 ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, ArealightSurface surface, ArealightTableSample table) {
-    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), vec3(frame.sin_view, 0.0, frame.cos_view));
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), arealight_facet_view(frame));
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         vec2 roughness = arealight_axis_roughness(surface);
         vec2 axis = arealight_surface_axis(frame, surface.anisotropy.tangent);
@@ -72,7 +86,7 @@ ArealightHalfVectors arealight_coat_half_vectors(ArealightFrame frame, Arealight
     if (AREALIGHT_COATS_BY_ALBEDO) {
         reflectance = coat.weight * vec2(AREALIGHT_COAT_F0, 1.0);
     }
-    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), vec3(own.sin_view, 0.0, own.cos_view));
+    ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), arealight_facet_view(own));
     if (AREALIGHT_HAS_COAT_NORMAL) {
         facets.to_axes = arealight_frame_matrix(own);
     }
@@ -86,13 +100,10 @@ void arealight_scale_half_vectors(inout ArealightHalfVectors lobe, vec3 by) {
     lobe.f90 *= by;
 }
 
-// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel, in [0, f90]; 0 for one seen from behind and for
-// NaN.
+// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel, from 0 on; 0 for one seen from behind and for NaN.
 vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector) {
-    vec3 pole = arealight_facet_pole(lobe.facets);
-    float along = dot(vector, pole) * 2.0 / (1.0 + pole.z);
-    float share = arealight_form_factor(vec3(0.0, 0.0, along));
-    return share * arealight_facet_reflectance(lobe, vector) * (1.0 + (lobe.gain - 1.0) * (share * share));
+    float share = arealight_facet_share(arealight_facet_pole(lobe.facets), vector);
+    return share * arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share);
 }
 
 #endif

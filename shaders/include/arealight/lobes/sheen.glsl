@@ -4,9 +4,7 @@
 #include "arealight/lobes/formula.glsl"
 #include "arealight/lobes/lobe.glsl"
 
-// Sheen above other lobes: KHR_materials_sheen, the Charlie BRDF of Estevez and Kulla 2017, by formulas: no table is read.
-// With AREALIGHT_TWO_SPECULAR_LOBES it is two lobes, the second of which takes light away: Charlie has a hole about the mirror direction. Else, and where
-// surfaces may have coats, it is one.
+// By levels with more than one specular lobe it is two lobes, the second of which takes light away: Charlie has a hole about the mirror direction.
 
 // The smallest sheen roughness; a smaller one counts as this. Below it the lobe is seen at grazing angles alone.
 const float AREALIGHT_SHEEN_MIN_ROUGHNESS = 0.07;

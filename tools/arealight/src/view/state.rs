@@ -82,7 +82,7 @@ pub enum Key {
 
 /// Keys as help and scripts name them, and what each does.
 pub const KEYS: [(&str, &str); 11] = [
-    ("1 to 5", "quality level"),
+    ("1 to 6", "quality level"),
     ("w", "wipe: against the truth, against what engines ship, off"),
     ("e", "map of the error"),
     ("s", "shadows"),
