@@ -57,7 +57,7 @@ pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
 pub const AREALIGHT_SPECULAR_LOBES_ONE: u32 = 0;
 /// Two, at .6 to .8 times the error, exact in the reflectance and its colour.
 pub const AREALIGHT_SPECULAR_LOBES_TWO: u32 = 1;
-/// GGX itself over half vectors of polygons and meshes without an image: of lamps at a third to a tenth of two lobes' error.
+/// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth of two lobes' error.
 pub const AREALIGHT_SPECULAR_LOBES_HALF_VECTORS: u32 = 2;
 
 /// The glossy lobe is the table's.

@@ -41,9 +41,9 @@ pub enum SpecularLobes {
     /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. Of a surface that has sheen the second goes to that, at a third to a half of
     /// its error. One all the same where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
     Two = 1,
-    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to four times the instructions of one integral. Of lamps
-    /// that a lobe sees as a part of the hemisphere it errs a third to a tenth of what two lobes do, of two roughnesses ([`crate::Effects::ANISOTROPY`]) a tenth to a
-    /// thirtieth; of lights that fill the lobe, as a sky does, two to three times as much. Lights that are polygons or meshes without an image alone;
+    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to four times the instructions of one integral. Lobes of two
+    /// roughnesses ([`crate::Effects::ANISOTROPY`]) err a tenth to a thirtieth of what two lobes do under lamps, others as much or down to a third; of lights that fill the lobe,
+    /// as a sky does, two to three times as much, but that light from everywhere is exact. Lights that are polygons or meshes without an image alone;
     /// all others have [`SpecularLobes::One`]. The table is read for albedos. Sheen has two lobes, as with [`SpecularLobes::Two`]. Tiles cull no such light.
     HalfVectors = 2,
 }

@@ -14,9 +14,14 @@ use arealight::{LightTable, Quality, TableSample};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// An edge is halved where the middle of its half vectors is farther from an end than this cosine, and the halves again where it is farther than the
-/// second.
-const BENT: [f64; 2] = [0.7, 0.35];
+/// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than this cosine.
+const BENT: f64 = 0.7;
+
+/// How often, at most.
+const MOST_HALVINGS: u32 = 5;
+
+/// How many times the reflectance of the mean normal the mean reflectance may be.
+const MOST_OF_MEAN: f64 = 16.0;
 
 /// What two chords of a conic lack, over the triangle that they make with the third.
 const SEGMENT: f64 = 0.4;
@@ -77,7 +82,7 @@ impl HalfVectors {
         let share = facets.share(sky).max(1e-6);
         let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
         let mean = albedo / share / facets.reflectance(sky).max(DVec3::splat(1e-30));
-        facets.gain = (mean - DVec3::ONE) / share;
+        facets.gain = (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share;
         facets
     }
 
@@ -110,7 +115,8 @@ impl HalfVectors {
         if share == 0.0 {
             return DVec3::ZERO;
         }
-        share * self.reflectance(vector) * (DVec3::ONE + self.gain * share)
+        let mean = self.reflectance(vector) * (DVec3::ONE + self.gain * share);
+        share * mean.min(self.f0.max(self.f90))
     }
 
     /// The vector form factor of an outline of directions in the axes, none below their horizon.
@@ -132,14 +138,7 @@ impl HalfVectors {
         let chord = (from + to).length().max(1e-19);
         let conic = [from + self.view, (from + to) / chord + 0.5 * chord * self.view, to + self.view]
             .map(|half| half * shrink);
-        let [ends, middle] =
-            [[conic[0], conic[2]], [shoulder(conic)[1]; 2]].map(|v| v.map(DVec3::normalize_or_zero));
-        let bend = ends[0].dot(middle[0]).min(ends[1].dot(middle[1]));
-        let mut pieces = vec![conic];
-        for _ in BENT.iter().filter(|bent| bend < **bent) {
-            pieces = pieces.into_iter().flat_map(halves).collect();
-        }
-        pieces.into_iter().map(chords).sum()
+        arcs(conic, MOST_HALVINGS)
     }
 }
 
@@ -155,14 +154,14 @@ fn shoulder([first, control, last]: [DVec3; 3]) -> [DVec3; 3] {
     [left, right + (left - right) * (1.0 - part), right]
 }
 
-fn halves(conic: [DVec3; 3]) -> [[DVec3; 3]; 2] {
-    let [left, middle, right] = shoulder(conic);
-    [[conic[0], left, middle], [middle, right, conic[2]]]
-}
-
-/// Two chords of a conic, as arcs, and what they lack.
-fn chords(conic: [DVec3; 3]) -> DVec3 {
-    let [from, middle, to] = [conic[0], shoulder(conic)[1], conic[2]].map(DVec3::normalize_or_zero);
+/// The arcs of a conic by two chords, as arcs, and what they lack; of its halves where it bends far.
+fn arcs(conic: [DVec3; 3], halvings: u32) -> DVec3 {
+    let [left, shoulder, right] = shoulder(conic);
+    let [from, middle, to] = [conic[0], shoulder, conic[2]].map(DVec3::normalize_or_zero);
+    if halvings > 0 && from.dot(middle).min(to.dot(middle)) < BENT {
+        let halves = [[conic[0], left, shoulder], [shoulder, right, conic[2]]];
+        return halves.into_iter().map(|half| arcs(half, halvings - 1)).sum();
+    }
     let lacking = middle.dot((middle - from).cross(to - from));
     vector_of_arc(from, middle) + vector_of_arc(middle, to) + SEGMENT * lacking * middle
 }

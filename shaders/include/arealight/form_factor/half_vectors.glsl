@@ -10,8 +10,8 @@
 // An edge of the light is an arc of a great circle, e(t) = (1 - t)^2 a + 2 t (1 - t) m + t^2 b up to its length, m being the middle direction over the
 // cosine of half the angle. Its half vectors e(t) + |e(t)| v are quadratic in t as well: an arc of a conic, whose control points are
 // a + v, (a + b) / |a + b| + v |a + b| / 2 and b + v. No linear map leads there; chords do, from the ends to the shoulder of the conic, with what they
-// lack added by the triangle that they make: two of an edge, four or eight of one that bends far. Where chords meet is fixed by the conic alone, so
-// that a light cut in two sends what it did, up to the chords' error: 1e-4 of lamps, and of any light at most 1e-2 of what is reflected of it.
+// lack added by the triangle that they make: two of an edge, more of the parts of one that bends far. Where chords meet is fixed by the edge alone, so
+// that a light cut in two sends what it did, up to the chords' error: an edge errs by 3e-4 of a form factor at most, on average 1e-4 of one that bends far.
 
 // What the facets of a surface are and who sees them.
 struct ArealightFacets {
@@ -27,10 +27,10 @@ struct ArealightConic {
     vec3 last;
 };
 
-// An edge is halved where the middle of its half vectors is farther from an end than an angle of this cosine, and each half again where it is farther than
-// the second.
+// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than an angle of this cosine.
 const float AREALIGHT_BENT = 0.7;
-const float AREALIGHT_BENT_TWICE = 0.35;
+// Parts of an edge from this one on are not: after five halvings.
+const uint AREALIGHT_LAST_PARTS = 32u;
 
 // What two chords of a conic lack, over the triangle that they make with the third: 1/3 of a parabola, 0.57 of a half circle.
 const float AREALIGHT_CONIC_SEGMENT = 0.4;
@@ -51,13 +51,35 @@ ArealightConic arealight_conic_half(ArealightConic conic, bool second) {
     return second ? ArealightConic(at[1], at[2], conic.last) : ArealightConic(conic.first, at[0], at[1]);
 }
 
-// The arcs of two chords of a conic, and what they lack.
+// Part `part` of a conic: 1 is all of it, 2 n and 2 n + 1 are the halves of n.
+ArealightConic arealight_conic_part(ArealightConic conic, uint part) {
+    for (int bit = findMSB(part) - 1; bit >= 0; bit--) {
+        conic = arealight_conic_half(conic, ((part >> bit) & 1u) != 0u);
+    }
+    return conic;
+}
+
+// The arcs of a conic, by two chords of each of its parts and what they lack.
 vec3 arealight_conic_arcs(ArealightConic conic) {
-    vec3 first = arealight_unit(conic.first);
-    vec3 middle = arealight_unit(arealight_conic_shoulder(conic)[1]);
-    vec3 last = arealight_unit(conic.last);
-    float lacking = dot(middle, cross(middle - first, last - first));
-    return arealight_arc(first, middle) + arealight_arc(middle, last) + (AREALIGHT_CONIC_SEGMENT * lacking) * middle;
+    vec3 arcs = vec3(0.0);
+    uint part = 1u;
+    do {
+        ArealightConic piece = arealight_conic_part(conic, part);
+        vec3 first = arealight_unit(piece.first);
+        vec3 middle = arealight_unit(arealight_conic_shoulder(piece)[1]);
+        vec3 last = arealight_unit(piece.last);
+        bool is_bent = min(dot(first, middle), dot(last, middle)) < AREALIGHT_BENT;
+        if (is_bent && part < AREALIGHT_LAST_PARTS) {
+            part *= 2u;
+        } else {
+            float lacking = dot(middle, cross(middle - first, last - first));
+            arcs += arealight_arc(first, middle) + arealight_arc(middle, last) + (AREALIGHT_CONIC_SEGMENT * lacking) * middle;
+            // On to the next, up from second halves
+            part += 1u;
+            part >>= findLSB(part);
+        }
+    } while (part != 1u);
+    return arcs;
 }
 
 // The arcs of the half vectors of an edge between two directions in the axes, unit vectors.
@@ -66,23 +88,8 @@ vec3 arealight_facet_edge(ArealightFacets facets, vec3 from, vec3 to) {
     float square = max(dot(sum, sum), AREALIGHT_LEAST_SQUARE);
     float per_length = inversesqrt(square);
     vec3 shrink = vec3(1.0 / facets.alpha, 1.0);
-    ArealightConic conic = ArealightConic(shrink * (from + facets.view), shrink * (per_length * (sum + (0.5 * square) * facets.view)),
-                                          shrink * (to + facets.view));
-    vec3 middle = arealight_unit(arealight_conic_shoulder(conic)[1]);
-    float bend = min(dot(arealight_unit(conic.first), middle), dot(arealight_unit(conic.last), middle));
-    if (!(bend < AREALIGHT_BENT)) {
-        return arealight_conic_arcs(conic);
-    }
-    vec3 arcs = vec3(0.0);
-    int pieces = bend < AREALIGHT_BENT_TWICE ? 4 : 2;
-    for (int piece = 0; piece < pieces; piece++) {
-        ArealightConic part = arealight_conic_half(conic, 2 * piece >= pieces);
-        if (pieces == 4) {
-            part = arealight_conic_half(part, (piece & 1) != 0);
-        }
-        arcs += arealight_conic_arcs(part);
-    }
-    return arcs;
+    return arealight_conic_arcs(ArealightConic(shrink * (from + facets.view), shrink * (per_length * (sum + (0.5 * square) * facets.view)),
+                                               shrink * (to + facets.view)));
 }
 
 // The vector form factor of light from everywhere above the horizon of the axes.

@@ -54,13 +54,16 @@ float arealight_facet_share(vec3 pole, vec3 vector) {
     return arealight_form_factor(vec3(0.0, 0.0, dot(vector, pole) * 2.0 / (1.0 + pole.z)));
 }
 
+// How many times the reflectance of the mean normal the mean reflectance may be: Fresnel terms are convex, and 3 is what they come to.
+const float AREALIGHT_MOST_OF_MEAN = 16.0;
+
 // A lobe whose albedo is `albedo`: what it reflects of light from everywhere.
 ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, vec3 albedo) {
     ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(0.0));
     vec3 sky = arealight_facet_sky(facets);
     float share = max(arealight_facet_share(arealight_facet_pole(facets), sky), 1e-6);
     vec3 mean = albedo / share / max(arealight_facet_reflectance(lobe, sky), vec3(1e-30));
-    lobe.gain = (mean - 1.0) / share;
+    lobe.gain = (min(mean, vec3(AREALIGHT_MOST_OF_MEAN)) - 1.0) / share;
     return lobe;
 }
 
@@ -100,10 +103,12 @@ void arealight_scale_half_vectors(inout ArealightHalfVectors lobe, vec3 by) {
     lobe.f90 *= by;
 }
 
-// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel, from 0 on; 0 for one seen from behind and for NaN.
+// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel; 0 for one seen from behind and for NaN. No facet
+// reflects more than the larger of its reflectances.
 vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector) {
     float share = arealight_facet_share(arealight_facet_pole(lobe.facets), vector);
-    return share * arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share);
+    vec3 mean = arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share);
+    return share * min(mean, max(lobe.f0, lobe.f90));
 }
 
 #endif

@@ -28,13 +28,13 @@ pub fn levels() -> [Level; 6] {
     [
         Level { name: "exact", quality: exact },
         Level { name: "two lobes", quality: Quality { specular_lobes: SpecularLobes::Two, ..exact } },
+        Level { name: "both horizons", quality: Quality { horizon: Horizon::Both, ..exact } },
+        Level { name: "everything", quality: all },
+        Level { name: "formula", quality: Quality { lobes: Lobes::Formula, ..exact } },
         Level {
             name: "half vectors",
             quality: Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact },
         },
-        Level { name: "both horizons", quality: Quality { horizon: Horizon::Both, ..exact } },
-        Level { name: "everything", quality: all },
-        Level { name: "formula", quality: Quality { lobes: Lobes::Formula, ..exact } },
     ]
 }
 
@@ -117,7 +117,7 @@ impl FromStr for Key {
             "up" => Self::Turn([0.0, -0.04]),
             "down" => Self::Turn([0.0, 0.04]),
             _ => match name.parse() {
-                Ok(number @ 1..=5) => Self::Level(number - 1),
+                Ok(number @ 1..=6) => Self::Level(number - 1),
                 _ => return Err(format!("'{name}' is no key of the viewer")),
             },
         })
@@ -349,7 +349,7 @@ mod tests {
         assert!(keys(&["h", "p", "escape"]) != keys(&[]));
         assert_eq!(keys(&["]"]).roughness, Some(0.55));
         assert_eq!(keys(&["]", "left", "+", "r"]), keys(&[]));
-        assert!("f13".parse::<Key>().unwrap_err().contains("'f13'") && "6".parse::<Key>().is_err());
+        assert!("f13".parse::<Key>().unwrap_err().contains("'f13'") && "7".parse::<Key>().is_err());
     }
 
     #[test]
