@@ -9,6 +9,7 @@ use crate::frame::SurfaceFrame;
 use crate::ggx::AnisotropicGgx;
 use crate::material::Surface;
 use crate::polygon::{above_horizon, vector_of_arc};
+use crate::thin_film::ThinFilm;
 use arealight::{LightTable, Quality, TableSample};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -28,15 +29,17 @@ pub(super) struct HalfVectors {
     alpha: DVec2,
     /// The direction to the viewer, in these axes.
     view: DVec3,
-    /// Reflectances at normal and at grazing incidence.
+    /// Reflectances at normal and at grazing incidence, below the film.
     f0: DVec3,
-    f90: DVec3,
+    f90: f64,
+    film: Option<ThinFilm>,
     /// What a light from everywhere counts more or less than by its mean normal.
     gain: DVec3,
 }
 
 impl HalfVectors {
-    /// Of a surface's specular lobe; `sample` has its albedos.
+    /// Of a surface's specular lobe; `sample` has its albedos. Of a film each light sees what facets of one angle reflect, and light from everywhere what
+    /// Schlick's term does that stands for it.
     pub fn of_surface(surface: &Surface, frame: &SurfaceFrame, sample: &TableSample) -> Self {
         let (axis, alpha) = match AnisotropicGgx::of(surface, frame) {
             None => (DVec2::X, DVec2::splat(surface.alpha)),
@@ -48,7 +51,11 @@ impl HalfVectors {
             DVec3::Z,
         );
         let alpha = alpha.max(DVec2::splat(arealight::MIN_ALPHA));
-        Self::new(to_axes, alpha, frame.view(), [surface.f0, DVec3::splat(surface.f90)], sample)
+        let stand_in = surface.without_film(frame.cos_view());
+        let albedo =
+            stand_in.f0 * sample.albedo + (DVec3::splat(stand_in.f90) - stand_in.f0) * sample.schlick;
+        Self { film: surface.film, ..Self::new(to_axes, alpha, frame.view(), (surface.f0, surface.f90)) }
+            .with_albedo(albedo)
     }
 
     /// Of a coat: a surface of its own, of one alpha.
@@ -61,20 +68,19 @@ impl HalfVectors {
     ) -> Self {
         let sample = fitted_sample(quality, table, alpha, own.cos_view());
         let alpha = DVec2::splat(alpha.max(arealight::MIN_ALPHA));
-        Self {
-            to_axes: to_own,
-            ..Self::new(DMat3::IDENTITY, alpha, own.view(), [f0, f90].map(DVec3::splat), &sample)
-        }
+        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
+        let facets = Self::new(DMat3::IDENTITY, alpha, own.view(), (DVec3::splat(f0), f90));
+        Self { to_axes: to_own, ..facets.with_albedo(DVec3::splat(albedo)) }
     }
 
-    fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, [f0, f90]: [DVec3; 2], sample: &TableSample) -> Self {
-        let view = to_axes * view;
-        let mut facets = Self { to_axes, alpha, view, f0, f90, gain: DVec3::ONE };
-        // Light from everywhere: the facets on the viewer's side of both horizons
-        let whole = facets.reflectance(facets.pole() + DVec3::Z);
-        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
-        facets.gain = (albedo / whole.max(DVec3::splat(1e-30))).min(DVec3::ONE);
-        facets
+    fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, (f0, f90): (DVec3, f64)) -> Self {
+        Self { to_axes, alpha, view: to_axes * view, f0, f90, film: None, gain: DVec3::ONE }
+    }
+
+    /// The same, reflecting so much of light from everywhere: the facets on the viewer's side of both horizons.
+    fn with_albedo(self, albedo: DVec3) -> Self {
+        let whole = self.reflectance(self.pole() + DVec3::Z);
+        Self { gain: (albedo / whole.max(DVec3::splat(1e-30))).min(DVec3::ONE), ..self }
     }
 
     /// The middle of the visible normals where alpha is 1.
@@ -92,7 +98,11 @@ impl HalfVectors {
         let (by_view, by_light) = ((self.view * stretch).length(), (light.with_z(height) * stretch).length());
         let shadowing =
             (by_view + self.view.z) * height / (by_view * height + by_light * self.view.z).max(1e-30);
-        shadowing.min(1.0) * (self.f0 + (self.f90 - self.f0) * (1.0 - cosine).powi(5))
+        let fresnel = match &self.film {
+            None => self.f0 + (DVec3::splat(self.f90) - self.f0) * (1.0 - cosine).powi(5),
+            Some(film) => film.reflectance(self.f0, self.f90, cosine),
+        };
+        shadowing.min(1.0) * fresnel
     }
 
     /// What they reflect of a polygon of unit radiance in the surface frame, a channel; a polygon that is seen from its back counts if `two_sided`.

@@ -15,4 +15,5 @@ mod shading;
 mod sheen;
 mod sphere;
 mod textured;
+mod thin_film;
 mod tube;
