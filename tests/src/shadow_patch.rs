@@ -135,6 +135,9 @@ impl ShadowPatch {
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
         let blockers = Blockers::new(&self.blockers).unwrap();
         let material = &self.material;
+        let film = material
+            .film
+            .map_or([0.0; 4], |film| [film.weight, film.ior, film.thickness, 0.0].map(|value| value as f32));
         let images = [
             filled(engine, [0.0, 0.0, 0.0, 1.0]),
             filled(engine, [0.0, 0.0, 1.0, material.roughness]),
@@ -143,8 +146,9 @@ impl ShadowPatch {
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
             filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
             filled(engine, [0.0; 4]),
+            filled(engine, film),
         ];
-        let [position, normal, base_color, specular, coat, sheen, anisotropy] = images
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = images
             .each_ref()
             .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
         let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
@@ -187,6 +191,7 @@ impl ShadowPatch {
                 coat: Some(coat),
                 sheen: Some(sheen),
                 anisotropy: Some(anisotropy),
+                film: Some(film),
                 radiance: of(&radiance),
                 picks: Some(buffer(&picks)),
                 lobe_horizons,
