@@ -124,6 +124,13 @@ impl<'a> PatchPasses<'a> {
     }
 }
 
+/// What the G-buffer's image of films holds of a material.
+fn film_texel(material: &Material) -> [f32; 4] {
+    material
+        .film
+        .map_or([0.0; 4], |film| [film.weight, film.ior, film.thickness, 0.0].map(|value| value as f32))
+}
+
 impl ShadowPatch {
     /// Runs both passes.
     ///
@@ -135,9 +142,6 @@ impl ShadowPatch {
         let packed = PackedLights::new(&self.lights, DVec3::ZERO).unwrap();
         let blockers = Blockers::new(&self.blockers).unwrap();
         let material = &self.material;
-        let film = material
-            .film
-            .map_or([0.0; 4], |film| [film.weight, film.ior, film.thickness, 0.0].map(|value| value as f32));
         let images = [
             filled(engine, [0.0, 0.0, 0.0, 1.0]),
             filled(engine, [0.0, 0.0, 1.0, material.roughness]),
@@ -146,13 +150,12 @@ impl ShadowPatch {
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
             filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
             filled(engine, [0.0; 4]),
-            filled(engine, film),
+            filled(engine, film_texel(material)),
         ];
         let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = images
             .each_ref()
             .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
-        let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
-        let shadowed = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
+        let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
         let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
         let of = |image: &Image| Resource::StorageImage { view: image.view() };
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());

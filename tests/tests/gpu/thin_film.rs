@@ -84,7 +84,7 @@ fn half_vectors_know_the_facets_angle_and_fitted_lobes_do_not() {
     let baked: Vec<EvalPoint> = points
         .iter()
         .map(|point| {
-            let cos_view = point.view.normalize().dot(point.normal.normalize()).max(0.0);
+            let cos_view = point.view.normalize_or_zero().dot(point.normal.normalize_or_zero()).max(0.0);
             EvalPoint { surface: point.surface.without_film(cos_view), ..point.clone() }
         })
         .collect();
@@ -137,7 +137,7 @@ fn every_layout_has_its_film_in_an_image_of_its_own() {
 #[test]
 fn by_fitted_lobes_a_pass_shows_a_film_as_reflectances_that_hold_it_do() {
     let Some(engine) = TestEngine::new() else { return };
-    let cos_view = f64::from(CAMERA.normalize().z);
+    let cos_view = f64::from(CAMERA.normalize_or_zero().z);
     let (roughness, f0, f90) = (0.5_f32, DVec3::new(0.4, 0.3, 0.2), 0.9);
     let shade = |effects, specular_lobes, (f0, f90): (DVec3, f64), film: [f32; 4]| {
         let mut pixel = OnePixel::new(&engine, Vec4::W, 1.0);

@@ -57,7 +57,7 @@ fn cases(is_metal: bool, count: usize) -> Vec<Case> {
             let mirror = DVec3::new(-view.x, 0.0, view.z);
             let off =
                 DVec3::new(draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0)) * 1.5 * surface.alpha.max(0.1);
-            let center = (mirror + off).normalize();
+            let center = (mirror + off).normalize_or(mirror);
             let (right, up) = center.any_orthonormal_pair();
             let size = draw(2.0, 17.0).to_radians().tan();
             let corner = |x: f64, y: f64| center + (right * x + up * y) * size;
