@@ -30,7 +30,8 @@ layout(constant_id = 19) const uint VIEW = 0u;
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
-#define PICKS_BINDING 14
+#define FILM_BINDING 14
+#define PICKS_BINDING 15
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "table_image.glsl"
@@ -43,7 +44,7 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 // In front: columns, rows and slices; where the first slice begins; slices over ln(far / near); the unit view direction. From CLUSTERS on two words a
 // cluster, where its lights are and how many. Then the lights of all: indices of records.
 const uint CLUSTERS = 8u;
-layout(set = 0, binding = 17, std430) readonly buffer ClusterLists {
+layout(set = 0, binding = 18, std430) readonly buffer ClusterLists {
     uint cluster_lists[];
 };
 

@@ -15,6 +15,7 @@
 // is a spread of the normals. A coat's lobe is that of the table without Fresnel term, about the coat's own normal.
 
 #include "arealight/lobes/diffuse.glsl"
+#include "arealight/thin_film.glsl"
 #include "tile_bounds.glsl"
 #include "tile_contribution.glsl"
 #include "tile_reduction.glsl"
@@ -155,6 +156,9 @@ void reduce_sample(ivec2 pixel) {
 
     vec3 view = surface.view / (IS_ORTHOGRAPHIC ? sqrt(dot(surface.view, surface.view)) : distance);
     float cosine = dot(normal, view);
+    if (AREALIGHT_HAS_THIN_FILM) {
+        surface = arealight_without_film(surface, clamp(cosine, 0.0, 1.0));
+    }
     ArealightGpuLobeHorizon cell;
     if (HAS_HORIZON) {
         cell = lobe_horizon(surface.roughness, cosine);

@@ -42,6 +42,8 @@ const uint EFFECT_ANISOTROPY = 1048576u;
 const uint EFFECT_MULTIPLE_SCATTERING = 2097152u;
 // The pass is of light that thin surfaces let through: what the G-buffer holds is seen from behind.
 const uint EFFECT_TRANSMISSION = 4194304u;
+// Some surface has a thin film.
+const uint EFFECT_THIN_FILM = 8388608u;
 
 // Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
@@ -76,6 +78,7 @@ const int LOBES_FORMULA = 1;
 #define AREALIGHT_COAT_BY_ALBEDO ((EFFECTS & EFFECT_COAT_BY_ALBEDO) != 0u)
 #define AREALIGHT_ANISOTROPY ((EFFECTS & EFFECT_ANISOTROPY) != 0u)
 #define AREALIGHT_MULTIPLE_SCATTERING ((EFFECTS & EFFECT_MULTIPLE_SCATTERING) != 0u)
+#define AREALIGHT_THIN_FILM ((EFFECTS & EFFECT_THIN_FILM) != 0u)
 #define AREALIGHT_SHEEN ((EFFECTS & EFFECT_SHEEN) != 0u)
 #define AREALIGHT_TWO_SIDED ((EFFECTS & EFFECT_TWO_SIDED) != 0u)
 #ifndef AREALIGHT_TEXTURED_POLYGONS

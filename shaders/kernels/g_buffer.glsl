@@ -1,8 +1,8 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING, SHEEN_BINDING and ANISOTROPY_BINDING
-// where it shades coats, sheen, and specular lobes of two roughnesses or rough diffuse ones; G_BUFFER_LAYOUT where it knows other layouts
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING, SHEEN_BINDING, ANISOTROPY_BINDING and
+// FILM_BINDING where it shades coats, sheen, specular lobes of two roughnesses or rough diffuse ones, and thin films; G_BUFFER_LAYOUT where it knows other layouts
 // than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
 
 #include "arealight/options.glsl"
@@ -35,10 +35,10 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
 
-// Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING and ANISOTROPY_BINDING as it likes, and defines
+// Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING, ANISOTROPY_BINDING and FILM_BINDING as it likes, and defines
 // arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its
 // sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY, its diffuse roughness with
-// AREALIGHT_HAS_ROUGH_DIFFUSE alone. It reads g_buffer_sample, so that images may have several samples. It lies in an include folder of the host's
+// AREALIGHT_HAS_ROUGH_DIFFUSE, its film with AREALIGHT_HAS_THIN_FILM alone. It reads g_buffer_sample, so that images may have several samples. It lies in an include folder of the host's
 // compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
@@ -63,6 +63,9 @@ layout(set = 0, binding = SHEEN_BINDING) uniform texture2D g_sheen;
 #endif
 #ifdef ANISOTROPY_BINDING
 layout(set = 0, binding = ANISOTROPY_BINDING) uniform texture2D g_anisotropy;
+#endif
+#ifdef FILM_BINDING
+layout(set = 0, binding = FILM_BINDING) uniform texture2D g_film;
 #endif
 
 // The coat that a pixel sees, in every layout: its weight, its roughness, and its own normal's place on the octahedron.
@@ -103,6 +106,18 @@ void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
 #endif
 }
 
+// The thin film that a pixel sees, in every layout: how much of it there is, its index of refraction, and its thickness in nanometres.
+ArealightThinFilm load_film(ivec2 pixel) {
+    ArealightThinFilm film = ArealightThinFilm(0.0, 1.0, 0.0);
+#ifdef FILM_BINDING
+    if (AREALIGHT_HAS_THIN_FILM) {
+        vec4 texel = texelFetch(g_film, pixel, g_buffer_sample);
+        film = ArealightThinFilm(texel.r, texel.g, texel.b);
+    }
+#endif
+    return film;
+}
+
 // The surface that a pixel sees from `camera`, at `position`.
 ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     vec4 normal = texelFetch(g_normal, pixel, g_buffer_sample);
@@ -116,6 +131,7 @@ ArealightSurface load_surface(ivec2 pixel, vec3 position, vec3 camera) {
     surface.view = camera - position;
     surface.coat = load_coat(pixel);
     surface.sheen = load_sheen(pixel);
+    surface.film = load_film(pixel);
     if (G_BUFFER_LAYOUT == G_BUFFER_UNREAL) {
         surface.normal = normal.xyz * 2.0 - 1.0;
         surface.roughness = specular.b;

@@ -37,10 +37,11 @@ layout(constant_id = 21) const int SAMPLES = 1;
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
-#define PICKS_BINDING 14
-#define STENCIL_BINDING 15
-#define LIGHT_COUNTS_BINDING 16
-#define TILE_LISTS_BINDING 17
+#define FILM_BINDING 14
+#define PICKS_BINDING 15
+#define STENCIL_BINDING 16
+#define LIGHT_COUNTS_BINDING 17
+#define TILE_LISTS_BINDING 18
 #define TILE_LISTS_ACCESS readonly
 #include "effects.glsl"
 const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;

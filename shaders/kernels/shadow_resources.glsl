@@ -22,13 +22,14 @@ layout(constant_id = 19) const uint VIEW = 0u;
 #define COAT_BINDING 9
 #define SHEEN_BINDING 10
 #define ANISOTROPY_BINDING 11
-#define PICKS_BINDING 12
-#define SHADOW_BINDING 13
-#define RADIANCE_BINDING 14
-#define BLOCKER_NODES_BINDING 15
-#define BLOCKER_TRIANGLES_BINDING 16
-#define HISTORY_BINDING 17
-#define MOTION_BINDING 18
+#define FILM_BINDING 12
+#define PICKS_BINDING 13
+#define SHADOW_BINDING 14
+#define RADIANCE_BINDING 15
+#define BLOCKER_NODES_BINDING 16
+#define BLOCKER_TRIANGLES_BINDING 17
+#define HISTORY_BINDING 18
+#define MOTION_BINDING 19
 
 layout(push_constant, std430) uniform ShadowConstants {
     mat4 position_from_clip;

@@ -59,7 +59,8 @@ void main() {
     ArealightSheen no_sheen = ArealightSheen(vec3(0.0), 0.0);
     ArealightPoint point = arealight_point(ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0,
                                                             given.f90, given.roughness, 0.0, 0.0, 0.0, no_coat,
-                                                            ArealightAnisotropy(vec3(0.0), given.roughness), no_sheen));
+                                                            ArealightAnisotropy(vec3(0.0), given.roughness), no_sheen,
+                                                            AREALIGHT_NO_FILM));
     // The R3 sequence, for the choice and for the direction
     vec3 random = fract(0.5 + float(index % RAYS) * vec3(0.8191725134, 0.6710436067, 0.5497004779));
 

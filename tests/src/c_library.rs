@@ -322,6 +322,7 @@ impl<'a> CLibrary<'a> {
             coat: image(&pixel.coat, Usage::COMPUTE_READ),
             sheen: image(&pixel.sheen, Usage::COMPUTE_READ),
             anisotropy: image(&pixel.anisotropy, Usage::COMPUTE_READ),
+            film: image(&pixel.film, Usage::COMPUTE_READ),
             light_textures,
             radiance: image(&radiance, Usage::COMPUTE_WRITE),
             ..ArealightResources::default()

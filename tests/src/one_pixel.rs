@@ -58,6 +58,8 @@ pub struct OnePixel<'a> {
     pub sheen: Image,
     /// At `g_anisotropy`.
     pub anisotropy: Image,
+    /// At `g_film`.
+    pub film: Image,
     /// Of a host that reads them in its own way.
     pub module: Option<Vec<u32>>,
 }
@@ -79,6 +81,7 @@ impl<'a> OnePixel<'a> {
             coat: sampled(engine, float, [0.0_f32; 4]),
             sheen: sampled(engine, float, [0.0_f32; 4]),
             anisotropy: sampled(engine, float, [0.0_f32; 4]),
+            film: sampled(engine, float, [0.0_f32; 4]),
             module: None,
         }
     }
@@ -147,6 +150,7 @@ impl<'a> OnePixel<'a> {
                 coat: Some(sampled(&self.coat)),
                 sheen: Some(sampled(&self.sheen)),
                 anisotropy: Some(sampled(&self.anisotropy)),
+                film: Some(sampled(&self.film)),
                 radiance: Resource::StorageImage { view: radiance.view() },
                 glossy: Some(Resource::StorageImage { view: glossy.view() }),
                 light_textures: Some(self.engine.light_textures()),

@@ -124,6 +124,13 @@ impl<'a> PatchPasses<'a> {
     }
 }
 
+/// What the G-buffer's image of films holds of a material.
+fn film_texel(material: &Material) -> [f32; 4] {
+    material
+        .film
+        .map_or([0.0; 4], |film| [film.weight, film.ior, film.thickness, 0.0].map(|value| value as f32))
+}
+
 impl ShadowPatch {
     /// Runs both passes.
     ///
@@ -143,12 +150,12 @@ impl ShadowPatch {
             filled(engine, [material.coat, material.coat_roughness, 0.0, 0.0]),
             filled(engine, material.sheen_color.extend(material.sheen_roughness).to_array()),
             filled(engine, [0.0; 4]),
+            filled(engine, film_texel(material)),
         ];
-        let [position, normal, base_color, specular, coat, sheen, anisotropy] = images
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film] = images
             .each_ref()
             .map(|image| Resource::SampledImage { view: image.view(), layout: Usage::COMPUTE_READ.layout });
-        let radiance = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
-        let shadowed = stored(engine, vk::Format::R32G32B32A32_SFLOAT);
+        let [radiance, shadowed] = [(); 2].map(|()| stored(engine, vk::Format::R32G32B32A32_SFLOAT));
         let shadow = stored(engine, ShadowPass::SHADOW_FORMAT);
         let of = |image: &Image| Resource::StorageImage { view: image.view() };
         let buffer = |buffer: &Buffer| Resource::buffer(buffer.handle());
@@ -187,6 +194,7 @@ impl ShadowPatch {
                 coat: Some(coat),
                 sheen: Some(sheen),
                 anisotropy: Some(anisotropy),
+                film: Some(film),
                 radiance: of(&radiance),
                 picks: Some(buffer(&picks)),
                 lobe_horizons,

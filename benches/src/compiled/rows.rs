@@ -150,6 +150,8 @@ pub fn rows() -> Vec<Row> {
         quads("quads", "two specular lobes, sheen", LOBES | Effects::SHEEN, two_lobes),
         quads("quads", "exact, anisotropy", LOBES | Effects::ANISOTROPY, exact),
         quads("quads", "half vectors, anisotropy", LOBES | Effects::ANISOTROPY, half_vectors),
+        quads("quads", "exact, thin film", LOBES | Effects::THIN_FILM, exact),
+        quads("quads", "half vectors, thin film", LOBES | Effects::THIN_FILM, half_vectors),
         quads("quads", "exact, multiple scattering", LOBES | Effects::MULTIPLE_SCATTERING, exact),
         quads("quads", "exact, rough diffuse", LOBES | Effects::DIFFUSE_ROUGHNESS, exact),
         quads(

@@ -59,7 +59,8 @@ pub fn g_buffer(
     g_buffer.anisotropy.upload(&none, Usage::COMPUTE_READ)?;
     g_buffer.sheen.upload(&none, Usage::COMPUTE_READ)?;
     g_buffer.transmitted.upload(&vec![[0_u16; 4]; width * height], Usage::COMPUTE_READ)?;
-    g_buffer.film.upload(&vec![[0_u32; 4]; width * height], Usage::COMPUTE_READ)?;
+    g_buffer.film.upload(&none, Usage::COMPUTE_READ)?;
+    g_buffer.stencil.upload(&vec![0_u32; width * height], Usage::COMPUTE_READ)?;
     Ok(g_buffer)
 }
 
@@ -174,8 +175,8 @@ impl<'a> Frame<'a> {
             "g_sheen" => sheen,
             "g_anisotropy" => anisotropy,
             "g_transmitted" => transmitted,
-            // No frame has a stencil, whose place unsigned integers take
-            "g_film" | "g_stencil" => film,
+            "g_film" => film,
+            "g_stencil" => self.g_buffer.no_stencil(),
             "radiance_image" | "glossy_image" => {
                 Resource::StorageImage { view: self.g_buffer.radiance.view() }
             }

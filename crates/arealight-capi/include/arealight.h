@@ -87,6 +87,9 @@
 // light that is let through.
 #define AREALIGHT_EFFECT_TRANSMISSION 4194304
 
+// Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
+#define AREALIGHT_EFFECT_THIN_FILM 8388608
+
 // Form factors to float32's own precision, 1e-6.
 #define AREALIGHT_FORM_FACTOR_EXACT 0
 
@@ -427,7 +430,7 @@ typedef struct ArealightReach {
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING and _TRANSMISSION. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;
@@ -542,6 +545,9 @@ typedef struct ArealightResources {
     // perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
     // without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
     struct ArealightImage anisotropy;
+    // Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g, its thickness in nanometres in b
+    // (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+    struct ArealightImage film;
     // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     // describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
@@ -1193,7 +1199,7 @@ AREALIGHT_ASSERT(sizeof(ArealightImage) == 16);
 AREALIGHT_ASSERT(offsetof(ArealightImage, view) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightImage, layout) == 8);
 AREALIGHT_ASSERT(offsetof(ArealightImage, reserved) == 12);
-AREALIGHT_ASSERT(sizeof(ArealightResources) == 344);
+AREALIGHT_ASSERT(sizeof(ArealightResources) == 360);
 AREALIGHT_ASSERT(offsetof(ArealightResources, lights) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightResources, light_vertices) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightResources, shapes) == 48);
@@ -1204,14 +1210,15 @@ AREALIGHT_ASSERT(offsetof(ArealightResources, specular) == 120);
 AREALIGHT_ASSERT(offsetof(ArealightResources, coat) == 136);
 AREALIGHT_ASSERT(offsetof(ArealightResources, sheen) == 152);
 AREALIGHT_ASSERT(offsetof(ArealightResources, anisotropy) == 168);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 184);
-AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 200);
-AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 216);
-AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 232);
-AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 256);
-AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 280);
-AREALIGHT_ASSERT(offsetof(ArealightResources, stencil) == 304);
-AREALIGHT_ASSERT(offsetof(ArealightResources, light_counts) == 320);
+AREALIGHT_ASSERT(offsetof(ArealightResources, film) == 184);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_textures) == 200);
+AREALIGHT_ASSERT(offsetof(ArealightResources, radiance) == 216);
+AREALIGHT_ASSERT(offsetof(ArealightResources, glossy) == 232);
+AREALIGHT_ASSERT(offsetof(ArealightResources, lobe_horizons) == 248);
+AREALIGHT_ASSERT(offsetof(ArealightResources, tile_lists) == 272);
+AREALIGHT_ASSERT(offsetof(ArealightResources, shadow_picks) == 296);
+AREALIGHT_ASSERT(offsetof(ArealightResources, stencil) == 320);
+AREALIGHT_ASSERT(offsetof(ArealightResources, light_counts) == 336);
 AREALIGHT_ASSERT(sizeof(ArealightViewport) == 24);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, x) == 0);
 AREALIGHT_ASSERT(offsetof(ArealightViewport, y) == 4);

@@ -43,6 +43,8 @@ pub const AREALIGHT_EFFECT_MULTIPLE_SCATTERING: u32 = 2097152;
 /// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a pass of its own whose base colour is the part of the
 /// light that is let through.
 pub const AREALIGHT_EFFECT_TRANSMISSION: u32 = 4194304;
+/// Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
+pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
 /// Form factors to float32's own precision, 1e-6.
 pub const AREALIGHT_FORM_FACTOR_EXACT: u32 = 0;
 /// As EXACT, and relative precision for lights that look small.

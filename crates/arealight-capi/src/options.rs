@@ -117,6 +117,7 @@ mod tests {
             (c::AREALIGHT_EFFECT_SHEEN, Effects::SHEEN),
             (c::AREALIGHT_EFFECT_MULTIPLE_SCATTERING, Effects::MULTIPLE_SCATTERING),
             (c::AREALIGHT_EFFECT_TRANSMISSION, Effects::TRANSMISSION),
+            (c::AREALIGHT_EFFECT_THIN_FILM, Effects::THIN_FILM),
         ] {
             assert_eq!(number, effect.bits(), "{effect}");
         }

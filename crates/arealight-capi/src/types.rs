@@ -86,7 +86,7 @@ pub struct ArealightUpload {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
     /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING and _TRANSMISSION. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,
@@ -304,6 +304,9 @@ pub struct ArealightResources {
     /// perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
     /// without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
     pub anisotropy: ArealightImage,
+    /// Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g, its thickness in nanometres in b
+    /// (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+    pub film: ArealightImage,
     /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
     /// describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,

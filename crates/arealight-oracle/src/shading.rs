@@ -321,6 +321,7 @@ pub fn ltc_on(
     light: &RelativeLight,
 ) -> DVec3 {
     let frame = SurfaceFrame::new(normal, view);
+    let with_film = surface;
     let surface = &surface.without_film(frame.cos_view());
     let vertices: Vec<DVec3> = light.vertices.iter().map(|v| frame.to_surface(*v)).collect();
     // Integrate the transformed cosine
@@ -343,7 +344,7 @@ pub fn ltc_on(
     };
     let over_half_vectors = quality.specular_lobes == SpecularLobes::HalfVectors && image.is_none();
     let glossy = if over_half_vectors {
-        half_vector_part(quality, table, surface, &frame, &visible, light.two_sided)
+        half_vector_part(quality, table, with_film, &frame, &visible, light.two_sided)
     } else {
         glossy_part(quality, table, surface, &frame, lobe)
     };
@@ -421,11 +422,12 @@ fn half_vector_part(
     vertices: &[DVec3],
     two_sided: bool,
 ) -> DVec3 {
-    if surface.f0 == DVec3::ZERO && surface.f90 == 0.0 {
+    let stand_in = surface.without_film(frame.cos_view());
+    if stand_in.f0 == DVec3::ZERO && stand_in.f90 == 0.0 {
         return DVec3::ZERO;
     }
     let sample = surface_sample(quality, table, surface, frame);
-    let scale = Rescattered::new(surface, &sample).scale;
+    let scale = Rescattered::new(&stand_in, &sample).scale;
     scale * HalfVectors::of_surface(surface, frame, &sample).reflected(vertices, two_sided)
 }
 

@@ -20,6 +20,7 @@ use ash::vk::Format;
 ///     coat: Format::UNDEFINED, // not read without Effects::COAT
 ///     sheen: Format::UNDEFINED, // not read without Effects::SHEEN
 ///     anisotropy: Format::UNDEFINED, // nor this without Effects::ANISOTROPY or DIFFUSE_ROUGHNESS
+///     film: Format::UNDEFINED, // nor this without Effects::THIN_FILM
 ///     radiance: Format::R32G32B32A32_SFLOAT,
 /// };
 /// let options = ShadeOptions { from_depth: true, ..ShadeOptions::default() };
@@ -43,6 +44,8 @@ pub struct ShadeFormats {
     pub sheen: Format,
     /// Of [`crate::ShadeResources::anisotropy`], where [`ShadeOptions::reads_anisotropy`]: signed or float, with four channels.
     pub anisotropy: Format,
+    /// Of [`crate::ShadeResources::film`], where [`ShadeOptions::reads_film`]: float, with four channels.
+    pub film: Format,
     /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
     pub radiance: Format,
 }
@@ -110,6 +113,7 @@ const DIRECTION: &[Format] = &[
     Format::R16G16B16A16_SFLOAT,
     Format::R32G32B32A32_SFLOAT,
 ];
+const FILM: &[Format] = &[Format::R16G16B16A16_SFLOAT, Format::R32G32B32A32_SFLOAT];
 const RADIANCE: &[Format] = &[Format::R32G32B32A32_SFLOAT];
 const RADIANCE_HALF: &[Format] = &[Format::R16G16B16A16_SFLOAT];
 
@@ -139,6 +143,7 @@ impl ShadeFormats {
             ("coat", self.coat, coat, options.reads_coat()),
             ("sheen", self.sheen, COLOR, options.reads_sheen()),
             ("anisotropy", self.anisotropy, DIRECTION, options.reads_anisotropy()),
+            ("film", self.film, FILM, options.reads_film()),
             ("radiance", self.radiance, radiance, true),
         ];
         for (field, format, expected, used) in images {
@@ -162,6 +167,7 @@ mod tests {
         coat: Format::R16G16B16A16_SFLOAT,
         sheen: Format::R16G16B16A16_SFLOAT,
         anisotropy: Format::R16G16B16A16_SFLOAT,
+        film: Format::R16G16B16A16_SFLOAT,
         radiance: Format::R32G32B32A32_SFLOAT,
     };
 

@@ -241,6 +241,7 @@ impl ShadowPass {
             shade.coat.unwrap_or(shade.base_color),
             shade.sheen.unwrap_or(shade.base_color),
             shade.anisotropy.unwrap_or(shade.base_color),
+            shade.film.unwrap_or(shade.base_color),
             picks,
             resources.shadow,
             resources.radiance.unwrap_or(shade.radiance),

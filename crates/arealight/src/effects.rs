@@ -58,6 +58,10 @@ bitflags::bitflags! {
         /// Some thin surface lets light through. A pass with this shades what the G-buffer holds from behind, for a pass of its own: its base colour is the part of
         /// the light that is let through, and its normals are those of the front ([`Effects::passes`]).
         const TRANSMISSION = 1 << 22;
+        /// Some surface has a thin film that its reflectances lack, so the G-buffer's image of films is read. Without it a host may put films into the
+        /// reflectances, for what a few evaluations a pixel cost; with it lobes over half vectors ([`SpecularLobes::HalfVectors`](crate::SpecularLobes::HalfVectors))
+        /// show each light at its own facets' angle.
+        const THIN_FILM = 1 << 23;
     }
 }
 
@@ -88,12 +92,13 @@ impl Effects {
         .union(Self::MODEL)
         .union(Self::DIFFUSE_ROUGHNESS)
         .union(Self::SHEEN)
-        .union(Self::ANISOTROPY);
+        .union(Self::ANISOTROPY)
+        .union(Self::THIN_FILM);
 
     /// What each pass over surfaces with these effects has, its radiance added to that of the one before: what is reflected, and with
     /// [`Effects::TRANSMISSION`] what is let through, by an ideally diffusing sheet below the same interface.
     pub fn passes(self) -> impl Iterator<Item = Self> {
-        let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::TRANSMISSION;
+        let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::THIN_FILM | Self::TRANSMISSION;
         let lets_through = self.contains(Self::TRANSMISSION);
         let reflects = !lets_through || self.intersects(Self::LOBES);
         let transmitted = (self & below_interface) | Self::DIFFUSE;
@@ -126,6 +131,7 @@ impl Effects {
             (Self::ANISOTROPY, "anisotropy"),
             (Self::MULTIPLE_SCATTERING, "multiple_scattering"),
             (Self::TRANSMISSION, "transmission"),
+            (Self::THIN_FILM, "thin_film"),
         ]
         .into_iter()
         .filter_map(|(effect, name)| self.contains(effect).then_some(name))
@@ -147,8 +153,11 @@ mod tests {
     fn light_that_is_let_through_has_a_pass_of_its_own() {
         let opaque = Effects::DIFFUSE | Effects::GLOSSY | Effects::COUPLED | Effects::COAT;
         assert!(opaque.passes().eq([opaque]));
-        let passes = (opaque | Effects::TRANSMISSION).passes();
-        assert!(passes.eq([opaque, Effects::DIFFUSE | Effects::COUPLED | Effects::TRANSMISSION]));
+        let transmitted = Effects::DIFFUSE | Effects::COUPLED | Effects::TRANSMISSION;
+        assert!((opaque | Effects::TRANSMISSION).passes().eq([opaque, transmitted]));
+        // A film is part of the interface
+        let below_film = (opaque | Effects::THIN_FILM | Effects::TRANSMISSION).passes();
+        assert!(below_film.eq([opaque, transmitted].map(|pass| pass | Effects::THIN_FILM)));
     }
 
     #[test]

@@ -131,6 +131,14 @@ pub const G_ANISOTROPY: Binding = read(
      isotropic), roughness of the diffuse lobe in a (Effects::DIFFUSE_ROUGHNESS) (rgba16f); read only with one of these, else bind any image",
 );
 
+/// A G-buffer's thin films.
+pub const G_FILM: Binding = read(
+    "g_film",
+    BindingKind::SampledImage,
+    "how much of a surface a thin film covers in r, its index of refraction in g, its thickness in nanometres in b (rgba16f); read only with \
+     Effects::THIN_FILM, else bind any image",
+);
+
 /// Lights' textures.
 pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
@@ -212,6 +220,7 @@ pub static SHADE: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        G_FILM,
         PICKS,
         STENCIL,
         LIGHT_COUNTS,
@@ -238,7 +247,7 @@ pub static SHADE: Kernel = Kernel {
 };
 
 /// How many of the first bindings of [`SHADE`] whole frames use.
-pub const FRAME_BINDINGS: usize = 16;
+pub const FRAME_BINDINGS: usize = 17;
 
 /// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
 /// [`crate::gpu::ShadeConstants`].
@@ -262,6 +271,7 @@ pub static CLASSIFY: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        G_FILM,
         PICKS.unused(),
         STENCIL,
         LIGHT_COUNTS,
@@ -337,6 +347,7 @@ pub static SHADOW_RAYS: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        G_FILM,
         Binding { access: Access::Read, ..PICKS },
         SHADOW,
         SHADOWED.unused(),
@@ -376,6 +387,7 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        G_FILM,
         PICKS.unused(),
         SHADOW,
         SHADOWED.unused(),
@@ -417,6 +429,7 @@ pub static SHADOW_FILTER: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
+        G_FILM,
         PICKS.unused(),
         SHADOW,
         SHADOWED,

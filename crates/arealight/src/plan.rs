@@ -7,7 +7,7 @@ use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
 
 /// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
-/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, sheen at `g_sheen` and second roughnesses at `g_anisotropy`, alike in every layout. A G-buffer of any other layout is read by a
+/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, sheen at `g_sheen`, second roughnesses at `g_anisotropy` and thin films at `g_film`, alike in every layout. A G-buffer of any other layout is read by a
 /// bridge function in GLSL of the host's (docs/embed-glsl.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
@@ -142,6 +142,11 @@ impl ShadeOptions {
     /// Whether the image at the binding `g_anisotropy` is read.
     pub fn reads_anisotropy(self) -> bool {
         self.surfaces.intersects(Effects::ANISOTROPY | Effects::DIFFUSE_ROUGHNESS)
+    }
+
+    /// Whether the image at the binding `g_film` is read.
+    pub fn reads_film(self) -> bool {
+        self.surfaces.contains(Effects::THIN_FILM)
     }
 
     /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.

@@ -35,6 +35,7 @@ impl<'a> GBuffer<'a> {
         specular: vk::Format::UNDEFINED, // there is none
         sheen: vk::Format::UNDEFINED,
         anisotropy: vk::Format::UNDEFINED,
+        film: vk::Format::UNDEFINED,
         coat: vk::Format::UNDEFINED,
     };
     // doc end

@@ -18,6 +18,7 @@
 // Reading order:
 //   common.glsl, options.glsl      conventions; what a translation unit may switch
 //   surface.glsl                   a shading point's surface and frame
+//   thin_film.glsl                 what films on it reflect, and the reflectances that stand for them
 //   lobes/*                        table.glsl, formula.glsl -> specular.glsl -> anisotropy.glsl, coat.glsl; diffuse.glsl; sheen.glsl; lobe.glsl
 //   material.glsl                  which lobes a surface has: ArealightPoint
 //   form_factor/*                  arcs, quads, outlines, ellipses, spheres, tubes in any linear space

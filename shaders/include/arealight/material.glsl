@@ -8,6 +8,7 @@
 #include "arealight/lobes/rescattered.glsl"
 #include "arealight/lobes/sheen.glsl"
 #include "arealight/lobes/specular.glsl"
+#include "arealight/thin_film.glsl"
 
 // Which lobes a surface has. No kind of light knows of this, and no lobe of another.
 
@@ -109,11 +110,15 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     ArealightPoint point;
     point.position = surface.position;
     point.to_frame = arealight_frame_matrix(frame);
+    ArealightSurface with_film = surface;
+    if (AREALIGHT_HAS_THIN_FILM) {
+        surface = arealight_without_film(surface, frame.cos_view);
+    }
     point.lobes[AREALIGHT_LOBE_DIFFUSE] = arealight_surface_diffuse_lobe(frame, surface);
     if (AREALIGHT_HAS_SPECULAR) {
         ArealightTableSample table = arealight_put_specular_lobes(point, frame, surface);
         if (AREALIGHT_HAS_HALF_VECTORS) {
-            point.half_vectors = arealight_specular_half_vectors(frame, surface, table);
+            point.half_vectors = arealight_specular_half_vectors(frame, with_film, surface, table);
         }
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
             vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);

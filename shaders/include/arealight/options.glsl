@@ -44,6 +44,12 @@
 #define AREALIGHT_SHEEN 0
 #endif
 
+// A thin film on the surface, below sheen and a coat, ArealightSurface.film. Without it a host may put films into the surface's reflectances itself
+// (thin_film.glsl): they look the same by fitted lobes, and by half vectors lack what a light shows of a film at its own angle.
+#ifndef AREALIGHT_THIN_FILM
+#define AREALIGHT_THIN_FILM 0
+#endif
+
 // The specular lobe is stretched along a tangent, ArealightSurface.anisotropy.
 #ifndef AREALIGHT_ANISOTROPY
 #define AREALIGHT_ANISOTROPY 0
@@ -130,6 +136,7 @@ const bool AREALIGHT_HAS_COAT_NORMAL = bool(AREALIGHT_COAT_NORMAL);
 const bool AREALIGHT_COATS_BY_ALBEDO = bool(AREALIGHT_COAT_BY_ALBEDO);
 const bool AREALIGHT_HAS_ANISOTROPY = bool(AREALIGHT_ANISOTROPY);
 const bool AREALIGHT_HAS_SHEEN = bool(AREALIGHT_SHEEN);
+const bool AREALIGHT_HAS_THIN_FILM = bool(AREALIGHT_THIN_FILM);
 const bool AREALIGHT_HAS_TWO_SIDED = bool(AREALIGHT_TWO_SIDED);
 const bool AREALIGHT_HAS_TEXTURED_POLYGONS = bool(AREALIGHT_TEXTURED_POLYGONS);
 const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);

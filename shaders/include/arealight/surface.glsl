@@ -16,6 +16,14 @@ struct ArealightSheen {
     float roughness; // perceptual, in [0, 1]
 };
 
+// A thin film of even thickness on a surface: KHR_materials_iridescence. Of the surface it changes f0, f90 and those of the interface, which are those
+// of what lies below it (with AREALIGHT_THIN_FILM).
+struct ArealightThinFilm {
+    float weight;    // how much of the surface it covers, in [0, 1]; 0: none
+    float ior;       // index of refraction; counts as one from 1 to 100
+    float thickness; // in nanometres; one of 0 is none, above 1e5 it counts as that
+};
+
 // A specular lobe of two roughnesses (with AREALIGHT_ANISOTROPY). A highlight is the longer along the tangent the more this exceeds
 // ArealightSurface.roughness, which is that across it.
 struct ArealightAnisotropy {
@@ -41,6 +49,7 @@ struct ArealightSurface {
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
     ArealightAnisotropy anisotropy; // read with AREALIGHT_ANISOTROPY alone
     ArealightSheen sheen; // read with AREALIGHT_SHEEN alone
+    ArealightThinFilm film; // read with AREALIGHT_THIN_FILM alone
 };
 
 // The shading frame: the normal, the view's projection onto the surface, and their cross product.

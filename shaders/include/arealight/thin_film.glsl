@@ -1,18 +1,21 @@
 #ifndef AREALIGHT_THIN_FILM_GLSL
 #define AREALIGHT_THIN_FILM_GLSL
 
+#include "arealight/options.glsl"
 #include "arealight/surface.glsl"
 
-// Thin films: KHR_materials_iridescence. A film changes what a facet reflects at each angle and colour, and nothing else; so it is dealt with where
-// a surface is made, by the reflectances that it gets there: no lobe, no option of the library, and nothing for each light.
+// Thin films: KHR_materials_iridescence. A film changes what a facet reflects at each angle and colour, and nothing else: it is no lobe. Two ways lead to it.
+// A host may put it into the reflectances of its surfaces, where they are made: no option, and nothing in a pass. Or surfaces have it (AREALIGHT_THIN_FILM):
+// then arealight_point does the same, and lobes over half vectors take what it reflects at the angle of the facets that show a light.
 //
 // Source of what a film reflects: Belcour and Barla 2017, A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence.
 
-struct ArealightThinFilm {
-    float weight;    // how much of the surface it covers, in [0, 1]
-    float ior;       // index of refraction; counts as one from 1 to 100
-    float thickness; // in nanometres; one of 0 is none, above 1e5 it counts as that
-};
+const ArealightThinFilm AREALIGHT_NO_FILM = ArealightThinFilm(0.0, 1.0, 0.0);
+
+// Whether there is one; not for NaN.
+bool arealight_is_film(ArealightThinFilm film) {
+    return film.thickness > 0.0 && film.weight > 0.0;
+}
 
 float arealight_schlick_of(float f0, float cosine) {
     float from_normal = 1.0 - cosine;
@@ -59,6 +62,13 @@ vec3 arealight_thin_film_fresnel(ArealightThinFilm film, vec3 f0, float cosine) 
     return max(reflected + 2.0 * order * arealight_interference(2.0 * path, 2.0 * shift), vec3(0.0));
 }
 
+// What a surface with Schlick's term, of reflectances in [0, 1], reflects below a film that there is, where light comes in at this cosine, in [0, 1]. Range as for
+// arealight_thin_film_fresnel.
+vec3 arealight_thin_film_reflectance(ArealightThinFilm film, vec3 f0, float f90, float cosine) {
+    vec3 bare = f0 + (f90 - f0) * arealight_schlick_of(0.0, cosine);
+    return mix(bare, arealight_thin_film_fresnel(film, f0, cosine), film.weight);
+}
+
 // Three cosines of incidence on the facets of a GGX surface that count alike: their mean at a view, and a deviation times the root of 1.5 to either
 // side. Least squares over 18 roughnesses and 28 views: to .05 and .04, .009 on average.
 vec3 arealight_facet_cosines(float cos_view, float roughness) {
@@ -77,7 +87,7 @@ vec3 arealight_facet_cosines(float cos_view, float roughness) {
 // A facet's angle is not the view's: three angles count, so that what the film reflects of light from everywhere errs by 1.4e-3 on dielectrics and
 // 4.7e-3 on metals (Schlick's term through the film at the view's own angle: 7.9e-3 and 31e-3).
 void arealight_thin_film_schlick(ArealightThinFilm film, float cos_view, float roughness, inout vec3 f0, inout float f90) {
-    if (!(film.thickness > 0.0 && film.weight > 0.0)) {
+    if (!arealight_is_film(film)) {
         return;
     }
     vec3 cosines = arealight_facet_cosines(cos_view, roughness);
@@ -100,6 +110,18 @@ void arealight_put_thin_film(inout ArealightSurface surface, ArealightThinFilm f
     arealight_thin_film_schlick(film, cos_view, surface.roughness, surface.f0, surface.f90);
     arealight_thin_film_schlick(film, cos_view, surface.roughness, interface_f0, surface.interface_f90);
     surface.interface_f0 = max(interface_f0.r, max(interface_f0.g, interface_f0.b));
+}
+
+// The surface with reflectances that stand for its own film, at the cosine between its shading normal and the direction to the viewer, in [0, 1] (with
+// AREALIGHT_THIN_FILM). Those of an interface that has nothing below stay.
+ArealightSurface arealight_without_film(ArealightSurface surface, float cos_view) {
+    arealight_thin_film_schlick(surface.film, cos_view, surface.roughness, surface.f0, surface.f90);
+    if (AREALIGHT_COUPLES_DIFFUSE && surface.diffuse_albedo != vec3(0.0)) {
+        vec3 interface_f0 = vec3(surface.interface_f0);
+        arealight_thin_film_schlick(surface.film, cos_view, surface.roughness, interface_f0, surface.interface_f90);
+        surface.interface_f0 = max(interface_f0.r, max(interface_f0.g, interface_f0.b));
+    }
+    return surface;
 }
 
 #endif

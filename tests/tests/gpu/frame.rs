@@ -7,6 +7,7 @@ use arealight_engine::{EvalPoint, Reference, SceneRenderer};
 use arealight_oracle::cubature::Settings;
 use arealight_oracle::material::{Coat, Surface};
 use arealight_oracle::shading::{RelativeLight, truth};
+use arealight_oracle::thin_film::ThinFilm;
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use arealight_tests::frame::scene;
 use arealight_tests::one_pixel::{OnePixel, lamp};
@@ -60,6 +61,7 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
     let (colors, speculars) = (half_texels(&g_buffer.base_color), texels(&g_buffer.specular));
     let coats = texels(&g_buffer.coat);
     let sheens = texels(&g_buffer.sheen);
+    let films = texels(&g_buffer.film);
     let point = |i: usize| {
         let position = positions[i].truncate().as_dvec3();
         let material = arealight_oracle::material::Material {
@@ -72,7 +74,10 @@ fn points(view: &View<'_>, light: &Light) -> Vec<Option<EvalPoint>> {
             coat_roughness: coats[i].y,
             sheen_color: sheens[i].truncate(),
             sheen_roughness: sheens[i].w,
-            film: None,
+            film: (films[i].x > 0.0).then(|| {
+                let [weight, ior, thickness, _] = films[i].to_array().map(f64::from);
+                ThinFilm { weight, ior, thickness }
+            }),
             transmission: 0.0,
             transmission_color: Vec3::ONE,
         };

@@ -71,6 +71,7 @@ mod sweep;
 mod textured;
 mod textured_disks;
 mod textures;
+mod thin_film;
 mod tiles;
 mod transmission;
 mod tubes;

@@ -137,7 +137,8 @@ pub(crate) const LAYERS: Effects = Effects::COAT
     .union(Effects::DIFFUSE_ROUGHNESS)
     .union(Effects::MODEL)
     .union(Effects::SHEEN)
-    .union(Effects::ANISOTROPY);
+    .union(Effects::ANISOTROPY)
+    .union(Effects::THIN_FILM);
 
 /// What of it a surface needs.
 pub(crate) fn layer_effects(surface: &Surface) -> Effects {
@@ -155,6 +156,7 @@ pub(crate) fn layer_effects(surface: &Surface) -> Effects {
     effects.set(Effects::MULTIPLE_SCATTERING, surface.multiple_scattering);
     effects.set(Effects::SHEEN, surface.sheen.is_some());
     effects.set(Effects::ANISOTROPY, surface.anisotropy.is_some());
+    effects.set(Effects::THIN_FILM, surface.film.is_some());
     effects
 }
 

@@ -21,8 +21,10 @@ pub struct GBuffer {
     pub sheen: Image,
     /// Tangent, roughness along it, and roughness of the diffuse lobe.
     pub anisotropy: Image,
-    /// Thin films, for Monte Carlo alone, as reference.comp has them: reflectances are below them in it, and above them in the other images.
+    /// Thin films, above the reflectances in the other images.
     pub film: Image,
+    /// Bound where a kernel has a place for stencils that no frame of ours has. Its contents are undefined.
+    pub stencil: Image,
     /// Albedo of what is let through: the base colour of a pass with [`arealight::Effects::TRANSMISSION`].
     pub transmitted: Image,
     /// Radiance.
@@ -55,7 +57,8 @@ impl GBuffer {
             coat: image("coat", full)?,
             sheen: image("sheen", full)?,
             anisotropy: image("anisotropy", full)?,
-            film: image("thin film", vk::Format::R32G32B32A32_UINT)?,
+            film: image("thin film", full)?,
+            stencil: image("stencil", vk::Format::R32_UINT)?,
             transmitted: image("transmitted", half)?,
             radiance: image("radiance", full)?,
         })
@@ -67,6 +70,11 @@ impl GBuffer {
             position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted, ..
         } = self;
         [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted]
+    }
+
+    /// What stands for the stencils of a kernel that may read some.
+    pub fn no_stencil(&self) -> Resource {
+        Resource::SampledImage { view: self.stencil.view(), layout: Usage::COMPUTE_READ.layout }
     }
 
     /// The surface images as a shading pass reads them.

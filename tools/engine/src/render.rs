@@ -121,6 +121,7 @@ impl<'a> SceneRenderer<'a> {
             for image in self.g_buffer.surfaces() {
                 image.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_READ);
             }
+            self.g_buffer.stencil.transition(commands, Usage::UNDEFINED, Usage::COMPUTE_READ);
             Ok::<_, EngineError>(())
         })?;
         self.shown = true;
@@ -233,9 +234,10 @@ impl<'a> SceneRenderer<'a> {
             coat,
             sheen,
             anisotropy,
+            film,
             // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of these has others than lists
             Resource::buffer(self.light_buffer.handle()),
-            film,
+            self.g_buffer.no_stencil(),
             Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(lists.unwrap_or(&self.light_buffer).handle()),
             Resource::buffer(self.light_buffer.handle()),
@@ -381,7 +383,7 @@ impl<'a> SceneRenderer<'a> {
 
     /// What a pass reads that is for surfaces with these effects.
     fn shade_resources(&self, surfaces: Effects) -> ShadeResources {
-        let [position, normal, base_color, specular, coat, sheen, anisotropy, _, transmitted] =
+        let [position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted] =
             self.g_buffer.sampled();
         ShadeResources {
             table: self.engine.table(),
@@ -394,6 +396,7 @@ impl<'a> SceneRenderer<'a> {
             coat: Some(coat),
             sheen: Some(sheen),
             anisotropy: Some(anisotropy),
+            film: Some(film),
             radiance: Resource::StorageImage { view: self.g_buffer.radiance.view() },
             light_textures: Some(self.engine.light_textures()),
             shapes: Some(Resource::buffer(self.shape_buffer.handle())),

@@ -4,8 +4,6 @@
 // A list of shading points, and where their radiance goes. Their lights' centers are relative to them. The including kernel
 // defines CASES_BINDING; the results are at the binding after it.
 
-#include "arealight/thin_film.glsl"
-
 struct ArealightGpuCase {
     vec3 normal;
     float roughness;
@@ -43,13 +41,12 @@ layout(push_constant, std430) uniform EvalConstants {
 } constants;
 
 ArealightSurface case_surface(ArealightGpuCase given) {
-    ArealightSurface surface = ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
+    return ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0, given.f90,
                             given.roughness, given.interface_f0, given.interface_f90, given.diffuse_roughness,
                             ArealightCoat(given.coat_normal, given.coat_weight, given.coat_roughness),
                             ArealightAnisotropy(given.tangent, given.tangent_roughness),
-                            ArealightSheen(given.sheen_color, given.sheen_roughness));
-    arealight_put_thin_film(surface, ArealightThinFilm(given.film_weight, given.film_ior, given.film_thickness));
-    return surface;
+                            ArealightSheen(given.sheen_color, given.sheen_roughness),
+                            ArealightThinFilm(given.film_weight, given.film_ior, given.film_thickness));
 }
 
 #endif

@@ -23,6 +23,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #define AREALIGHT_COAT_NORMAL 1
 #define AREALIGHT_SHEEN 1
 #define AREALIGHT_ANISOTROPY 1
+#define AREALIGHT_THIN_FILM 1
 #define AREALIGHT_LIGHT_TEXTURES 1
 #define AREALIGHT_POLYGONS 1
 #define AREALIGHT_MESHES 1
@@ -95,28 +96,7 @@ struct SheenLobe {
     float base; // of the light that the lobes below get
 };
 
-layout(set = 0, binding = FILM_BINDING) uniform utexture2D g_film;
 layout(set = 0, binding = TRANSMITTED_BINDING) uniform texture2D g_transmitted;
-
-// A thin film, and the reflectances below it: those of the surface are above it, as they are seen.
-struct Film {
-    ArealightThinFilm film;
-    vec3 f0;
-    float f90;
-};
-
-Film load_film(ivec2 pixel) {
-    uvec4 texel = texelFetch(g_film, pixel, 0);
-    vec2 first = unpackHalf2x16(texel.r);
-    vec2 last = unpackUnorm2x16(texel.a);
-    return Film(ArealightThinFilm(first.x, first.y, uintBitsToFloat(texel.g)), vec3(unpackUnorm2x16(texel.b), last.x), last.y);
-}
-
-// What a facet below a film reflects.
-vec3 film_reflectance(Film film, float cosine) {
-    vec3 bare = film.f0 + (film.f90 - film.f0) * arealight_schlick_of(0.0, cosine);
-    return mix(bare, arealight_thin_film_fresnel(film.film, film.f0, cosine), film.film.weight);
-}
 
 // A surface with its frame: directions below are in the frame, z being the normal.
 struct Lobes {
@@ -133,7 +113,7 @@ struct Lobes {
     float glossy_probability; // of drawing from it, where not from the coat's
     CoatLobe coat;
     SheenLobe sheen;
-    Film film;
+    ArealightThinFilm film; // above the reflectances
     vec3 transmitted; // albedo of what is let through, below the interface
     float transmission_probability; // of drawing from it
 };
@@ -211,7 +191,7 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
-Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], Film film, vec3 transmitted) {
+Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec3 transmitted) {
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
@@ -223,7 +203,7 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], Film film, vec3 
     float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
     return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
                  surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, axis, alpha,
-                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), film,
+                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), surface.film,
                  transmitted, transmission_probability);
 }
 
@@ -250,13 +230,12 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     }
     vec3 diffuse = lobes.diffuse_albedo * (AREALIGHT_INVERSE_PI * max(light.z, 0.0));
     vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
-    bool has_film = lobes.film.film.weight > 0.0 && lobes.film.film.thickness > 0.0;
     vec3 f0 = lobes.f0;
     float f90 = lobes.f90;
     float above_diffuse = mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
     vec3 fresnel = vec3(1.0);
-    if (has_film) {
-        fresnel = film_reflectance(lobes.film, clamp(dot(lobes.view, half_vector), 0.0, 1.0));
+    if (arealight_is_film(lobes.film)) {
+        fresnel = arealight_thin_film_reflectance(lobes.film, f0, f90, clamp(dot(lobes.view, half_vector), 0.0, 1.0));
         above_diffuse = min(arealight_max_component(fresnel), 1.0);
         f0 = vec3(1.0);
         f90 = 1.0;
@@ -486,7 +465,7 @@ void main() {
     }
     ArealightSurface surface = load_surface(pixel, position.xyz, constants.camera);
     vec3 transmitted = texelFetch(g_transmitted, pixel, 0).rgb;
-    Lobes lobes = load_lobes(surface, load_ray_origins(surface, uint(position.w) - 1u), load_film(pixel), transmitted);
+    Lobes lobes = load_lobes(surface, load_ray_origins(surface, uint(position.w) - 1u), transmitted);
     vec3 sum = vec3(0.0);
     for (uint index = 0u; index < constants.sample_count; index++) {
         RandomState random = random_begin(uvec3(pixel, constants.first_sample + index), constants.seed);

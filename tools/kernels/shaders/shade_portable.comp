@@ -32,7 +32,8 @@ const int SHADOW_RAYS = 0;
 #define COAT_BINDING 11
 #define SHEEN_BINDING 12
 #define ANISOTROPY_BINDING 13
-#define PICKS_BINDING 14
+#define FILM_BINDING 14
+#define PICKS_BINDING 15
 #define SHADE_CONSTANTS_BINDING 17
 #define LIGHT_SAMPLER_BINDING 18
 #include "effects.glsl"

@@ -16,7 +16,7 @@ layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D out_radiance;
 layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D out_coat;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D out_sheen;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D out_anisotropy;
-layout(set = 0, binding = 13, rgba32ui) uniform writeonly uimage2D out_film;
+layout(set = 0, binding = 13, rgba32f) uniform writeonly image2D out_film;
 layout(set = 0, binding = 14, rgba16f) uniform writeonly image2D out_transmitted;
 
 layout(push_constant, std430) uniform VisibilityConstants {
@@ -40,20 +40,6 @@ void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit
     if (bvh_intersect(triangle.p0, triangle.p1, triangle.p2, index, origin, direction, hit.distance, met)
         && (double_sided || !met.back) && !masked_out(met)) {
         hit = met;
-    }
-}
-
-// Stores the film of a point, and what lies below it, and puts it into the point's reflectances as they are seen from `view`.
-void store_film(ivec2 pixel, inout ScenePoint point, vec3 view) {
-    vec3 f0 = mix(point.dielectric_f0, point.base_color, point.metalness);
-    float f90 = mix(point.dielectric_f90, 1.0, point.metalness);
-    imageStore(out_film, pixel, uvec4(packHalf2x16(vec2(point.film.weight, point.film.ior)), floatBitsToUint(point.film.thickness),
-                                      packUnorm2x16(f0.rg), packUnorm2x16(vec2(f0.b, f90))));
-    float cos_view = arealight_surface_frame(point.normal, view).cos_view;
-    float metal_f90 = 1.0;
-    arealight_thin_film_schlick(point.film, cos_view, point.roughness, point.dielectric_f0, point.dielectric_f90);
-    if (point.metalness > 0.0) {
-        arealight_thin_film_schlick(point.film, cos_view, point.roughness, point.base_color, metal_f90);
     }
 }
 
@@ -84,12 +70,11 @@ void main() {
         imageStore(out_coat, pixel, vec4(0.0));
         imageStore(out_sheen, pixel, vec4(0.0));
         imageStore(out_anisotropy, pixel, vec4(0.0));
-        imageStore(out_film, pixel, uvec4(0u));
+        imageStore(out_film, pixel, vec4(0.0));
         imageStore(out_transmitted, pixel, vec4(0.0));
         return;
     }
     ScenePoint point = scene_point(hit);
-    store_film(pixel, point, -direction);
     imageStore(out_position, pixel, vec4(point.position, float(hit.triangle + 1u)));
     imageStore(out_normal, pixel, vec4(point.normal, point.roughness));
     imageStore(out_base_color, pixel, vec4(point.base_color, point.metalness));
@@ -99,5 +84,6 @@ void main() {
     imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
     imageStore(out_sheen, pixel, vec4(point.sheen.color, point.sheen.roughness));
     imageStore(out_anisotropy, pixel, vec4(to_octahedron(point.anisotropy.tangent), point.anisotropy.roughness, 0.0));
+    imageStore(out_film, pixel, vec4(point.film.weight, point.film.ior, point.film.thickness, 0.0));
     imageStore(out_transmitted, pixel, vec4(point.transmitted * (below_coat * below_sheen(point, -direction)), 0.0));
 }

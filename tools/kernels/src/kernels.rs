@@ -2,7 +2,7 @@
 //! facts back out of the SPIR-V.
 
 use arealight::kernels::{
-    Access, Binding, BindingKind, G_ANISOTROPY, G_BASE_COLOR, G_COAT, G_NORMAL, G_POSITION, G_SHEEN,
+    Access, Binding, BindingKind, G_ANISOTROPY, G_BASE_COLOR, G_COAT, G_FILM, G_NORMAL, G_POSITION, G_SHEEN,
     G_SPECULAR, Kernel, LIGHT_TEXTURES, LIGHT_VERTICES, LIGHTS, SHAPES, TABLE, constant,
 };
 
@@ -107,12 +107,7 @@ pub static REFERENCE: Kernel = Kernel {
         G_COAT,
         G_SHEEN,
         G_ANISOTROPY,
-        read(
-            "g_film",
-            BindingKind::SampledImage,
-            "thin films: weight and index of refraction in r as packHalf2x16 has them, bits of the thickness in nanometres in g, F0 below the \
-             film and F90 in ba as packUnorm2x16 has them (rgba32ui)",
-        ),
+        G_FILM,
         read(
             "g_transmitted",
             BindingKind::SampledImage,
@@ -157,12 +152,7 @@ pub static VISIBILITY: Kernel = Kernel {
         write("out_coat", BindingKind::StorageImage, Access::Write, "g_coat, with normals (rgba32f)"),
         write("out_sheen", BindingKind::StorageImage, Access::Write, "g_sheen (rgba32f)"),
         write("out_anisotropy", BindingKind::StorageImage, Access::Write, "g_anisotropy (rgba32f)"),
-        write(
-            "out_film",
-            BindingKind::StorageImage,
-            Access::Write,
-            "g_film of the reference kernel (rgba32ui)",
-        ),
+        write("out_film", BindingKind::StorageImage, Access::Write, "g_film (rgba32f)"),
         write(
             "out_transmitted",
             BindingKind::StorageImage,

@@ -24,7 +24,7 @@ impl std::fmt::Display for RequiredEffect {
 type Needs = fn(&SceneMaterial) -> bool;
 
 /// What materials may need, and how it is known.
-const OF_MATERIALS: [(Effects, Needs); 9] = [
+const OF_MATERIALS: [(Effects, Needs); 10] = [
     (Effects::DIFFUSE, has_diffuse_lobe),
     (Effects::GLOSSY, has_glossy_lobe),
     (Effects::SPECULAR_INPUT, has_specular_input),
@@ -34,6 +34,7 @@ const OF_MATERIALS: [(Effects, Needs); 9] = [
     (Effects::SHEEN, has_sheen),
     (Effects::ANISOTROPY, has_anisotropy),
     (Effects::TRANSMISSION, has_transmission),
+    (Effects::THIN_FILM, has_film),
 ];
 
 /// What a scene needs and nothing else, each effect once, with its reason, in the order of their bits.
@@ -85,7 +86,7 @@ fn has_diffuse_lobe(material: &SceneMaterial) -> bool {
 fn has_glossy_lobe(material: &SceneMaterial) -> bool {
     let reflects = material.material.dielectric_f0 != Vec3::ZERO || material.material.dielectric_f90 > 0.0;
     // A metal's reflectance at grazing incidence is one, whatever its colour
-    material.material.metalness > 0.0 || reflects || material.material.film.is_some()
+    material.material.metalness > 0.0 || reflects || has_film(material)
 }
 
 fn has_specular_input(material: &SceneMaterial) -> bool {
@@ -93,7 +94,7 @@ fn has_specular_input(material: &SceneMaterial) -> bool {
     let usual = (material.material.dielectric_f0 - Vec3::splat(0.04)).abs().max_element() < 1e-6
         && material.material.dielectric_f90 == 1.0;
     let textured = material.specular_texture.is_some() || material.specular_color_texture.is_some();
-    is_dielectric_somewhere(material) && (!usual || textured || material.material.film.is_some())
+    is_dielectric_somewhere(material) && (!usual || textured)
 }
 
 fn has_coat(material: &SceneMaterial) -> bool {
@@ -106,6 +107,10 @@ fn has_sheen(material: &SceneMaterial) -> bool {
 
 fn has_anisotropy(material: &SceneMaterial) -> bool {
     material.anisotropy_strength > 0.0 && has_glossy_lobe(material)
+}
+
+fn has_film(material: &SceneMaterial) -> bool {
+    material.material.film.is_some()
 }
 
 fn has_transmission(material: &SceneMaterial) -> bool {

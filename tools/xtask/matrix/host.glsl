@@ -21,6 +21,7 @@ layout(constant_id = 9) const bool COAT_NORMAL = false;
 layout(constant_id = 10) const bool ANISOTROPY = false;
 layout(constant_id = 11) const bool SHEEN = false;
 layout(constant_id = 12) const bool HALF_VECTORS = false;
+layout(constant_id = 13) const bool THIN_FILM = false;
 #define AREALIGHT_DIFFUSE DIFFUSE
 #define AREALIGHT_SPECULAR SPECULAR
 #define AREALIGHT_TWO_SIDED TWO_SIDED
@@ -34,6 +35,7 @@ layout(constant_id = 12) const bool HALF_VECTORS = false;
 #define AREALIGHT_ANISOTROPY ANISOTROPY
 #define AREALIGHT_SHEEN SHEEN
 #define AREALIGHT_HALF_VECTORS HALF_VECTORS
+#define AREALIGHT_THIN_FILM THIN_FILM
 #endif
 
 #include "arealight/arealight.glsl"
@@ -112,6 +114,7 @@ vec3 shade(int first) {
     surface.coat = ArealightCoat(numbers[first + 14].xyz, numbers[first + 14].w, numbers[first + 3].y);
     surface.anisotropy = ArealightAnisotropy(numbers[first + 14].xyz, numbers[first + 3].z);
     surface.sheen = ArealightSheen(numbers[first + 15].rgb, numbers[first + 15].a);
+    surface.film = ArealightThinFilm(numbers[first + 16].r, numbers[first + 16].g, numbers[first + 16].b);
     ArealightPoint point = arealight_point(surface);
 
     uvec4 counts = floatBitsToUint(numbers[first + 6]);

@@ -98,7 +98,8 @@ fn layouts() -> [Layout; 23] {
         ArealightPackedLights { lights, vertices, shapes, lights_size, vertices_size, shapes_size, summary }
         ArealightImage { view, layout, reserved }
         ArealightResources {
-            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy, light_textures, radiance,
+            lights, light_vertices, shapes, position, normal, base_color, specular, coat, sheen, anisotropy, film, light_textures,
+            radiance,
             glossy, lobe_horizons, tile_lists, shadow_picks, stencil, light_counts,
         }
         ArealightViewport { x, y, width, height, min_depth, max_depth }

@@ -10,6 +10,7 @@ use crate::frame::SurfaceFrame;
 use crate::ggx::AnisotropicGgx;
 use crate::material::Surface;
 use crate::polygon::{above_horizon, vector_of_arc};
+use crate::thin_film::ThinFilm;
 use arealight::{LightTable, Quality, TableSample};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
@@ -34,15 +35,17 @@ pub(super) struct HalfVectors {
     alpha: DVec2,
     /// The direction to the viewer, in these axes.
     view: DVec3,
-    /// Reflectances at normal and at grazing incidence.
+    /// Reflectances at normal and at grazing incidence, below the film.
     f0: DVec3,
-    f90: DVec3,
+    f90: f64,
+    film: Option<ThinFilm>,
     /// How much more a light counts than its mean normal says, over its share of the visible normals: of light from everywhere what makes the albedo.
     gain: DVec3,
 }
 
 impl HalfVectors {
-    /// Of a surface's specular lobe; `sample` has its albedos.
+    /// Of a surface's specular lobe; `sample` has its albedos. Of a film each light sees what facets of one angle reflect, and light from everywhere what
+    /// Schlick's term does that stands for it.
     pub fn of_surface(surface: &Surface, frame: &SurfaceFrame, sample: &TableSample) -> Self {
         let (axis, alpha) = match AnisotropicGgx::of(surface, frame) {
             None => (DVec2::X, DVec2::splat(surface.alpha)),
@@ -54,7 +57,11 @@ impl HalfVectors {
             DVec3::Z,
         );
         let alpha = alpha.max(DVec2::splat(arealight::MIN_ALPHA));
-        Self::new(to_axes, alpha, frame.view(), [surface.f0, DVec3::splat(surface.f90)], sample)
+        let stand_in = surface.without_film(frame.cos_view());
+        let albedo =
+            stand_in.f0 * sample.albedo + (DVec3::splat(stand_in.f90) - stand_in.f0) * sample.schlick;
+        Self { film: surface.film, ..Self::new(to_axes, alpha, frame.view(), (surface.f0, surface.f90)) }
+            .with_albedo(albedo)
     }
 
     /// Of a coat: a surface of its own, of one alpha.
@@ -67,23 +74,23 @@ impl HalfVectors {
     ) -> Self {
         let sample = fitted_sample(quality, table, alpha, own.cos_view());
         let alpha = DVec2::splat(alpha.max(arealight::MIN_ALPHA));
-        Self {
-            to_axes: to_own,
-            ..Self::new(DMat3::IDENTITY, alpha, own.view(), [f0, f90].map(DVec3::splat), &sample)
-        }
+        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
+        let facets = Self::new(DMat3::IDENTITY, alpha, own.view(), (DVec3::splat(f0), f90));
+        Self { to_axes: to_own, ..facets.with_albedo(DVec3::splat(albedo)) }
     }
 
-    fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, [f0, f90]: [DVec3; 2], sample: &TableSample) -> Self {
+    fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, (f0, f90): (DVec3, f64)) -> Self {
         // Along the surface the half vectors of light that passes straight on have no direction
         let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
-        let mut facets = Self { to_axes, alpha, view, f0, f90, gain: DVec3::ZERO };
-        // Light from everywhere: all above the horizon
-        let sky = facets.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y]);
-        let share = facets.share(sky).max(1e-6);
-        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
-        let mean = albedo / share / facets.reflectance(sky).max(DVec3::splat(1e-30));
-        facets.gain = (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share;
-        facets
+        Self { to_axes, alpha, view, f0, f90, film: None, gain: DVec3::ZERO }
+    }
+
+    /// The same, reflecting so much of light from everywhere above the horizon.
+    fn with_albedo(self, albedo: DVec3) -> Self {
+        let sky = self.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y]);
+        let share = self.share(sky).max(1e-6);
+        let mean = albedo / share / self.reflectance(sky).max(DVec3::splat(1e-30));
+        Self { gain: (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share, ..self }
     }
 
     /// The middle of the visible normals where alpha is 1.
@@ -101,7 +108,11 @@ impl HalfVectors {
         let (by_view, by_light) = ((self.view * stretch).length(), (light.with_z(height) * stretch).length());
         let shadowing =
             (by_view + self.view.z) * height / (by_view * height + by_light * self.view.z).max(1e-30);
-        shadowing.min(1.0) * (self.f0 + (self.f90 - self.f0) * (1.0 - cosine).powi(5))
+        let fresnel = match &self.film {
+            None => self.f0 + (DVec3::splat(self.f90) - self.f0) * (1.0 - cosine).powi(5),
+            Some(film) => film.reflectance(self.f0, self.f90, cosine),
+        };
+        shadowing.min(1.0) * fresnel
     }
 
     /// What they reflect of a polygon of unit radiance in the surface frame, a channel; a polygon that is seen from its back counts if `two_sided`.
@@ -116,7 +127,12 @@ impl HalfVectors {
             return DVec3::ZERO;
         }
         let mean = self.reflectance(vector) * (DVec3::ONE + self.gain * share);
-        share * mean.min(self.f0.max(self.f90))
+        // No facet reflects more
+        let most = match &self.film {
+            Some(film) if film.cover() > 0.0 => DVec3::ONE,
+            _ => self.f0.max(DVec3::splat(self.f90)),
+        };
+        share * mean.min(most)
     }
 
     /// The vector form factor of an outline of directions in the axes, none below their horizon.

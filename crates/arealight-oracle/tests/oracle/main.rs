@@ -16,4 +16,5 @@ mod shading;
 mod sheen;
 mod sphere;
 mod textured;
+mod thin_film;
 mod tube;

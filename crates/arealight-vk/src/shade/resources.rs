@@ -57,6 +57,8 @@ pub struct ShadeResources {
     pub sheen: Option<Resource>,
     /// Second roughnesses: tangent, roughness along it, diffuse roughness; none without [`ShadeOptions::reads_anisotropy`].
     pub anisotropy: Option<Resource>,
+    /// Thin films: weight, index of refraction and thickness; none without [`ShadeOptions::reads_film`].
+    pub film: Option<Resource>,
     /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
     pub radiance: Resource,
     /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
@@ -87,6 +89,7 @@ impl ShadeResources {
             ("coat", self.coat, options.reads_coat(), "reads_coat"),
             ("sheen", self.sheen, options.reads_sheen(), "reads_sheen"),
             ("anisotropy", self.anisotropy, options.reads_anisotropy(), "reads_anisotropy"),
+            ("film", self.film, options.reads_film(), "reads_film"),
             ("picks", self.picks, options.shadow_rays > 0, "shadow_rays"),
             ("stencil", self.stencil, options.stencil, "stencil"),
             ("light_counts", self.light_counts, options.light_counts, "light_counts"),
@@ -115,6 +118,7 @@ impl ShadeResources {
             self.coat.unwrap_or(self.base_color),
             self.sheen.unwrap_or(self.base_color),
             self.anisotropy.unwrap_or(self.base_color),
+            self.film.unwrap_or(self.base_color),
             self.picks.unwrap_or(self.lights),
             self.stencil.unwrap_or(self.base_color),
         ];

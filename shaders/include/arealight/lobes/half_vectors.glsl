@@ -5,6 +5,7 @@
 #include "arealight/lobes/anisotropy.glsl"
 #include "arealight/lobes/coat.glsl"
 #include "arealight/lobes/formula.glsl"
+#include "arealight/thin_film.glsl"
 
 // GGX integrated over half vectors (with AREALIGHT_HALF_VECTORS): no transformed cosine stands for the lobe. How much of the visible normals mirrors
 // a light to the viewer is known in closed form, up to the chords' error (form_factor/half_vectors.glsl); masking of the light and the Fresnel
@@ -18,6 +19,9 @@ struct ArealightHalfVectors {
     vec3 f0;  // reflectance at normal incidence
     vec3 f90; // at grazing incidence
     vec3 gain; // how much more a light counts than its mean normal says, over its share of the visible normals
+    // With AREALIGHT_THIN_FILM alone, where the reflectances are those below the film
+    ArealightThinFilm film;
+    vec3 scale; // of what layers above let through, or more; else it is in the reflectances
 };
 
 // The direction to the viewer in a frame, for facets: a view that grazes more than AREALIGHT_FORMULA_MIN_COS_VIEW counts as that. Of one along the surface
@@ -32,7 +36,8 @@ vec3 arealight_facet_pole(ArealightFacets facets) {
     return arealight_normalize_or(stretched, vec3(0.0, 0.0, 1.0));
 }
 
-// What the facet of a normal (where alpha is 1, of any length) reflects towards the viewer, with masking of the light: a channel, in [0, f90].
+// What the facet of a normal (where alpha is 1, of any length) reflects towards the viewer, with masking of the light: a channel, in [0, f90]; a film's may
+// exceed 1 a little, as colours outside of Rec. 709 do.
 vec3 arealight_facet_reflectance(ArealightHalfVectors lobe, vec3 normal) {
     ArealightFacets facets = lobe.facets;
     vec3 stretch = vec3(facets.alpha, 1.0);
@@ -46,7 +51,14 @@ vec3 arealight_facet_reflectance(ArealightHalfVectors lobe, vec3 normal) {
     float shadowing = (by_view + facets.view.z) * light.z / max(by_view * light.z + by_light * facets.view.z, 1e-30);
     float weight = 1.0 - cosine;
     float square = weight * weight;
-    return min(shadowing, 1.0) * (lobe.f0 + (lobe.f90 - lobe.f0) * (square * square * weight));
+    vec3 fresnel = lobe.f0 + (lobe.f90 - lobe.f0) * (square * square * weight);
+    if (AREALIGHT_HAS_THIN_FILM) {
+        if (arealight_is_film(lobe.film)) {
+            fresnel = arealight_thin_film_reflectance(lobe.film, lobe.f0, lobe.f90.x, cosine);
+        }
+        fresnel *= lobe.scale;
+    }
+    return min(shadowing, 1.0) * fresnel;
 }
 
 // The part of the visible normals that a vector form factor of facets is of, in [0, 1]; 0 for one seen from behind and for NaN.
@@ -58,8 +70,8 @@ float arealight_facet_share(vec3 pole, vec3 vector) {
 const float AREALIGHT_MOST_OF_MEAN = 16.0;
 
 // A lobe whose albedo is `albedo`: what it reflects of light from everywhere.
-ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, vec3 albedo) {
-    ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(0.0));
+ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, ArealightThinFilm film, vec3 albedo) {
+    ArealightHalfVectors lobe = ArealightHalfVectors(facets, f0, f90, vec3(0.0), film, vec3(1.0));
     vec3 sky = arealight_facet_sky(facets);
     float share = max(arealight_facet_share(arealight_facet_pole(facets), sky), 1e-6);
     vec3 mean = albedo / share / max(arealight_facet_reflectance(lobe, sky), vec3(1e-30));
@@ -67,8 +79,10 @@ ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec
     return lobe;
 }
 
-// The specular lobe of a surface; `table` has its albedos.
-ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, ArealightSurface surface, ArealightTableSample table) {
+// The specular lobe of a surface; `table` has its albedos, and `without_film` what they are of: the surface with reflectances that stand for a film, itself
+// without AREALIGHT_THIN_FILM.
+ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, ArealightSurface surface, ArealightSurface without_film,
+                                                     ArealightTableSample table) {
     ArealightFacets facets = ArealightFacets(mat3(1.0), vec2(table.alpha), arealight_facet_view(frame));
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         vec2 roughness = arealight_axis_roughness(surface);
@@ -77,7 +91,12 @@ ArealightHalfVectors arealight_specular_half_vectors(ArealightFrame frame, Areal
         facets.to_axes = mat3(axis.x, -axis.y, 0.0, axis.y, axis.x, 0.0, 0.0, 0.0, 1.0);
         facets.view = facets.to_axes * facets.view;
     }
-    return arealight_half_vectors(facets, surface.f0, vec3(surface.f90), arealight_specular_albedo(table, surface.f0, surface.f90));
+    vec3 albedo = arealight_specular_albedo(table, without_film.f0, without_film.f90);
+    ArealightThinFilm film = AREALIGHT_NO_FILM;
+    if (AREALIGHT_HAS_THIN_FILM) {
+        film = surface.film;
+    }
+    return arealight_half_vectors(facets, surface.f0, vec3(surface.f90), film, albedo);
 }
 
 // That of a coat, in the shading frame of what is below it: clipped at its own horizon.
@@ -94,21 +113,29 @@ ArealightHalfVectors arealight_coat_half_vectors(ArealightFrame frame, Arealight
         facets.to_axes = arealight_frame_matrix(own);
     }
     vec3 albedo = arealight_specular_albedo(table, vec3(reflectance.x), reflectance.y);
-    return arealight_half_vectors(facets, vec3(reflectance.x), vec3(reflectance.y), albedo);
+    return arealight_half_vectors(facets, vec3(reflectance.x), vec3(reflectance.y), AREALIGHT_NO_FILM, albedo);
 }
 
 // The lobe below a layer that lets this part of the light through, or reflecting more.
 void arealight_scale_half_vectors(inout ArealightHalfVectors lobe, vec3 by) {
-    lobe.f0 *= by;
-    lobe.f90 *= by;
+    if (AREALIGHT_HAS_THIN_FILM) {
+        lobe.scale *= by;
+    } else {
+        lobe.f0 *= by;
+        lobe.f90 *= by;
+    }
 }
 
 // What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel; 0 for one seen from behind and for NaN. No facet
-// reflects more than the larger of its reflectances.
+// reflects more than the larger of its reflectances, or below a film than all.
 vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector) {
     float share = arealight_facet_share(arealight_facet_pole(lobe.facets), vector);
     vec3 mean = arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share);
-    return share * min(mean, max(lobe.f0, lobe.f90));
+    vec3 most = max(lobe.f0, lobe.f90);
+    if (AREALIGHT_HAS_THIN_FILM) {
+        most = lobe.scale * (arealight_is_film(lobe.film) ? vec3(1.0) : most);
+    }
+    return share * min(mean, most);
 }
 
 #endif

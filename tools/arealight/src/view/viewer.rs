@@ -426,6 +426,7 @@ fn without(surfaces: Effects, effect: Effects) -> Effects {
                 | Effects::COUPLED
                 | Effects::COUPLED_BY_ALBEDO
                 | Effects::MULTIPLE_SCATTERING
+                | Effects::THIN_FILM
         }
         Effects::COAT => Effects::COAT_NORMAL | Effects::COAT_BY_ALBEDO,
         _ => Effects::empty(),

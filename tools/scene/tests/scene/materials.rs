@@ -287,14 +287,14 @@ fn thin_films_are_read_with_their_textures() {
         [gpu.film_texture, gpu.film_thickness_texture].map(|index| scene.textures[index as usize].srgb),
         [false; 2]
     );
-    // A metal's film is in its base colour, a dielectric's in its reflectance: no other effect is needed
+    // A film lies above reflectances, which are the usual ones
     let effects = |metalness: f32| {
         let mut material = with_film(&json!({ "iridescenceFactor": 1 }));
         material["pbrMetallicRoughness"] = json!({ "metallicFactor": metalness });
         load(textured(material)).effects()
     };
-    assert_eq!(effects(1.0), Effects::GLOSSY);
-    assert_eq!(effects(0.0), Effects::GLOSSY | Effects::DIFFUSE | Effects::COUPLED | Effects::SPECULAR_INPUT);
+    assert_eq!(effects(1.0), Effects::GLOSSY | Effects::THIN_FILM);
+    assert_eq!(effects(0.0), Effects::GLOSSY | Effects::DIFFUSE | Effects::COUPLED | Effects::THIN_FILM);
     // The extension's defaults; no film without it, without a factor, and without a thickness
     let film = |values: Value| load(textured(values)).materials[0].material.film;
     let usual = ThinFilm { weight: 1.0, ior: f64::from(1.3_f32), thickness: 400.0 };

@@ -98,9 +98,8 @@ fn there_is_a_ball_of_every_material() {
     let spun = scene.materials.iter().find(|material| material.name == "spun").unwrap();
     assert!(spun.anisotropy_texture.is_some());
     assert!(scene.materials.iter().filter(|material| material.material.film.is_some()).count() == 4);
-    let layers = Effects::COAT | Effects::SHEEN | Effects::ANISOTROPY;
-    // Films are reflectances
-    assert_eq!(scene.effects(), LOBES | layers | Effects::SPECULAR_INPUT);
+    let layers = Effects::COAT | Effects::SHEEN | Effects::ANISOTROPY | Effects::THIN_FILM;
+    assert_eq!(scene.effects(), LOBES | layers);
 }
 
 /// Whether an outline turns both ways.

@@ -138,7 +138,8 @@ mod tests {
         ("diffuse,glossy,sheen,anisotropy,diffuse_roughness", 132_000),
         (
             "diffuse,glossy,two_sided,specular_input,polygon,textured,ellipse,sphere,tube,mesh,textured_ellipse,coat,coat_normal,coupled,\
-             coupled_by_albedo,coat_by_albedo,diffuse_roughness,sheen,anisotropy,multiple_scattering,transmission",
+             coupled_by_albedo,coat_by_albedo,diffuse_roughness,sheen,anisotropy,multiple_scattering,transmission,\
+             thin_film",
             343_000,
         ),
     ];
