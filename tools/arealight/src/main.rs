@@ -7,6 +7,7 @@ mod differences;
 mod failure;
 mod film;
 mod gpu;
+mod lights;
 mod output;
 mod picture;
 mod progress;

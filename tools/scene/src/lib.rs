@@ -57,6 +57,7 @@ mod shape_lights;
 mod shown;
 mod skins;
 mod small_parts;
+mod studio;
 mod tangents;
 mod uv_map;
 mod uv_mapping;

@@ -104,12 +104,15 @@ fn warn_of_what_is_ignored(loader: &mut Loader) {
     extensions::warn_of_unread(loader);
 }
 
+/// What is said of a scene without lights.
+pub(crate) const NO_LIGHTS: &str = "has no area lights (emissive faces or EXT_lights_area): surfaces are black (--lights studio adds softboxes)";
+
 fn warn_of_what_is_missing(loader: &mut Loader) {
     let place = "scene";
     if loader.scene.triangles.is_empty() {
         loader.warn(place, "has no triangles: there is no surface to light");
     }
     if loader.scene.lights.is_empty() {
-        loader.warn(place, "has no area lights (emissive faces or EXT_lights_area): surfaces are black");
+        loader.warn(place, NO_LIGHTS);
     }
 }

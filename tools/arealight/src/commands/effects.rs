@@ -1,8 +1,8 @@
 //! `arealight effects`: what a scene needs, and why.
 
-use super::render::LightSize;
 use crate::failure::Failure;
-use crate::output::{print, say_what_is_not_shown};
+use crate::lights::LightArguments;
+use crate::output::print;
 use arealight::Effects;
 use arealight_scene::{RequiredEffect, required_effects};
 use serde_json::json;
@@ -17,16 +17,15 @@ pub struct Arguments {
     /// A .gltf or .glb file
     scene: PathBuf,
     #[command(flatten)]
-    light_size: LightSize,
+    lights: LightArguments,
     /// Print JSON
     #[arg(long)]
     json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let path = &arguments.scene;
-    let scene = arguments.light_size.load(path)?;
-    say_what_is_not_shown(&scene, path);
+    // No effect depends on where a camera is
+    let (scene, _) = arguments.lights.load(Some(&arguments.scene), None, 1.0)?;
     let required = required_effects(&scene);
     print(&if arguments.json { to_json(arguments, &required) } else { to_text(&required) })
 }

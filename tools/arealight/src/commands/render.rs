@@ -6,14 +6,15 @@ mod shading;
 use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
-use crate::output::{self, say_beside, say_what_is_not_shown};
+use crate::lights::{LightArguments, scene_name};
+use crate::output::{self, say_beside};
 use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
 use arealight::{Effects, Quality};
 use arealight_benches::budget::FrameLoad;
 use arealight_benches::ladder::LevelNames;
-use arealight_scene::{Camera, LoadOptions, Scene};
+use arealight_scene::{Camera, Scene};
 use serde_json::json;
 use shading::{Outcome, render};
 use std::collections::BTreeMap;
@@ -30,7 +31,7 @@ pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
     #[command(flatten)]
-    light_size: LightSize,
+    lights: LightArguments,
     /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output; out/SCENE.png if absent
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -73,28 +74,6 @@ pub struct Arguments {
     json: bool,
 }
 
-/// The size of lights that have none.
-#[derive(clap::Args, Clone, Copy, Debug)]
-pub(super) struct LightSize {
-    /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide; without it they are left out, but those whose
-    /// `extras.arealight.radius` says one
-    #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
-    light_size: Option<f64>,
-}
-
-impl LightSize {
-    /// Reads a scene.
-    pub fn load(self, path: &Path) -> Result<Scene, Failure> {
-        let options = LoadOptions { light_size: self.light_size };
-        Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))
-    }
-}
-
-fn parse_radius(text: &str) -> Result<f64, String> {
-    let radius = text.parse().ok().filter(|radius| (1e-6..=1e6).contains(radius));
-    radius.ok_or_else(|| "must be a radius from 1e-6 to 1e6 m".to_owned())
-}
-
 /// Where pictures go that nobody named a place for.
 const FOLDER: &str = "out";
 
@@ -120,7 +99,7 @@ impl Arguments {
     }
 
     fn scene_name(&self) -> PathBuf {
-        self.scene.clone().unwrap_or_else(|| "demo (built in)".into())
+        scene_name(self.scene.as_deref())
     }
 
     fn output(&self, scene: &Scene) -> PathBuf {
@@ -198,12 +177,6 @@ fn warn_of_dearer_lights(effects: Effects, path: &Path) {
 /// The most texels a side that a light's texture gets.
 pub(super) const TEXTURE_SIZE: u32 = 1024;
 
-/// The scene that is shown where no file is given.
-pub(super) fn demo() -> Result<Scene, Failure> {
-    Scene::from_bytes(include_bytes!("../../../../scenes/demo.glb"), "demo")
-        .map_err(|error| Failure::input("demo (built in)", error))
-}
-
 /// What took how long by the clock on the wall, in seconds, in order.
 #[derive(Default)]
 struct Phases(Vec<(&'static str, f64)>);
@@ -232,11 +205,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read the scene
     let mut phases = Phases::default();
     let path = arguments.scene_name();
-    let scene = phases.time("load", || match &arguments.scene {
-        Some(path) => arguments.light_size.load(path),
-        None => demo(),
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let (scene, camera) = phases.time("load", || {
+        arguments.lights.load(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)
     })?;
-    say_what_is_not_shown(&scene, &path);
     let output = arguments.output(&scene);
     Picture::check_format(&output)?;
     if arguments.output.is_none() {
@@ -244,8 +216,6 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
     output::check(&output)?;
     let samples = arguments.size.map(|side| side * arguments.supersample);
-    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let camera = camera_of(&scene, arguments.camera.as_deref(), aspect, &path)?;
 
     // Render, save, and say so
     let table = arguments.quality.table()?;
@@ -290,27 +260,6 @@ pub(super) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     text.split_once(['x', 'X'])
         .and_then(|(width, height)| Some([side(width)?, side(height)?]))
         .ok_or_else(|| "must be like 1280x720, each side from 1 to 8192".to_owned())
-}
-
-/// The camera of a name, or the scene's first.
-pub(super) fn camera_of(
-    scene: &Scene,
-    name: Option<&str>,
-    aspect: f64,
-    path: &Path,
-) -> Result<Camera, Failure> {
-    scene.camera(name, aspect).ok_or_else(|| {
-        let names: Vec<_> = scene.cameras.iter().map(|camera| format!("'{}'", camera.name)).collect();
-        let names = if names.is_empty() { "no cameras".to_owned() } else { names.join(", ") };
-        Failure::Argument {
-            argument: "--camera",
-            message: format!(
-                "'{}' is not in {}, which has {names}",
-                name.unwrap_or_default(),
-                path.display()
-            ),
-        }
-    })
 }
 
 /// What there is to say of a render.

@@ -1,11 +1,11 @@
 //! `arealight view`: a scene in a window, or a recording of what a script does in one.
 
-use super::render::LightSize;
 use crate::canvas::Canvas;
 use crate::failure::Failure;
 use crate::film::Palette;
 use crate::gpu;
-use crate::output::{self, print, say_what_is_not_shown};
+use crate::lights::{LightArguments, scene_name};
+use crate::output::{self, print};
 use crate::picture::Exposure;
 use crate::progress;
 use crate::view::{Engines, Mode, Script, Shown, State, Viewer, levels, paint};
@@ -22,7 +22,7 @@ pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
     scene: Option<PathBuf>,
     #[command(flatten)]
-    light_size: LightSize,
+    lights: LightArguments,
     /// Size of the picture in pixels
     #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = super::render::parse_size)]
     size: [u32; 2],
@@ -53,15 +53,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     // Read what is given
-    let path = arguments.scene.clone().unwrap_or_else(|| "demo (built in)".into());
-    let scene = match &arguments.scene {
-        Some(path) => arguments.light_size.load(path)?,
-        None => super::render::demo()?,
-    };
-    say_what_is_not_shown(&scene, &path);
-    let script = arguments.script.as_deref().map(read_script).transpose()?;
+    let path = scene_name(arguments.scene.as_deref());
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let camera = super::render::camera_of(&scene, arguments.camera.as_deref(), aspect, &path)?;
+    let (scene, camera) =
+        arguments.lights.load(arguments.scene.as_deref(), arguments.camera.as_deref(), aspect)?;
+    let script = arguments.script.as_deref().map(read_script).transpose()?;
     let exposure = match arguments.exposure {
         Exposure::Stops(stops) => stops,
         Exposure::Auto => {

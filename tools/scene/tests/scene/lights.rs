@@ -123,11 +123,11 @@ fn black_emission_and_masks() {
     writer.root["materials"][0]["emissiveFactor"] = json!([0, 0, 0]);
     let scene = load(writer);
     assert!(scene.lights.is_empty());
-    assert!(scene.warnings.iter().any(|w| w.text.contains("no area lights")));
+    assert!(scene.warnings.iter().any(|w| w.text.contains("has no area lights")));
 
     let mut writer = emitter_with(&panel(1.0, 1.0), json!({}));
     writer.root["materials"][0]["alphaMode"] = json!("MASK");
-    assert!(warnings(&load(writer))[0].contains("shines where the mask is transparent"));
+    assert!(warnings(&load(writer))[0].contains("the light shines where the mask is transparent, too"));
 }
 
 /// A scene of one `EXT_lights_area` light on a node.

@@ -61,7 +61,7 @@ fn a_spot_is_a_disk_that_shines_where_it_points() {
     let area = light.shape.area_vector();
     assert!((area.normalize_or_zero() - DVec3::Y).length() < 1e-6, "{area}");
     assert!((f64::from(light.radiance.x) * area.length() - 1.0).abs() < 1e-6);
-    assert!(warnings(&scene)[0].contains("falls off with the cosine and ends at no cone"));
+    assert!(warnings(&scene)[0].contains("whose light falls off with the cosine and ends at no cone"));
 }
 
 #[test]

@@ -144,6 +144,49 @@ fn a_part_of_an_atlas_is_a_layer_of_its_own() {
     assert!(uvs(0).iter().zip(uvs(1)).all(|(a, b)| near(*a, DVec2::ONE - *b)));
 }
 
+/// Where in the image object `i` of [`letters`] finds its part, and how large that is.
+fn letter(i: u32) -> [DVec2; 2] {
+    let size = DVec2::new(1.0 / 16.0, 1.0 / 8.0);
+    [size * DVec2::new(f64::from(i % 13), f64::from(i / 13)) + 0.02, size]
+}
+
+/// Ninety-one objects in 7 rows of 13 of an atlas, each with a material and a texture of its own; the last one's is of image `last`.
+fn letters(last: u32) -> Scene {
+    let (mut writer, _) = textured(&picture());
+    let again = writer.root["images"][0].clone();
+    writer.push("images", again);
+    for i in 0..91 {
+        let texture = writer.push("textures", json!({ "source": if i == 90 { last } else { 0 } }));
+        let material = writer.emitter_of_image(&format!("glow {i}"), [3.0, 2.0, 1.0], texture, false);
+        let [low, size] = letter(i);
+        writer.object(
+            "letter",
+            &screen(|uv| low + uv * size),
+            material,
+            json!({ "translation": [3 * i, 0, 0] }),
+        );
+    }
+    load(writer)
+}
+
+#[test]
+fn many_emitters_of_one_image_read_it_once() {
+    let scene = letters(0);
+    assert_eq!((scene.lights.len(), scene.materials.len(), warnings(&scene)), (91, 91, vec![]));
+    assert_eq!((scene.images.len(), scene.textures.len()), (1, 1));
+    // So many pieces are loaded as a whole
+    assert_eq!(scene.light_textures.len(), 1);
+    for (i, light) in (0..).zip(&scene.lights) {
+        let [low, size] = letter(i);
+        for (vertex, uv) in light.shape.vertices().iter().zip(shown(&scene, light)) {
+            let on_screen = DVec2::new((vertex.x - f64::from(3 * i)) * 0.5 + 0.5, 0.5 - vertex.y);
+            assert!(near(uv, low + on_screen * size), "{i}: {vertex}: {uv}");
+        }
+    }
+    // The twin: another image, though of the same bytes, is read by itself
+    assert_eq!(letters(1).images.len(), 2);
+}
+
 /// A curved screen of `count` strips, each of which shows its part of the image's upper `share`.
 fn strips(count: u32, share: f64) -> Shape {
     let mut shape = Shape::default();

@@ -1,0 +1,87 @@
+//! What a scene is lit by, and from where it is seen: what commands that read scenes share.
+
+use crate::failure::Failure;
+use crate::output::say_what_is_not_shown;
+use arealight_scene::{Camera, LoadOptions, Scene};
+use std::path::{Path, PathBuf};
+
+/// What a scene is lit by.
+#[derive(clap::Args, Clone, Copy, Debug)]
+pub struct LightArguments {
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide; without it they are left out, but those whose
+    /// `extras.arealight.radius` says one
+    #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
+    light_size: Option<f64>,
+    /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera sees, for models without lights
+    /// (`studio`)
+    #[arg(long, value_name = "RIG", default_value = "file")]
+    lights: Rig,
+}
+
+/// Lights that are not the file's.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+enum Rig {
+    File,
+    Studio,
+}
+
+impl LightArguments {
+    /// Reads a scene, or the demo's if there is none, says what of it is not shown, and finds the camera: that of a name, the file's first, or
+    /// one that frames the scene.
+    pub fn load(
+        self,
+        path: Option<&Path>,
+        camera: Option<&str>,
+        aspect: f64,
+    ) -> Result<(Scene, Camera), Failure> {
+        let options = LoadOptions { light_size: self.light_size };
+        let mut scene = match path {
+            Some(path) => {
+                Scene::load_with(path, options).map_err(|error| Failure::Scene(error.to_string()))?
+            }
+            None => demo()?,
+        };
+        let path = scene_name(path);
+        let camera = camera_of(&scene, camera, aspect, &path)?;
+        if self.lights == Rig::Studio {
+            scene.add_studio(&camera).map_err(|fault| Failure::Argument {
+                argument: "--lights",
+                message: format!("studio: {} is too large, or too far out: {fault}", path.display()),
+            })?;
+        }
+        say_what_is_not_shown(&scene, &path);
+        Ok((scene, camera))
+    }
+}
+
+/// What a scene is called that may be the demo.
+pub fn scene_name(path: Option<&Path>) -> PathBuf {
+    path.map_or_else(|| "demo (built in)".into(), Path::to_owned)
+}
+
+fn parse_radius(text: &str) -> Result<f64, String> {
+    let radius = text.parse().ok().filter(|radius| (1e-6..=1e6).contains(radius));
+    radius.ok_or_else(|| "must be a radius from 1e-6 to 1e6 m".to_owned())
+}
+
+/// The scene that is shown where no file is given.
+fn demo() -> Result<Scene, Failure> {
+    Scene::from_bytes(include_bytes!("../../../scenes/demo.glb"), "demo")
+        .map_err(|error| Failure::input("demo (built in)", error))
+}
+
+/// The camera of a name, or the scene's first.
+fn camera_of(scene: &Scene, name: Option<&str>, aspect: f64, path: &Path) -> Result<Camera, Failure> {
+    scene.camera(name, aspect).ok_or_else(|| {
+        let names: Vec<_> = scene.cameras.iter().map(|camera| format!("'{}'", camera.name)).collect();
+        let names = if names.is_empty() { "no cameras".to_owned() } else { names.join(", ") };
+        Failure::Argument {
+            argument: "--camera",
+            message: format!(
+                "'{}' is not in {}, which has {names}",
+                name.unwrap_or_default(),
+                path.display()
+            ),
+        }
+    })
+}
