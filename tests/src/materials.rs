@@ -69,13 +69,18 @@ pub fn step_within_rounding(quality: Quality, given: &EvalPoint) -> f64 {
         return 0.0;
     }
     let here = polygon_twin(quality, given);
-    let distance = given.light.shape.vertices().iter().map(|v| v.distance(given.position)).fold(0.0, f64::max);
+    let distance =
+        given.light.shape.vertices().iter().map(|v| v.distance(given.position)).fold(0.0, f64::max);
     let moved = |by: DVec3| {
         let position = given.position + by * (2e-6 * distance);
-        let view = (given.view.normalize_or(given.normal) + DVec3::new(by.y, by.z, by.x) * 2e-6) * given.view.length();
+        let view = (given.view.normalize_or(given.normal) + DVec3::new(by.y, by.z, by.x) * 2e-6)
+            * given.view.length();
         (polygon_twin(quality, &EvalPoint { position, view, ..given.clone() }) - here).abs().max_element()
     };
-    [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [moved(axis), moved(-axis)]).fold(0.0, f64::max)
+    [DVec3::X, DVec3::Y, DVec3::Z]
+        .into_iter()
+        .flat_map(|axis| [moved(axis), moved(-axis)])
+        .fold(0.0, f64::max)
 }
 
 impl TestEngine {

@@ -98,18 +98,7 @@ fn descriptor(kind: BindingKind) -> vk::DescriptorType {
 
 /// Every row, in the order of the table.
 pub fn rows() -> Vec<Row> {
-    let (exact, none) = (Quality::default(), Effects::empty());
-    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
-    let both = Quality { horizon: Horizon::Both, ..exact };
-    let two_lobes = Quality { specular_lobes: SpecularLobes::Two, ..exact };
-    let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
-    let formula = Quality { lobes: Lobes::Formula, ..exact };
-    let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
-    let footprint = |footprint| Quality { footprint, ..exact };
-    let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
-    let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
-    let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
-    vec![
+    let mut rows = vec![
         // Others' ways to shade quads, with our reads
         yardstick(School::Clipless),
         yardstick(School::SphereHorizon),
@@ -117,7 +106,22 @@ pub fn rows() -> Vec<Row> {
         // The README's pixel, and the same by another method
         deferred("deferred_yardstick", "clipless", CLIPLESS),
         deferred("deferred", "exact", DEFERRED),
-        // Quads, by quality level
+    ];
+    rows.extend(quad_rows());
+    rows.extend(other_rows());
+    rows
+}
+
+/// Quads, by quality level and by effect.
+fn quad_rows() -> Vec<Row> {
+    let exact = Quality::default();
+    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
+    let both = Quality { horizon: Horizon::Both, ..exact };
+    let two_lobes = Quality { specular_lobes: SpecularLobes::Two, ..exact };
+    let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
+    let formula = Quality { lobes: Lobes::Formula, ..exact };
+    let everything = Quality { horizon: Horizon::Both, specular_lobes: SpecularLobes::Two, ..difference };
+    vec![
         quads("quads", "exact", LOBES, exact),
         quads("quads", "both horizons", LOBES, both),
         quads("quads", "two specular lobes", LOBES, two_lobes),
@@ -160,6 +164,20 @@ pub fn rows() -> Vec<Row> {
             Effects::DIFFUSE | Effects::TRANSMISSION,
             exact,
         ),
+    ]
+}
+
+/// Other kinds of light, what frames are, tiles and shadows.
+fn other_rows() -> Vec<Row> {
+    let (exact, none) = (Quality::default(), Effects::empty());
+    let difference = Quality { form_factor: FormFactor::Difference, ..exact };
+    let both = Quality { horizon: Horizon::Both, ..exact };
+    let half_vectors = Quality { specular_lobes: SpecularLobes::HalfVectors, ..exact };
+    let footprint = |footprint| Quality { footprint, ..exact };
+    let (polygon, mesh) = (Effects::POLYGON, Effects::POLYGON | Effects::MESH);
+    let every_kind = (Effects::all() - Effects::SURFACES) | Effects::SPECULAR_INPUT;
+    let (disk, textured_disk) = (Effects::ELLIPSE, Effects::ELLIPSE | Effects::TEXTURED_ELLIPSE);
+    vec![
         // Other kinds of light in place of quads
         others("polygons", "exact", polygon, exact),
         others("polygons", "both horizons", polygon, both),

@@ -51,14 +51,19 @@ struct ArealightReflected {
         if (!arealight_has_lobe(lobe)) {                                                            \
             return vec3(0.0);                                                                       \
         }                                                                                           \
-        if (AREALIGHT_HAS_HALF_VECTORS && arealight_has_facet_form_factor(local)) {                 \
-            if (lobe == AREALIGHT_LOBE_SPECULAR) {                                                  \
-                return arealight_half_vectors_reflected(                                            \
-                    point.half_vectors, arealight_facet_form_factor(point.half_vectors.facets, local)); \
-            }                                                                                       \
-            if (AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT) {                                \
-                return arealight_half_vectors_reflected(                                            \
-                    point.coat_half_vectors, arealight_facet_form_factor(point.coat_half_vectors.facets, local)); \
+        /* Conditions one within the other, so that one of them is known before the other */        \
+        if (AREALIGHT_HAS_HALF_VECTORS) {                                                           \
+            if (arealight_has_facet_form_factor(local)) {                                           \
+                if (lobe == AREALIGHT_LOBE_SPECULAR) {                                              \
+                    return arealight_half_vectors_reflected(                                        \
+                        point.half_vectors, arealight_facet_form_factor(point.half_vectors.facets, local)); \
+                }                                                                                   \
+                if (AREALIGHT_HAS_COAT) {                                                           \
+                    if (lobe == AREALIGHT_LOBE_COAT) {                                              \
+                        return arealight_half_vectors_reflected(                                    \
+                            point.coat_half_vectors, arealight_facet_form_factor(point.coat_half_vectors.facets, local)); \
+                    }                                                                               \
+                }                                                                                   \
             }                                                                                       \
         }                                                                                           \
         mat3 space = arealight_lobe_at(point, lobe).space;                                          \
@@ -67,9 +72,12 @@ struct ArealightReflected {
         return arealight_form_factor(gain * vector) * arealight_image_average(space, local, vector); \
     }                                                                                               \
     vec3 arealight_lobe_albedo(ArealightPoint point, int lobe, Local local) {                       \
-        bool is_weighed = AREALIGHT_HAS_HALF_VECTORS && arealight_has_facet_form_factor(local)      \
-                       && (lobe == AREALIGHT_LOBE_SPECULAR || (AREALIGHT_HAS_COAT && lobe == AREALIGHT_LOBE_COAT)); \
-        return is_weighed ? vec3(1.0) : arealight_lobe_at(point, lobe).albedo;                      \
+        if (AREALIGHT_HAS_HALF_VECTORS) {                                                           \
+            if ((lobe == AREALIGHT_LOBE_SPECULAR || lobe == AREALIGHT_LOBE_COAT) && arealight_has_facet_form_factor(local)) { \
+                return vec3(1.0);                                                                   \
+            }                                                                                       \
+        }                                                                                           \
+        return arealight_lobe_at(point, lobe).albedo;                                               \
     }                                                                                               \
     ArealightReflected arealight_reflected(ArealightPoint point, Light light) {                     \
         ArealightReflected sum = ArealightReflected(vec3(0.0), vec3(0.0));                          \

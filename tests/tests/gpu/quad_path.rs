@@ -8,9 +8,16 @@ const PAGE: &str = "docs/architecture.md";
 const MOST_FILES: usize = 4;
 const MOST_FUNCTIONS: usize = 12;
 /// Functions of options that are off by default.
-const OF_OPTIONS: [&str; 2] = ["arealight_cut_local", "arealight_far_quad_vector"];
+const OF_OPTIONS: [&str; 5] = [
+    "arealight_cut_local",
+    "arealight_far_quad_vector",
+    "arealight_has_facet_form_factor",
+    "arealight_facet_form_factor",
+    "arealight_half_vectors_reflected",
+];
 /// What says which lobes there are and what an image adds: questions to others than the light.
-const OF_OTHERS: [&str; 2] = ["arealight_has_lobe", "arealight_image_average"];
+const OF_OTHERS: [&str; 4] =
+    ["arealight_has_lobe", "arealight_lobe_at", "arealight_lobe_albedo", "arealight_image_average"];
 
 /// The names of functions in a text: words that begin with `arealight_`.
 fn names(text: &str) -> impl Iterator<Item = &str> {

@@ -46,7 +46,8 @@ fn lamps(seed: u64, surface: impl Fn(&mut dyn FnMut(f64, f64) -> f64) -> Surface
             // A facet of the lobe, as the light's middle is mirrored by it
             let (radius, angle) = (draw(0.0, 1.5), draw(0.0, TAU));
             let along = surface.anisotropy.map_or(surface.alpha, |a| a.alpha);
-            let facet = DVec3::new(along * radius * angle.cos(), surface.alpha * radius * angle.sin(), 1.0).normalize();
+            let facet = DVec3::new(along * radius * angle.cos(), surface.alpha * radius * angle.sin(), 1.0)
+                .normalize();
             let middle = 2.0 * facet.dot(view) * facet - view;
             let middle = middle.with_z(middle.z.abs().max(0.05)).normalize();
             let frame = DMat3::from_axis_angle(middle, draw(0.0, TAU));
@@ -84,10 +85,8 @@ fn lamps_err_a_fraction_of_what_fitted_lobes_err() {
         coat: Some(Coat { weight: 1.0, alpha: draw(0.02, 0.3), normal: None, by_albedo: false }),
         ..metal(draw(0.1, 1.0))
     };
-    let dielectric = |draw: &mut dyn FnMut(f64, f64) -> f64| Surface {
-        f0: DVec3::splat(0.04),
-        ..metal(draw(0.03, 1.0))
-    };
+    let dielectric =
+        |draw: &mut dyn FnMut(f64, f64) -> f64| Surface { f0: DVec3::splat(0.04), ..metal(draw(0.03, 1.0)) };
     for (name, shown, [bound, fitted]) in [
         // Bounds are 1.2 times what was measured. Of dielectrics a few rough ones that graze make all of the error
         ("metals", lamps(1, |draw| metal(draw(0.03, 1.0))), [0.026, 0.02]),

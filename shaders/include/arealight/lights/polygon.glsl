@@ -160,8 +160,10 @@ vec3 arealight_facet_outline_above_surface(ArealightFacets facets, vec3 center, 
 
 // The vector form factor of facets of an outline, as the options have it.
 vec3 arealight_facet_outline(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
-    if (AREALIGHT_CLIPS_AT_SURFACE && AREALIGHT_HAS_COAT_NORMAL) {
-        return arealight_facet_outline_above_surface(facets, center, to_frame, first, end);
+    if (AREALIGHT_CLIPS_AT_SURFACE) {
+        if (AREALIGHT_HAS_COAT_NORMAL) {
+            return arealight_facet_outline_above_surface(facets, center, to_frame, first, end);
+        }
     }
     return arealight_facet_outline_in_axes(facets, center, to_frame, first, end);
 }
