@@ -84,7 +84,7 @@ impl ThinFilm {
         (f0.lerp(normal, self.cover()), f90 + (grazing - f90) * self.cover())
     }
 
-    pub(crate) fn cover(&self) -> f64 {
+    fn cover(&self) -> f64 {
         if self.thickness > 0.0 { self.weight } else { 0.0 }
     }
 }

@@ -55,13 +55,13 @@ struct ArealightReflected {
         if (AREALIGHT_HAS_HALF_VECTORS) {                                                           \
             if (arealight_has_facet_form_factor(local)) {                                           \
                 if (lobe == AREALIGHT_LOBE_SPECULAR) {                                              \
-                    return arealight_half_vectors_reflected(                                        \
-                        point.half_vectors, arealight_facet_form_factor(point.half_vectors.facets, local)); \
+                    vec3 facets = arealight_facet_form_factor(point.half_vectors.facets, local);    \
+                    return arealight_half_vectors_reflected(point.half_vectors, facets, point.lobes[AREALIGHT_LOBE_SPECULAR].albedo); \
                 }                                                                                   \
                 if (AREALIGHT_HAS_COAT) {                                                           \
                     if (lobe == AREALIGHT_LOBE_COAT) {                                              \
-                        return arealight_half_vectors_reflected(                                    \
-                            point.coat_half_vectors, arealight_facet_form_factor(point.coat_half_vectors.facets, local)); \
+                        vec3 facets = arealight_facet_form_factor(point.coat_half_vectors.facets, local); \
+                        return arealight_half_vectors_reflected(point.coat_half_vectors, facets, point.lobes[AREALIGHT_LOBE_COAT].albedo); \
                     }                                                                               \
                 }                                                                                   \
             }                                                                                       \

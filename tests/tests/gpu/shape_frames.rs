@@ -165,6 +165,7 @@ fn shade(engine: &Engine, effects: Effects, lights: &[Light]) -> Vec<Vec4> {
             coat: Some(read(&nothing)),
             sheen: Some(read(&nothing)),
             anisotropy: Some(read(&nothing)),
+            film: Some(read(&nothing)),
             radiance: Resource::StorageImage { view: radiance.view() },
             light_textures: Some(engine.light_textures()),
             shapes: Some(Resource::buffer(buffer.handle())),

@@ -4,7 +4,7 @@
 //! integrated in closed form once their outline is known. An edge of a light is an arc of directions; its half vectors are an arc of a conic, which is
 //! drawn by chords. What is left beside, masking and the Fresnel term, is taken at the mean of these normals.
 
-use super::fitted_sample;
+use super::{faces_origin, fitted_sample};
 use crate::formula::MIN_COS_VIEW;
 use crate::frame::SurfaceFrame;
 use crate::ggx::AnisotropicGgx;
@@ -41,6 +41,8 @@ pub(super) struct HalfVectors {
     film: Option<ThinFilm>,
     /// How much more a light counts than its mean normal says, over its share of the visible normals: of light from everywhere what makes the albedo.
     gain: DVec3,
+    /// What is reflected of light from everywhere, at most.
+    albedo: DVec3,
 }
 
 impl HalfVectors {
@@ -82,7 +84,7 @@ impl HalfVectors {
     fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, (f0, f90): (DVec3, f64)) -> Self {
         // Along the surface the half vectors of light that passes straight on have no direction
         let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
-        Self { to_axes, alpha, view, f0, f90, film: None, gain: DVec3::ZERO }
+        Self { to_axes, alpha, view, f0, f90, film: None, gain: DVec3::ZERO, albedo: DVec3::ONE }
     }
 
     /// The same, reflecting so much of light from everywhere above the horizon.
@@ -90,7 +92,7 @@ impl HalfVectors {
         let sky = self.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y]);
         let share = self.share(sky).max(1e-6);
         let mean = albedo / share / self.reflectance(sky).max(DVec3::splat(1e-30));
-        Self { gain: (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share, ..self }
+        Self { gain: (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share, albedo, ..self }
     }
 
     /// The middle of the visible normals where alpha is 1.
@@ -121,18 +123,12 @@ impl HalfVectors {
         let outline: Vec<DVec3> =
             above_horizon(&in_axes).iter().map(|vertex| vertex.normalize_or(DVec3::Z)).collect();
         let vector = self.vector(&outline);
-        let vector = if two_sided && vector.dot(self.pole()) < 0.0 { -vector } else { vector };
+        let vector = if two_sided && !faces_origin(vertices) { -vector } else { vector };
         let share = self.share(vector);
         if share == 0.0 {
             return DVec3::ZERO;
         }
-        let mean = self.reflectance(vector) * (DVec3::ONE + self.gain * share);
-        // No facet reflects more
-        let most = match &self.film {
-            Some(film) if film.cover() > 0.0 => DVec3::ONE,
-            _ => self.f0.max(DVec3::splat(self.f90)),
-        };
-        share * mean.min(most)
+        (share * self.reflectance(vector) * (DVec3::ONE + self.gain * share)).min(self.albedo)
     }
 
     /// The vector form factor of an outline of directions in the axes, none below their horizon.

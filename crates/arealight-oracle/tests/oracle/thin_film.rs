@@ -82,9 +82,9 @@ fn error(cases: &[Case], truths: &[DVec3], answer: impl Fn(&Case) -> DVec3) -> f
 
 #[test]
 fn lights_show_a_film_at_their_own_facets_angle() {
-    // Of the mean, by half vectors, and by half vectors with the reflectances that stand for the film: .017 and .029 were found on dielectrics, .007 and .020
+    // Of the mean, by half vectors, and by half vectors with the reflectances that stand for the film: .017 and .027 were found on dielectrics, .008 and .020
     // on metals. Two fitted lobes have .025 and .021
-    for (is_metal, most) in [(false, 0.019), (true, 0.008)] {
+    for (is_metal, most) in [(false, 0.019), (true, 0.009)] {
         let cases = cases(is_metal, 240);
         let settings = Settings { relative_tolerance: 1e-3, max_evaluations: 100_000 };
         let truth = |case: &Case| truth(&case.surface, DVec3::Z, case.view, &case.light, &settings).radiance;

@@ -126,16 +126,11 @@ void arealight_scale_half_vectors(inout ArealightHalfVectors lobe, vec3 by) {
     }
 }
 
-// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel; 0 for one seen from behind and for NaN. No facet
-// reflects more than the larger of its reflectances, or below a film than all.
-vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector) {
+// What the lobe reflects of a light of unit radiance with this vector form factor of its facets, a channel, in [0, albedo], `albedo` being what it reflects of light
+// from everywhere; 0 for one seen from behind and for NaN.
+vec3 arealight_half_vectors_reflected(ArealightHalfVectors lobe, vec3 vector, vec3 albedo) {
     float share = arealight_facet_share(arealight_facet_pole(lobe.facets), vector);
-    vec3 mean = arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share);
-    vec3 most = max(lobe.f0, lobe.f90);
-    if (AREALIGHT_HAS_THIN_FILM) {
-        most = lobe.scale * (arealight_is_film(lobe.film) ? vec3(1.0) : most);
-    }
-    return share * min(mean, most);
+    return min(share * arealight_facet_reflectance(lobe, vector) * (1.0 + lobe.gain * share), albedo);
 }
 
 #endif

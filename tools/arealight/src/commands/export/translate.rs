@@ -74,6 +74,12 @@ pub fn translate(spirv: &[u32], language: Language) -> Result<Translated, String
         .parse()
         .map_err(|error| format!("naga cannot read the kernel: {error}"))?;
     compact(&mut module, KeepUnused::No);
+    // glslang's names of functions have the types of their parameters, spelled out
+    for (_, function) in module.functions.iter_mut() {
+        if let Some(name) = &mut function.name {
+            name.truncate(name.find('(').unwrap_or(name.len()));
+        }
+    }
     let info = validate(&module)?;
 
     // Write
