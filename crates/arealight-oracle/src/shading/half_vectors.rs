@@ -21,8 +21,8 @@ const BENT: f64 = 0.7;
 /// How often, at most.
 const MOST_HALVINGS: u32 = 5;
 
-/// How many times the reflectance of the mean normal the mean reflectance may be.
-const MOST_OF_MEAN: f64 = 16.0;
+/// How many times the reflectance of the mean normal the mean reflectance may be: more than it is of any lobe with an F0 from .04 on.
+const MOST_OF_MEAN: f64 = 2.0;
 
 /// What two chords of a conic lack, over the triangle that they make with the third.
 const SEGMENT: f64 = 0.4;
@@ -89,7 +89,7 @@ impl HalfVectors {
 
     /// The same, reflecting so much of light from everywhere above the horizon.
     fn with_albedo(self, albedo: DVec3) -> Self {
-        let sky = self.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y]);
+        let sky = self.sky();
         let share = self.share(sky).max(1e-6);
         let mean = albedo / share / self.reflectance(sky).max(DVec3::splat(1e-30));
         Self { gain: (mean.min(DVec3::splat(MOST_OF_MEAN)) - DVec3::ONE) / share, albedo, ..self }
@@ -138,7 +138,12 @@ impl HalfVectors {
         -arcs / TAU
     }
 
-    /// The part of the visible normals that it is of.
+    /// That of light from everywhere above their horizon.
+    fn sky(&self) -> DVec3 {
+        self.vector(&[DVec3::X, DVec3::NEG_Y, DVec3::NEG_X, DVec3::Y])
+    }
+
+    /// The part of the visible normals that a vector form factor is of.
     fn share(&self, vector: DVec3) -> f64 {
         let pole = self.pole();
         (vector.dot(pole) * 2.0 / (1.0 + pole.z)).clamp(0.0, 1.0)
@@ -176,4 +181,38 @@ fn arcs(conic: [DVec3; 3], halvings: u32) -> DVec3 {
     }
     let lacking = middle.dot((middle - from).cross(to - from));
     vector_of_arc(from, middle) + vector_of_arc(middle, to) + SEGMENT * lacking * middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shading::surface_sample;
+
+    /// The least and the most that light from everywhere counts over its mean normal, for every alpha and view.
+    fn means(f0: f64) -> [f64; 2] {
+        let table = arealight_table::ggx();
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for (i, j) in (0..=30).flat_map(|i| (0..=30).map(move |j| (f64::from(i) / 30.0, f64::from(j) / 30.0)))
+        {
+            let surface =
+                Surface { f0: DVec3::splat(f0), f90: 1.0, alpha: (i * i).max(1e-3), ..Surface::default() };
+            let (sin, cos) = (1.56 * j).sin_cos();
+            let frame = SurfaceFrame::new(DVec3::Z, DVec3::new(sin, 0.0, cos));
+            let sample = surface_sample(Quality::default(), &table, &surface, &frame);
+            let lobe = HalfVectors::of_surface(&surface, &frame, &sample);
+            let mean = 1.0 + lobe.gain.x * lobe.share(lobe.sky());
+            (least, most) = (least.min(mean), most.max(mean));
+        }
+        [least, most]
+    }
+
+    #[test]
+    fn the_bound_to_the_mean_changes_no_lobe_of_a_metal_or_a_usual_dielectric() {
+        for f0 in [0.04, 0.2, 1.0] {
+            let [least, most] = means(f0);
+            assert!(least > 0.5 && most < 0.99 * MOST_OF_MEAN, "{f0}: {least} {most}");
+        }
+        // The twin: without F0 it does
+        assert!(means(0.0)[1] > 0.99 * MOST_OF_MEAN);
+    }
 }

@@ -66,8 +66,9 @@ float arealight_facet_share(vec3 pole, vec3 vector) {
     return arealight_form_factor(vec3(0.0, 0.0, dot(vector, pole) * 2.0 / (1.0 + pole.z)));
 }
 
-// How many times the reflectance of the mean normal the mean reflectance may be: Fresnel terms are convex, and 3 is what they come to.
-const float AREALIGHT_MOST_OF_MEAN = 16.0;
+// How many times the reflectance of the mean normal the mean reflectance may be: of lobes with an F0 from .04 on it is less. Below films that reflect next to nothing at the mean
+// normal it would be any.
+const float AREALIGHT_MOST_OF_MEAN = 2.0;
 
 // A lobe whose albedo is `albedo`: what it reflects of light from everywhere.
 ArealightHalfVectors arealight_half_vectors(ArealightFacets facets, vec3 f0, vec3 f90, ArealightThinFilm film, vec3 albedo) {
