@@ -108,7 +108,7 @@
 // Two, at .6 to .8 times the error, exact in the reflectance and its colour.
 #define AREALIGHT_SPECULAR_LOBES_TWO 1
 
-// GGX itself over half vectors of polygons and meshes without an image: of lamps at a third to a tenth of two lobes' error.
+// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth of two lobes' error.
 #define AREALIGHT_SPECULAR_LOBES_HALF_VECTORS 2
 
 // The glossy lobe is the table's.
