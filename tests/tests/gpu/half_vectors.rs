@@ -141,7 +141,7 @@ fn a_light_that_is_cut_in_two_sends_what_it_did() {
         // Moved to the mirror direction
         let mirror = DVec3::new(-point.view.x, 0.0, point.view.z);
         let middle = point.light.shape.vertices().iter().sum::<DVec3>() / 4.0;
-        let turn = DQuat::from_rotation_arc(middle.normalize(), mirror);
+        let turn = DQuat::from_rotation_arc(middle.normalize_or(DVec3::Z), mirror);
         point.light.shape.vertices_mut().iter_mut().for_each(|vertex| *vertex = turn * *vertex);
     }
     let half = |point: &EvalPoint, first: usize| {

@@ -83,7 +83,7 @@ impl HalfVectors {
 
     fn new(to_axes: DMat3, alpha: DVec2, view: DVec3, (f0, f90): (DVec3, f64)) -> Self {
         // Along the surface the half vectors of light that passes straight on have no direction
-        let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize();
+        let view = to_axes * view.with_z(view.z.max(MIN_COS_VIEW)).normalize_or(DVec3::Z);
         Self { to_axes, alpha, view, f0, f90, film: None, gain: DVec3::ZERO, albedo: DVec3::ONE }
     }
 

@@ -47,9 +47,9 @@ fn lamps(seed: u64, surface: impl Fn(&mut dyn FnMut(f64, f64) -> f64) -> Surface
             let (radius, angle) = (draw(0.0, 1.5), draw(0.0, TAU));
             let along = surface.anisotropy.map_or(surface.alpha, |a| a.alpha);
             let facet = DVec3::new(along * radius * angle.cos(), surface.alpha * radius * angle.sin(), 1.0)
-                .normalize();
+                .normalize_or(DVec3::Z);
             let middle = 2.0 * facet.dot(view) * facet - view;
-            let middle = middle.with_z(middle.z.abs().max(0.05)).normalize();
+            let middle = middle.with_z(middle.z.abs().max(0.05)).normalize_or(DVec3::Z);
             let frame = DMat3::from_axis_angle(middle, draw(0.0, TAU));
             let (u, v) = middle.any_orthonormal_pair();
             let (u, v) = (frame * u * draw(0.05, 0.35), frame * v * draw(0.05, 0.35));
