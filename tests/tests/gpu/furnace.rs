@@ -1,4 +1,4 @@
-//! The white furnace in short form: with both horizons next to nothing of light from everywhere is lost. `arealight bench furnace` is the long form.
+//! The white furnace in short form: with both horizons, or over half vectors, next to nothing of light from everywhere is lost. `arealight bench furnace` is the long form.
 
 use arealight_benches::furnace::{Options, Row, run};
 use arealight_engine::host::testing::device_or_skip;
@@ -14,6 +14,7 @@ fn both_horizons_lose_at_most_a_thousandth_of_light_from_everywhere() {
         ("both horizons", 1e-3),
         ("both horizons, table of float16", 1.2e-3),
         ("both horizons, two lobes", 1e-3),
+        ("half vectors", 1e-3),
         ("both horizons, multiple scattering", 1e-3),
     ] {
         let row = row(level);
