@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3, Vec4};
 const SIZE: [u32; 2] = [61, 37];
 
 /// What is reflected without tiles, and with; and how many lights all lists have.
-fn pictures(
+pub fn pictures(
     engine: &TestEngine,
     scene: &Scene,
     lights: &[Light],

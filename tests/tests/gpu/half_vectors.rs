@@ -1,10 +1,11 @@
 //! GGX over half vectors on the GPU: its float64 twin, both ways around an outline, and the promises that a form factor keeps.
 
-use arealight::plan::{ShadeOptions, TileOptions};
+use crate::coat_tiles::pictures;
+use crate::properties::on_a_circle;
 use arealight::{Effects, Horizon, Light, LightShape, Quality, SpecularLobes};
 use arealight_engine::EvalPoint;
 use arealight_oracle::material::{Anisotropy, Surface};
-use arealight_tests::frame::{scene, with_renderer};
+use arealight_tests::frame::scene;
 use arealight_tests::materials::{shape_lights, step_within_rounding, under_polygon};
 use arealight_tests::{Cases, Comparison, Level, Path, Random, TestEngine, point, rounding};
 use glam::{DQuat, DVec3, Vec3, Vec4};
@@ -68,13 +69,11 @@ fn polygons_follow_their_float64_twin() {
     }
 }
 
-/// A convex quad on a ring about a place above the surface, which faces the point.
+/// A convex quad about a place above the surface, which faces the point.
 fn quad(random: &mut Random) -> Vec<DVec3> {
     let center = random.direction();
     let center = center.with_z(center.z.abs());
-    let polygon = random.polygon(center, 4, 0.2, 1.2);
-    let radius = polygon.iter().map(|v| v.distance(center)).fold(f64::INFINITY, f64::min);
-    polygon.iter().map(|v| center + (*v - center).normalize_or_zero() * radius).collect()
+    on_a_circle(&random.polygon(center, 4, 0.2, 1.2), center)
 }
 
 fn quads(seed: u64) -> Vec<EvalPoint> {
@@ -268,27 +267,11 @@ fn a_light_that_moves_does_not_make_its_reflection_jump() {
 
 #[test]
 fn tiles_leave_out_no_light_that_half_vectors_see() {
-    const SIZE: [u32; 2] = [61, 37];
     let Some(engine) = TestEngine::new() else { return };
     for (name, culls) in [("room.glb", 0.0), ("coats.glb", 0.0), ("sweep.glb", 0.05)] {
-        let mut scene = scene(name);
-        scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
-        let surfaces = scene.effects();
-        let shaded = |tiles: Option<f32>, quality| {
-            with_renderer(&engine, &scene, &scene.lights, SIZE, |renderer| {
-                let options = ShadeOptions { surfaces, quality, ..ShadeOptions::default() };
-                let Some(cull_threshold) = tiles else {
-                    renderer.shade(surfaces, quality).unwrap();
-                    return (renderer.radiance().unwrap(), 0);
-                };
-                let tiles = TileOptions { cull_threshold, capacity: 1000, least_quads: 0 };
-                let view = renderer.tiled(options, tiles).unwrap();
-                renderer.shade_tiled(&view).unwrap();
-                (renderer.radiance().unwrap(), view.counts(scene.lights.len()).unwrap().lights)
-            })
-        };
-        let (plain, _) = shaded(None, LEVEL);
-        let (tiled, listed) = shaded(Some(culls), LEVEL);
+        let scene = scene(name);
+        let shaded = |quality| pictures(&engine, &scene, &scene.lights, (quality, culls));
+        let (plain, tiled, listed) = shaded(LEVEL);
         let apart = |other: &[Vec4]| {
             let pairs = plain.iter().zip(other);
             pairs.map(|(a, b)| (*a - *b).abs().max_element()).fold(0.0_f32, f32::max)
@@ -298,6 +281,6 @@ fn tiles_leave_out_no_light_that_half_vectors_see() {
         assert!(apart(&tiled) <= 1e-5 * brightest, "{name}: {:e}", apart(&tiled));
         assert!(brightest > 1e-2, "{name}: something is lit");
         // The twin: another level is seen
-        assert!(apart(&shaded(None, Quality::default()).0) > 1e-3 * brightest, "{name}");
+        assert!(apart(&shaded(Quality::default()).0) > 1e-3 * brightest, "{name}");
     }
 }

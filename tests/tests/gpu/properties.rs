@@ -36,7 +36,7 @@ fn outline(random: &mut Random, path: Path, index: usize) -> Vec<DVec3> {
 }
 
 /// The polygon's vertices moved onto a circle: convex, in the same plane and order.
-fn on_a_circle(polygon: &[DVec3], center: DVec3) -> Vec<DVec3> {
+pub fn on_a_circle(polygon: &[DVec3], center: DVec3) -> Vec<DVec3> {
     let radius = polygon.iter().map(|v| v.distance(center)).fold(f64::INFINITY, f64::min);
     polygon.iter().map(|v| center + (*v - center).normalize_or_zero() * radius).collect()
 }

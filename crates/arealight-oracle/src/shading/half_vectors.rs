@@ -60,8 +60,7 @@ impl HalfVectors {
         );
         let alpha = alpha.max(DVec2::splat(arealight::MIN_ALPHA));
         let stand_in = surface.without_film(frame.cos_view());
-        let albedo =
-            stand_in.f0 * sample.albedo + (DVec3::splat(stand_in.f90) - stand_in.f0) * sample.schlick;
+        let albedo = stand_in.f0.map(|f0| sample.specular_albedo(f0, stand_in.f90));
         Self { film: surface.film, ..Self::new(to_axes, alpha, frame.view(), (surface.f0, surface.f90)) }
             .with_albedo(albedo)
     }
@@ -76,7 +75,7 @@ impl HalfVectors {
     ) -> Self {
         let sample = fitted_sample(quality, table, alpha, own.cos_view());
         let alpha = DVec2::splat(alpha.max(arealight::MIN_ALPHA));
-        let albedo = f0 * sample.albedo + (f90 - f0) * sample.schlick;
+        let albedo = sample.specular_albedo(f0, f90);
         let facets = Self::new(DMat3::IDENTITY, alpha, own.view(), (DVec3::splat(f0), f90));
         Self { to_axes: to_own, ..facets.with_albedo(DVec3::splat(albedo)) }
     }

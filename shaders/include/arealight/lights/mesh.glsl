@@ -34,21 +34,33 @@ bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out Area
     return true;
 }
 
+// A face of a mesh: its vertices, whose last one is before the next face's row, and the side that the point sees of it.
+struct ArealightMeshFace {
+    uint first;
+    uint end;
+    float side; // arealight_lit_side
+};
+
+// The face of a row.
+ArealightMeshFace arealight_mesh_face(ArealightLocalMesh local, uint row) {
+    vec4 face = arealight_bridge_face(row);
+    uint first = row + 1u;
+    uint end = first + clamp(uint(face.w), 1u, local.end - first);
+    vec3 offset = local.offset + arealight_bridge_vertex(first);
+    return ArealightMeshFace(first, end, arealight_lit_side(offset, face.xyz, local.two_sided));
+}
+
 // Each face is clipped and closed by itself, if the point is on its bright side.
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
     vec3 center = local.to_frame * local.offset;
     vec3 sum = vec3(0.0);
     for (uint row = local.first; row + 1u < local.end;) {
-        vec4 face = arealight_bridge_face(row);
-        uint first = row + 1u;
-        uint end = first + clamp(uint(face.w), 1u, local.end - first);
-        vec3 offset = local.offset + arealight_bridge_vertex(first);
-        float side = arealight_lit_side(offset, face.xyz, local.two_sided);
-        if (side != 0.0) {
+        ArealightMeshFace face = arealight_mesh_face(local, row);
+        if (face.side != 0.0) {
             // Seen from the back an outline goes around the other way
-            sum += side * arealight_outline_form_factor(space, center, local.to_frame, first, end, side);
+            sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first, face.end, face.side);
         }
-        row = end;
+        row = face.end;
     }
     return sum;
 }
@@ -61,14 +73,11 @@ vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalMesh loca
     vec3 center = local.to_frame * local.offset;
     vec3 sum = vec3(0.0);
     for (uint row = local.first; row + 1u < local.end;) {
-        vec4 face = arealight_bridge_face(row);
-        uint first = row + 1u;
-        uint end = first + clamp(uint(face.w), 1u, local.end - first);
-        float side = arealight_lit_side(local.offset + arealight_bridge_vertex(first), face.xyz, local.two_sided);
-        if (side != 0.0) {
-            sum += side * arealight_facet_outline(facets, center, local.to_frame, first, end);
+        ArealightMeshFace face = arealight_mesh_face(local, row);
+        if (face.side != 0.0) {
+            sum += face.side * arealight_facet_outline(facets, center, local.to_frame, face.first, face.end);
         }
-        row = end;
+        row = face.end;
     }
     return sum;
 }
