@@ -1,5 +1,6 @@
-//! How long the fit of a GGX table takes, its albedos included: `cargo bench -p arealight-benches --bench fit`. Seconds of the
-//! clock; on a machine busy with other work, of little meaning.
+//! How long the fit of a GGX table takes, its albedos included:
+//! `cargo bench -p arealight-benches --bench fit`. Seconds of the clock; on a machine busy with other work,
+//! of little meaning.
 
 use arealight_fit::{Aim, GgxBrdf, Settings, fit};
 use std::time::Instant;

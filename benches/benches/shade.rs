@@ -1,7 +1,7 @@
 //! Cost of the shade pass's levels and of the reference, in GPU time of one frame of the room.
 //!
-//! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick is
-//! `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
+//! Read the numbers as ratios within one run: `cargo bench -p arealight-benches --bench shade`. The yardstick
+//! is `exact`; `reference` is one Monte Carlo sample a pixel of the true BRDF.
 
 use arealight::{Effects, FormFactor, Horizon, Lobes, Quality, SpecularLobes};
 use arealight_engine::{Engine, Host, HostOptions, Reference, SceneRenderer};

@@ -1,5 +1,6 @@
-//! Cost of the table lookup that the processor makes, beside a lookup of one texel: `cargo bench -p arealight-benches --bench table`.
-//! (What it costs on the device is in the bench `shade`: exact, less exact with lobes by formula.)
+//! Cost of the table lookup that the processor makes, beside a lookup of one texel:
+//! `cargo bench -p arealight-benches --bench table`. (What it costs on the device is in the bench `shade`:
+//! exact, less exact with lobes by formula.)
 
 use arealight_oracle::stream::Stream;
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,5 +1,5 @@
-//! What filtering a light's texture costs, as a ratio to a plain chain of mips of the same image in the same run:
-//! `cargo bench -p arealight-benches --bench textures`. Prints a Markdown table.
+//! What filtering a light's texture costs, as a ratio to a plain chain of mips of the same image in the same
+//! run: `cargo bench -p arealight-benches --bench textures`. Prints a Markdown table.
 
 use arealight_benches::start::start;
 use arealight_benches::textures::{markdown, measure};

@@ -1,6 +1,7 @@
-//! What tiles gain: whole frames of our scenes; a floor under 10 to 1,000 lamps of which those that contribute little are culled; the same
-//! under disks and spheres, and images on disks: `cargo bench -p arealight-benches --bench tiles`, with `-- scenes`, `-- lamps` or
-//! `-- shapes` these alone. Prints Markdown tables.
+//! What tiles gain: whole frames of our scenes; a floor under 10 to 1,000 lamps of which those that
+//! contribute little are culled; the same under disks and spheres, and images on disks:
+//! `cargo bench -p arealight-benches --bench tiles`, with `-- scenes`, `-- lamps` or `-- shapes` these alone.
+//! Prints Markdown tables.
 
 use arealight::plan::{ShadeOptions, TileOptions};
 use arealight::{Footprint, LightTexture, Quality};
@@ -135,7 +136,8 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
                 let times = frame.milliseconds[2].median / ten;
                 let _ = writeln!(
                     growth,
-                    "- {material}, threshold {cull_threshold}: {count} lamps take {times:.1} times as long as {}",
+                    "- {material}, threshold {cull_threshold}: {count} lamps take {times:.1} times as long \
+                    as {}",
                     LAMPS[0]
                 );
             }

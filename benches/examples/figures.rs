@@ -1,4 +1,5 @@
-//! Draws what the documents show: `cargo run -p arealight-benches --example figures -- docs/images`. From the checkout's root.
+//! Draws what the documents show: `cargo run -p arealight-benches --example figures -- docs/images`. From the
+//! checkout's root.
 
 use arealight_benches::compiled::Compiled;
 use arealight_benches::figures::{drawings, error_cost};

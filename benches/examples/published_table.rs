@@ -1,5 +1,6 @@
-//! Makes `benches/tables/published-quality.exr` again, and prints its errors beside those of the published table:
-//! `cargo run --release -p arealight-benches --example published_table -- FILE.exr`. About a minute of processor time.
+//! Makes `benches/tables/published-quality.exr` again, and prints its errors beside those of the published
+//! table: `cargo run --release -p arealight-benches --example published_table -- FILE.exr`. About a minute of
+//! processor time.
 
 use arealight_benches::published;
 use arealight_fit::report::{COUNT, Level, PUBLISHED, SEED, cases, measure};

@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick of shadow rays: plain area sampling. For each ray a light is chosen by its power over its distance squared, and a point of it
-// by area; what the true BRDF (Lambert + GGX) reflects of it, if it arrives, over the density of both choices, is added to the radiance.
-// Nothing is known of the unshadowed radiance, so that there is noise where nothing is hidden too.
+// The yardstick of shadow rays: plain area sampling. For each ray a light is chosen by its power over its
+// distance squared, and a point of it by area; what the true BRDF (Lambert + GGX) reflects of it, if it
+// arrives, over the density of both choices, is added to the radiance. Nothing is known of the unshadowed
+// radiance, so that there is noise where nothing is hidden too.
 //
 // The same blockers, random numbers and G-buffer as the product's passes. For convex quads of one colour.
 

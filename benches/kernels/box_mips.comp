@@ -1,8 +1,8 @@
 #version 450
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick of the light textures' filter: a plain chain of mips, each texel the mean of SIDE x SIDE of the level
-// before. With SIDE 1, a copy.
+// The yardstick of the light textures' filter: a plain chain of mips, each texel the mean of SIDE x SIDE of
+// the level before. With SIDE 1, a copy.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

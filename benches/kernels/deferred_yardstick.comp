@@ -2,12 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 #include "arealight/arealight.glsl"
 
-// The pixel of shaders/examples/deferred.comp with the form factors of others: the same bindings, surface, table and lobes, and
-// quads.
+// The pixel of shaders/examples/deferred.comp with the form factors of others: the same bindings, surface,
+// table and lobes, and quads.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2DArray table;
-layout(set = 0, binding = 1) uniform sampler2D g_buffer[3]; // position; normal, roughness; base colour, metalness
+// Position; normal, roughness; base colour, metalness
+layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2; vec4 vertices[4]; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
@@ -35,7 +36,8 @@ void main() {
     surface.normal = normal_roughness.xyz;
     surface.view = frame.camera - surface.position;
     surface.roughness = normal_roughness.w;
-    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
+    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04),
+                                     1.0);
 
     ArealightPoint point = arealight_point(surface);
     ArealightLobe diffuse = point.lobes[AREALIGHT_LOBE_DIFFUSE];

@@ -46,8 +46,8 @@ vec3 polygon_anchor;
 uint polygon_first;
 float polygon_scale;
 
-// `precise`: a compiler that multiplies the scale with another factor first loses an offset near float32's largest
-// number, because that product is denormal.
+// `precise`: a compiler that multiplies the scale with another factor first loses an offset near float32's
+// largest number, because that product is denormal.
 vec3 polygon_offset(uint index) {
     precise vec3 offset = offsets[polygon_first + index].xyz * polygon_scale;
     return offset;
@@ -62,13 +62,15 @@ vec3 yardstick_vertex(uint index) {
 // A convex polygon of up to four vertices, from the anchor; the last one of a triangle comes twice.
 ArealightQuad polygon_quad(uint count) {
     uint last = min(count, 4u) - 1u;
-    return ArealightQuad(polygon_offset(0u), polygon_offset(1u), polygon_offset(min(2u, last)), polygon_offset(last));
+    return ArealightQuad(polygon_offset(0u), polygon_offset(1u), polygon_offset(min(2u, last)),
+                         polygon_offset(last));
 }
 
 vec3 quad_vector(uint count) {
     ArealightQuad quad = polygon_quad(count);
     vec3 anchor = polygon_anchor;
-    return arealight_quad_vector(ArealightQuad(anchor + quad.a, anchor + quad.b, anchor + quad.c, anchor + quad.d));
+    return arealight_quad_vector(ArealightQuad(anchor + quad.a, anchor + quad.b, anchor + quad.c, anchor
+                                               + quad.d));
 }
 
 vec3 outline_vector(uint count) {

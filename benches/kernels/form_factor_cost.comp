@@ -1,8 +1,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-// What a form factor of a quad costs: each invocation computes those of one quad at many places, by one method. Its memory
-// traffic, one quad and one result per invocation, is lost in that.
+// What a form factor of a quad costs: each invocation computes those of one quad at many places, by one
+// method. Its memory traffic, one quad and one result per invocation, is lost in that.
 
 layout(local_size_x = 64) in;
 
@@ -47,12 +47,14 @@ vec3 outline_vector(ArealightQuad quad) {
     return arealight_outline_vector(outline);
 }
 
-// The library's form factor of a quad given as offsets from `center`, in a space; where both horizons clip, a tilted one.
+// The library's form factor of a quad given as offsets from `center`, in a space; where both horizons clip, a
+// tilted one.
 float library(vec3 center, ArealightQuad quad) {
     if ((METHOD & ~METHOD_LEVEL) == METHOD_POLYGON) {
         return arealight_form_factor(outline_vector(moved(quad, center)));
     }
-    mat3 space = (METHOD & ~METHOD_LEVEL) == METHOD_BOTH ? mat3(0.8, 0.0, -0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8) : mat3(1.0);
+    mat3 space = (METHOD & ~METHOD_LEVEL) == METHOD_BOTH ? mat3(0.8, 0.0, -0.6, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8)
+        : mat3(1.0);
     ArealightPoint point;
     point.position = vec3(0.0);
     point.to_frame = mat3(1.0);
@@ -70,7 +72,8 @@ float library(vec3 center, ArealightQuad quad) {
 void main() {
     uint index = gl_GlobalInvocationID.x;
     uint first = 4u * index;
-    ArealightQuad quad = ArealightQuad(vertices[first].xyz, vertices[first + 1u].xyz, vertices[first + 2u].xyz,
+    ArealightQuad quad = ArealightQuad(vertices[first].xyz, vertices[first + 1u].xyz,
+                                       vertices[first + 2u].xyz,
                                        vertices[first + 3u].xyz);
     vec3 center = 0.25 * (quad.a + quad.b + quad.c + quad.d);
     ArealightQuad offsets = moved(quad, -center);

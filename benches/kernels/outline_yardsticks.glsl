@@ -1,9 +1,10 @@
 #ifndef OUTLINE_YARDSTICKS_GLSL
 #define OUTLINE_YARDSTICKS_GLSL
 
-// Yardsticks of polygons with any number of vertices, which they take from `yardstick_vertex`, seen from either side: the
-// schools of yardsticks.glsl that clip nothing; and clip + acos, for the stability battery alone, which shows what is left of
-// hard cases where everything is clipped but edges are as in the first listings of Heitz et al. 2016.
+// Yardsticks of polygons with any number of vertices, which they take from `yardstick_vertex`, seen from
+// either side: the schools of yardsticks.glsl that clip nothing; and clip + acos, for the stability battery
+// alone, which shows what is left of hard cases where everything is clipped but edges are as in the first
+// listings of Heitz et al. 2016.
 
 #include "yardsticks.glsl"
 
@@ -13,8 +14,8 @@ vec3 yardstick_vertex(uint index);
 // As many vertices as a clipped polygon of 64 may have.
 const uint YARDSTICK_CAPACITY = 130u;
 
-// The polygon is clipped into an array (Sutherland and Hodgman 1974), its vertices are normalised, and an edge has the angle
-// acos(a.b), kept off its ends, times z of the normalised a x b (Baum et al. 1989).
+// The polygon is clipped into an array (Sutherland and Hodgman 1974), its vertices are normalised, and an
+// edge has the angle acos(a.b), kept off its ends, times z of the normalised a x b (Baum et al. 1989).
 float yardstick_clip_and_acos(uint count) {
     // Clip
     vec3 clipped[YARDSTICK_CAPACITY];

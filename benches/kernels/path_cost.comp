@@ -2,12 +2,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "arealight/arealight.glsl"
 
-// The pixel of deferred_yardstick.comp without branches: each path through a quad light by itself, for a compiler's statistics. What
-// branches decide is computed and added to the result, so that no test is dropped. Never run.
+// The pixel of deferred_yardstick.comp without branches: each path through a quad light by itself, for a
+// compiler's statistics. What branches decide is computed and added to the result, so that no test is
+// dropped. Never run.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2DArray table;
-layout(set = 0, binding = 1) uniform sampler2D g_buffer[3]; // position; normal, roughness; base colour, metalness
+// Position; normal, roughness; base colour, metalness
+layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2; vec4 vertices[4]; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
@@ -21,8 +23,8 @@ const int PATH_ABOVE = 1;
 const int PATH_CROSSING_1 = 2; // with one vertex above
 const int PATH_CROSSING_2 = 3;
 const int PATH_CROSSING_3 = 4;
-// What a branch on acute edges would make of PATH_ABOVE: where all invocations have acute edges alone, where none has, where
-// some have
+// What a branch on acute edges would make of PATH_ABOVE: where all invocations have acute edges alone, where
+// none has, where some have
 const int PATH_ACUTE = 5;
 const int PATH_NOT_ACUTE = 6;
 const int PATH_MIXED = 7;
@@ -62,7 +64,8 @@ vec3 crossing(ArealightQuad quad, int above) {
     return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, 1.0);
 }
 
-// z of the arc between unit vectors at an acute angle with the cosine x, weighted as arealight_horizon_arc weights it.
+// z of the arc between unit vectors at an acute angle with the cosine x, weighted as arealight_horizon_arc
+// weights it.
 vec3 acute_arc(vec3 a, vec3 b, float x) {
     float s = cross(a, b).z;
     return vec3(0.0, 0.0, s * (1.5707963 + x * (1.1001613 + x * (0.056827213 - x * 0.0033851264)))
@@ -71,13 +74,15 @@ vec3 acute_arc(vec3 a, vec3 b, float x) {
 
 // The arcs around a quad that is wholly above the horizon, as in arealight_quad_vector.
 vec3 arcs_above(ArealightQuad quad) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
+        d = arealight_unit(quad.d);
     return arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
 }
 
 // The same behind a test whether edges are acute.
 vec3 above_by_edges(ArealightQuad quad, int path) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
+        d = arealight_unit(quad.d);
     vec4 x = vec4(dot(a, b), dot(b, c), dot(c, d), dot(d, a));
     bool is_acute = min(min(x.x, x.y), min(x.z, x.w)) > 0.0;
     vec3 acute = vec3(0.0), other = vec3(0.0);
@@ -130,7 +135,8 @@ vec3 exact(ArealightPoint point, uint index) {
         ArealightLobe diffuse = point.lobes[AREALIGHT_LOBE_DIFFUSE];
         ArealightLobe specular = point.lobes[AREALIGHT_LOBE_SPECULAR];
         radiance += lamps[index].radiance * (diffuse.albedo * lobe_form_factor(DIFFUSE, diffuse.space, local)
-                                             + specular.albedo * lobe_form_factor(SPECULAR, specular.space, local));
+                                             + specular.albedo
+                                                 * lobe_form_factor(SPECULAR, specular.space, local));
     }
     return radiance;
 }
@@ -169,7 +175,8 @@ void main() {
     surface.normal = normal_roughness.xyz;
     surface.view = frame.camera - surface.position;
     surface.roughness = normal_roughness.w;
-    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
+    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04),
+                                     1.0);
 
     ArealightPoint point = arealight_point(surface);
     mat3 specular_space = point.lobes[AREALIGHT_LOBE_SPECULAR].space * point.to_frame;

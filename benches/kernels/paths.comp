@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Which paths through the library's quads the invocations of a wave take, light by light. The same bindings as shade.comp. A wave
-// is 8 x 4 pixels, half of a workgroup: its pixel number i, row by row, gets in x the paths of light i as a bit mask, and in y
-// whether it has a surface. For the first 32 convex quads without an image, and images of whole workgroups.
+// Which paths through the library's quads the invocations of a wave take, light by light. The same bindings
+// as shade.comp. A wave is 8 x 4 pixels, half of a workgroup: its pixel number i, row by row, gets in x the
+// paths of light i as a bit mask, and in y whether it has a surface. For the first 32 convex quads without an
+// image, and images of whole workgroups.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -33,8 +34,8 @@ layout(push_constant, std430) uniform ShadeConstants {
 const uint ROWS_PER_WAVE = 4u;
 const uint LIGHTS_PER_WAVE = 32u;
 
-// Bits of a mask: the same as in benches/src/model.rs. Those of a lobe are shifted by LOBE_SHIFT and, for each lobe before it,
-// by LOBE_BITS.
+// Bits of a mask: the same as in benches/src/model.rs. Those of a lobe are shifted by LOBE_SHIFT and, for
+// each lobe before it, by LOBE_BITS.
 const uint BEHIND = 1u; // or in the light's plane
 const uint IN_FRONT = 2u;
 const int LOBE_SHIFT = 2;
@@ -48,7 +49,8 @@ shared uint wave_paths[8u / ROWS_PER_WAVE];
 
 // The least cosine of the angles that edges subtend.
 float least_cosine(ArealightQuad quad) {
-    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+    vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
+        d = arealight_unit(quad.d);
     return min(min(dot(a, b), dot(b, c)), min(dot(c, d), dot(d, a)));
 }
 

@@ -2,12 +2,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick of shadow maps: percentage-closer soft shadows (Fernando 2005) of one quad light. A map holds how deep below the light's centre,
-// along its normal, the first blocker is. Of the map's texels that blockers between a point and the light can be in, some are looked up; the mean
-// depth of those that are nearer than the point's own plane says how wide the penumbra is, and so over which texels the plane is compared.
-// The radiance, which is there without shadows, is multiplied by the share of texels that do not hide it.
+// The yardstick of shadow maps: percentage-closer soft shadows (Fernando 2005) of one quad light. A map holds
+// how deep below the light's centre, along its normal, the first blocker is. Of the map's texels that
+// blockers between a point and the light can be in, some are looked up; the mean depth of those that are
+// nearer than the point's own plane says how wide the penumbra is, and so over which texels the plane is
+// compared. The radiance, which is there without shadows, is multiplied by the share of texels that do not
+// hide it.
 //
-// The same blockers, random numbers and G-buffer as the product's passes. An engine rasterises the map; here rays find it.
+// The same blockers, random numbers and G-buffer as the product's passes. An engine rasterises the map; here
+// rays find it.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -87,7 +90,9 @@ float visibility(ArealightGpuLight light, mat3 to_light, vec3 point, vec3 normal
     float count = 0.0;
     for (uint tap = 0u; tap < SEARCH_TAPS; tap++) {
         float area;
-        vec3 corner = to_light * point_of(light, arealight_sequence_2d(pixel, constants.seed * SEARCH_TAPS + tap), area);
+        vec3 corner = to_light * point_of(light,
+                                          arealight_sequence_2d(pixel, constants.seed * SEARCH_TAPS + tap),
+            area);
         vec3 direction = mix(corner, point, near / point.z);
         float depth = map_depth(direction);
         if (depth < plane_depth(point, normal, direction)) {
@@ -102,7 +107,9 @@ float visibility(ArealightGpuLight light, mat3 to_light, vec3 point, vec3 normal
     float hidden = 0.0;
     for (uint tap = 0u; tap < FILTER_TAPS; tap++) {
         float area;
-        vec3 corner = to_light * point_of(light, arealight_sequence_2d(pixel, constants.seed * FILTER_TAPS + tap), area);
+        vec3 corner = to_light * point_of(light,
+                                          arealight_sequence_2d(pixel, constants.seed * FILTER_TAPS + tap),
+            area);
         vec3 direction = mix(corner, point, blocker / point.z);
         hidden += map_depth(direction) < plane_depth(point, normal, direction) ? 1.0 : 0.0;
     }

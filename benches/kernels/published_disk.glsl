@@ -1,6 +1,7 @@
-// The disk as it is published and shipped: Heitz and Hill 2017, "Real-time line- and disk-light shading with linearly
-// transformed cosines", written anew from the method. The cone's eigenvalues are the roots of a cubic (Blinn 2007); the
-// horizon is that of a sphere of the same form factor. A yardstick: nothing is guarded.
+// The disk as it is published and shipped: Heitz and Hill 2017, "Real-time line- and disk-light shading with
+// linearly transformed cosines", written anew from the method. The cone's eigenvalues are the roots of a
+// cubic (Blinn 2007); the horizon is that of a sphere of the same form factor. A yardstick: nothing is
+// guarded.
 
 #include "clipped_sphere.glsl"
 
@@ -33,8 +34,8 @@ vec3 published_cubic(vec3 c, bool clamped) {
     return roots.z < roots.x && roots.z < roots.y ? roots.xzy : roots;
 }
 
-// x: as it is; y: as (length^2 + z) / (length + 1), the cheap horizon. `clamped`: not 0 to keep the cubic's discriminant from
-// being negative, as is often done.
+// x: as it is; y: as (length^2 + z) / (length + 1), the cheap horizon. `clamped`: not 0 to keep the cubic's
+// discriminant from being negative, as is often done.
 vec2 published_disk(vec3 center, vec3 axis_u, vec3 axis_v, int clamped) {
     float d11 = dot(axis_u, axis_u);
     float d22 = dot(axis_v, axis_v);

@@ -7,8 +7,8 @@ layout(set = 0, binding = 1, std430) readonly buffer LightVertices {
     vec4 light_vertices[];
 };
 
-// A point of a quad relative to its center; `area` is what a density of 1 over the random numbers is one over, in area: the quad's, where it is a
-// parallelogram.
+// A point of a quad relative to its center; `area` is what a density of 1 over the random numbers is one
+// over, in area: the quad's, where it is a parallelogram.
 vec3 point_of(ArealightGpuLight light, vec2 random, out float area) {
     vec3 a = light_vertices[light.first_vertex].xyz;
     vec3 b = light_vertices[light.first_vertex + 1u].xyz;

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The shade kernel over the lights of a host's clusters: parts of the view by columns, rows and slices of depth, whose lists the CPU made
-// (benches/src/clusters.rs). The same reads and the same shading of a pixel as shade.comp; the lists are where that has those of tiles.
+// The shade kernel over the lights of a host's clusters: parts of the view by columns, rows and slices of
+// depth, whose lists the CPU made (benches/src/clusters.rs). The same reads and the same shading of a pixel
+// as shade.comp; the lists are where that has those of tiles.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -41,8 +42,9 @@ const bool HAS_SPECULAR_INPUT = (EFFECTS & EFFECT_SPECULAR_INPUT) != 0u;
 #include "output.glsl"
 #include "shade_constants.glsl"
 
-// In front: columns, rows and slices; where the first slice begins; slices over ln(far / near); the unit view direction. From CLUSTERS on two words a
-// cluster, where its lights are and how many. Then the lights of all: indices of records.
+// In front: columns, rows and slices; where the first slice begins; slices over ln(far / near); the unit view
+// direction. From CLUSTERS on two words a cluster, where its lights are and how many. Then the lights of all:
+// indices of records.
 const uint CLUSTERS = 8u;
 layout(set = 0, binding = 18, std430) readonly buffer ClusterLists {
     uint cluster_lists[];
@@ -53,7 +55,8 @@ uint cluster_at(ivec2 pixel, vec3 position) {
     uvec3 counts = uvec3(cluster_lists[0], cluster_lists[1], cluster_lists[2]);
     vec3 forward = uintBitsToFloat(uvec3(cluster_lists[5], cluster_lists[6], cluster_lists[7]));
     float depth = dot(position - constants.camera, forward);
-    float slice = log(max(depth, 1e-30) / uintBitsToFloat(cluster_lists[3])) * uintBitsToFloat(cluster_lists[4]);
+    float slice = log(max(depth, 1e-30) / uintBitsToFloat(cluster_lists[3]))
+        * uintBitsToFloat(cluster_lists[4]);
     uvec2 cell = uvec2(pixel) * counts.xy / constants.size;
     uint layer = uint(clamp(slice, 0.0, float(counts.z - 1u)));
     return CLUSTERS + 2u * ((layer * counts.y + cell.y) * counts.x + cell.x);

@@ -2,12 +2,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The shade kernel with the form factors that others ship: see yardsticks.glsl. The same bindings, table lookup, lobes, light reads and
-// loop over the lights as shade.comp, so that only the form factor differs, and the table where another is bound. Lights that are
-// seen from the back are left by a branch, as three.js does.
+// The shade kernel with the form factors that others ship: see yardsticks.glsl. The same bindings, table
+// lookup, lobes, light reads and loop over the lights as shade.comp, so that only the form factor differs,
+// and the table where another is bound. Lights that are seen from the back are left by a branch, as three.js
+// does.
 //
-// For lights of one colour. Outlines other than convex quads are shaded by the two schools that clip nothing; clipping by cases
-// is for quads alone.
+// For lights of one colour. Outlines other than convex quads are shaded by the two schools that clip nothing;
+// clipping by cases is for quads alone.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -53,7 +54,8 @@ YardstickPoint yardstick_point(ivec2 pixel, vec3 position) {
     ArealightPoint point = arealight_point(load_surface(pixel, position, constants.camera));
     ArealightLobe diffuse = point.lobes[AREALIGHT_LOBE_DIFFUSE];
     ArealightLobe specular = point.lobes[AREALIGHT_LOBE_SPECULAR];
-    return YardstickPoint(point.position, point.to_frame, specular.space * point.to_frame, diffuse.albedo, specular.albedo);
+    return YardstickPoint(point.position, point.to_frame, specular.space * point.to_frame, diffuse.albedo,
+                          specular.albedo);
 }
 
 const bool HAS_OTHERS = (EFFECTS & EFFECT_POLYGON) != 0u && METHOD != YARDSTICK_CLIP_BY_CASES;

@@ -1,8 +1,9 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-// Form factors of disks, spheres and tubes over a list of arguments, so that tests and benchmarks can hold them to what their
-// comments say, and measure what they cost; and yardsticks of the disk: the published one, a sphere's horizon, polygons.
+// Form factors of disks, spheres and tubes over a list of arguments, so that tests and benchmarks can hold
+// them to what their comments say, and measure what they cost; and yardsticks of the disk: the published one,
+// a sphere's horizon, polygons.
 
 layout(local_size_x = 64) in;
 
@@ -57,13 +58,14 @@ layout(push_constant, std430) uniform ShapeConstants {
 
 vec4 silhouette_of(vec3 center, float radius, mat3 transform, bool two_sided) {
     ArealightSilhouette silhouette = arealight_sphere_silhouette(center, radius);
-    float form_factor = arealight_ellipse_form_factor(transform * silhouette.center, transform * silhouette.axis_u,
+    float form_factor = arealight_ellipse_form_factor(transform * silhouette.center, transform
+                                                      * silhouette.axis_u,
                                                       transform * silhouette.axis_v, two_sided);
     return vec4(silhouette.inside ? 0.0 : form_factor, silhouette.center);
 }
 
-// What a white lobe reflects of a disk or sphere, the surface's normal being z. The lobe's matrix has the rows (a.w, b.w, c.w), d
-// and a third one across them, of the length d.w.
+// What a white lobe reflects of a disk or sphere, the surface's normal being z. The lobe's matrix has the
+// rows (a.w, b.w, c.w), d and a third one across them, of the length d.w.
 float lobe_of(ShapeArguments given, bool sphere) {
     vec3 first = vec3(given.a.w, given.b.w, given.c.w);
     vec3 third = given.d.w * arealight_normalize_or(cross(first, given.d.xyz), vec3(0.0, 0.0, 1.0));
@@ -135,7 +137,8 @@ vec4 evaluate(ShapeArguments given, int tube_ends) {
         mat3 transform = transpose(mat3(given.c.xyz, given.d.xyz, row));
         result.x = CHOICE == 0
                  ? arealight_tube_form_factor(tube, transform, AREALIGHT_HORIZON_WIDTH)
-                 : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform, AREALIGHT_HORIZON_WIDTH);
+                 : arealight_tube_both_horizons(tube, vec3(0.0, 0.0, 1.0), transform,
+                                                AREALIGHT_HORIZON_WIDTH);
     } else if (FUNCTION == FUNCTION_LOBE) {
         result.xy = vec2(lobe_of(given, false), lobe_of(given, true));
     } else if (FUNCTION == FUNCTION_PUBLISHED) {

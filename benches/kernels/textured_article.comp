@@ -2,12 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// A yardstick: light textures as in the article (Heitz et al. 2016, section 5, and its published code), with the library's
-// form factors and pyramid. The eval kernel else: same bindings, same cases.
+// A yardstick: light textures as in the article (Heitz et al. 2016, section 5, and its published code), with
+// the library's form factors and pyramid. The eval kernel else: same bindings, same cases.
 //
-// The texture is looked up at the foot of the perpendicular from the shading point onto the light's plane, in cosine
-// space, blurred by the distance r to it: the lobe's image of eq. 35, of variance r^2 / 2, which is exact for a plane
-// parallel to the receiver.
+// The texture is looked up at the foot of the perpendicular from the shading point onto the light's plane, in
+// cosine space, blurred by the distance r to it: the lobe's image of eq. 35, of variance r^2 / 2, which is
+// exact for a plane parallel to the receiver.
 
 layout(local_size_x = 64) in;
 
@@ -27,7 +27,8 @@ layout(constant_id = 7) const int FOOTPRINT = 0;
 #include "../../tools/kernels/shaders/cases.glsl"
 
 vec3 article_color(mat3 space, ArealightLocalPolygon local) {
-    ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);
+    ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space
+                                                    * local.to_frame);
     // The foot of the perpendicular: the plane met along its normal
     ArealightPlaneHit foot = arealight_plane_hit(image, image.normal);
     vec2 box = arealight_clamp_coordinate(foot.box, vec2(0.0), vec2(1.0));

@@ -1,7 +1,8 @@
 #ifndef YARDSTICKS_GLSL
 #define YARDSTICKS_GLSL
 
-// The form factors of quads as others compute them, a school each, for comparison only: the hard cases break all of them.
+// The form factors of quads as others compute them, a school each, for comparison only: the hard cases break
+// all of them.
 //
 // | school         | who ships it             | how                                                                       |
 // |----------------|--------------------------|---------------------------------------------------------------------------|
@@ -9,9 +10,9 @@
 // | clipless       | three.js, HDRP's default | the same, with a rational function in place of the clipped sphere         |
 // | clip by cases  | Bevy, Godot, ltc_code    | one of 16 cases of vertices above the horizon gives up to five vertices   |
 //
-// Their edges are the same: Hill and Heitz 2016, "Real-Time Area Lighting: a Journey from Research to Production". Written anew
-// from the published descriptions. Vertices are in a lobe's cosine space, clockwise about the way to the light, that is seen
-// from its front. Form factors are in [0, 1], but for rounding.
+// Their edges are the same: Hill and Heitz 2016, "Real-Time Area Lighting: a Journey from Research to
+// Production". Written anew from the published descriptions. Vertices are in a lobe's cosine space, clockwise
+// about the way to the light, that is seen from its front. Form factors are in [0, 1], but for rounding.
 
 #include "clipped_sphere.glsl"
 
@@ -20,8 +21,8 @@ const int YARDSTICK_SPHERE_HORIZON = 0;
 const int YARDSTICK_CLIPLESS = 1;
 const int YARDSTICK_CLIP_BY_CASES = 2;
 
-// An edge between unit vectors: theta / sin(theta) / 2 pi, as a rational function of the cosine that is guarded where the ends
-// are opposite, times a x b.
+// An edge between unit vectors: theta / sin(theta) / 2 pi, as a rational function of the cosine that is
+// guarded where the ends are opposite, times a x b.
 vec3 yardstick_edge(vec3 a, vec3 b) {
     float x = dot(a, b);
     float y = abs(x);
@@ -32,7 +33,8 @@ vec3 yardstick_edge(vec3 a, vec3 b) {
     return cross(a, b) * weight;
 }
 
-// The form factor of a polygon by what its edges sum up to, for the two schools that clip nothing. `sum` points away from the light.
+// The form factor of a polygon by what its edges sum up to, for the two schools that clip nothing. `sum`
+// points away from the light.
 float yardstick_unclipped(int method, vec3 sum) {
     float form_factor = length(sum);
     if (method == YARDSTICK_CLIPLESS) {
@@ -46,9 +48,11 @@ vec3 yardstick_crossing(vec3 above, vec3 below) {
     return above.z * below - below.z * above;
 }
 
-// Clips a quad of v[0] to v[3] at the horizon into v[0] to v[4]: returns how many vertices are left, 0, 3, 4 or 5.
+// Clips a quad of v[0] to v[3] at the horizon into v[0] to v[4]: returns how many vertices are left, 0, 3, 4
+// or 5.
 int yardstick_clip(inout vec3 v[5]) {
-    int above = (v[0].z > 0.0 ? 1 : 0) + (v[1].z > 0.0 ? 2 : 0) + (v[2].z > 0.0 ? 4 : 0) + (v[3].z > 0.0 ? 8 : 0);
+    int above = (v[0].z > 0.0 ? 1 : 0) + (v[1].z > 0.0 ? 2 : 0) + (v[2].z > 0.0 ? 4 : 0)
+        + (v[3].z > 0.0 ? 8 : 0);
     switch (above) {
     case 1: // v[0] is above
         v[2] = yardstick_crossing(v[0], v[3]);
@@ -120,7 +124,8 @@ float yardstick_clipped(vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     vec3 second = normalize(v[1]);
     vec3 third = normalize(v[2]);
     vec3 fourth = count > 3 ? normalize(v[3]) : first;
-    float z = yardstick_edge(first, second).z + yardstick_edge(second, third).z + yardstick_edge(third, fourth).z;
+    float z = yardstick_edge(first, second).z + yardstick_edge(second, third).z
+        + yardstick_edge(third, fourth).z;
     if (count == 4) {
         z += yardstick_edge(fourth, first).z;
     } else if (count == 5) {
@@ -139,7 +144,8 @@ float yardstick_quad(int method, vec3 v0, vec3 v1, vec3 v2, vec3 v3) {
     v1 = normalize(v1);
     v2 = normalize(v2);
     v3 = normalize(v3);
-    return yardstick_unclipped(method, yardstick_edge(v0, v1) + yardstick_edge(v1, v2) + yardstick_edge(v2, v3)
+    return yardstick_unclipped(method, yardstick_edge(v0, v1) + yardstick_edge(v1, v2)
+                               + yardstick_edge(v2, v3)
                                            + yardstick_edge(v3, v0));
 }
 

@@ -75,7 +75,8 @@ pub enum BudgetError {
         value: f64,
     },
     /// Nothing was measured for such lights.
-    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench --save`", if *.textured { "that are textured" } else { "of one colour" })]
+    #[error("the profile of '{device}' has no level for lights {}: measure it anew with `arealight bench \
+    --save`", if *.textured { "that are textured" } else { "of one colour" })]
     NoLevel {
         /// The device.
         device: String,
@@ -84,7 +85,8 @@ pub enum BudgetError {
     },
     /// Even the fastest level takes longer.
     #[error(
-        "no level takes at most {limit} ms on '{device}': the fastest takes {nearest:.3} ms ({quality:?}); use fewer lights or pixels, \
+        "no level takes at most {limit} ms on '{device}': the fastest takes {nearest:.3} ms ({quality:?}); \
+        use fewer lights or pixels, \
          or allow {nearest:.3} ms"
     )]
     TooSlow {
@@ -99,7 +101,8 @@ pub enum BudgetError {
     },
     /// Even the most accurate level errs more.
     #[error(
-        "no level errs at most {limit} on '{device}': the most accurate errs {nearest:.5} ({quality:?}); allow that, or use the \
+        "no level errs at most {limit} on '{device}': the most accurate errs {nearest:.5} ({quality:?}); \
+        allow that, or use the \
          Monte Carlo reference"
     )]
     TooInaccurate {
@@ -114,16 +117,16 @@ pub enum BudgetError {
     },
 }
 
-/// Errors, or times, that are apart by no more than this factor count as equal: a level of the same error to three digits must
-/// not be taken for its last one, at twice the time.
+/// Errors, or times, that are apart by no more than this factor count as equal: a level of the same error to
+/// three digits must not be taken for its last one, at twice the time.
 const EQUAL: f64 = 1.01;
 
 impl Profile {
-    /// Picks a level from what was measured on a device: the most accurate that takes no longer than allowed, or the fastest
-    /// that errs no more than allowed. Of equals the faster, or the more accurate.
+    /// Picks a level from what was measured on a device: the most accurate that takes no longer than allowed,
+    /// or the fastest that errs no more than allowed. Of equals the faster, or the more accurate.
     ///
-    /// Times are those of the profile's frame, scaled: they hold for the shade pass alone, for lights like the profile's, on the
-    /// same device.
+    /// Times are those of the profile's frame, scaled: they hold for the shade pass alone, for lights like
+    /// the profile's, on the same device.
     ///
     /// # Errors
     /// [`BudgetError`] names the nearest level where none fits.

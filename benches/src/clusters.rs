@@ -1,4 +1,5 @@
-//! Clusters as a host has them: parts of a view by columns, rows and slices of depth, each with the lights that reach into it.
+//! Clusters as a host has them: parts of a view by columns, rows and slices of depth, each with the lights
+//! that reach into it.
 
 use arealight::{Light, reach};
 use arealight_scene::Camera;
@@ -26,13 +27,15 @@ pub struct Clusters {
     lights: Vec<u32>,
 }
 
-/// A part of depth by which the cells of the CPU reach farther than those of the GPU, which rounds to float32.
+/// A part of depth by which the cells of the CPU reach farther than those of the GPU, which rounds to
+/// float32.
 const MARGIN: f64 = 1e-4;
 
 impl Clusters {
     // doc: fill
-    /// Lists the lights that may reflect more than `threshold`, in W/(m² sr), somewhere in a cluster, by their places in `lights`. `density` is of the
-    /// surfaces: [`reach::radius`]. `depths` are along the view.
+    /// Lists the lights that may reflect more than `threshold`, in W/(m² sr), somewhere in a cluster, by
+    /// their places in `lights`. `density` is of the surfaces: [`reach::radius`]. `depths` are along the
+    /// view.
     pub fn fill(
         lights: &[Light],
         camera: &Camera,

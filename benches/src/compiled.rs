@@ -1,5 +1,5 @@
-//! What a GPU's compiler makes of the kernels: registers, waves, instructions, and its own estimate of cycles, beside yardsticks.
-//! Nothing runs, and no GPU is needed: [`arealight_engine::host::null_hardware`].
+//! What a GPU's compiler makes of the kernels: registers, waves, instructions, and its own estimate of
+//! cycles, beside yardsticks. Nothing runs, and no GPU is needed: [`arealight_engine::host::null_hardware`].
 
 mod check;
 mod rows;
@@ -99,7 +99,8 @@ impl Measured {
     }
 }
 
-/// The rows whose names contain `pattern` (upper and lower case are the same), and those that they are held against.
+/// The rows whose names contain `pattern` (upper and lower case are the same), and those that they are held
+/// against.
 pub fn matching(pattern: &str) -> Vec<Row> {
     let pattern = pattern.to_lowercase();
     let (all, is_wanted) = (rows(), |row: &Row| row.name().to_lowercase().contains(&pattern));
@@ -169,7 +170,8 @@ impl Compiled {
             let rows = family.rows.iter().map(|row| json(&Measured { seconds: None, ..row.clone() }));
             let rows: Vec<String> = rows.map(|row| format!("        {row}")).collect();
             format!(
-                "    {{\n      \"family\": {},\n      \"driver\": {},\n      \"rows\": [\n{}\n      ]\n    }}",
+                "    {{\n      \"family\": {},\n      \"driver\": {},\n      \"rows\": \
+                [\n{}\n      ]\n    }}",
                 json(&family.family),
                 json(&family.driver),
                 rows.join(",\n")

@@ -1,7 +1,7 @@
 //! What the form factor of a quad costs on a device, by the library's levels and by the yardsticks.
 //!
-//! The machines that this runs on are shared: every method is run in turn, round after round, and read as a ratio to
-//! a yardstick in the same round. All read the same quads, once each.
+//! The machines that this runs on are shared: every method is run in turn, round after round, and read as a
+//! ratio to a yardstick in the same round. All read the same quads, once each.
 
 use crate::school::School;
 use arealight::FormFactor;

@@ -1,4 +1,5 @@
-//! The drawings of the documents, made of the oracle and of what is measured: `cargo run -p arealight-benches --example figures`.
+//! The drawings of the documents, made of the oracle and of what is measured:
+//! `cargo run -p arealight-benches --example figures`.
 
 mod error_cost;
 mod lobes;
@@ -33,7 +34,8 @@ mod tests {
             let stored = std::fs::read_to_string(folder.join(name)).unwrap();
             assert!(
                 drawing == stored,
-                "docs/images/{name} is another: cargo run -p arealight-benches --example figures -- docs/images"
+                "docs/images/{name} is another: cargo run -p arealight-benches --example figures -- \
+                docs/images"
             );
         }
     }

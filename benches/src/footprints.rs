@@ -1,5 +1,5 @@
-//! How far off the lookups of light textures are, on a device and through its pyramid: against the integral of image times
-//! lobe in float64, over families of poses, beside the filter of Heitz et al. 2016.
+//! How far off the lookups of light textures are, on a device and through its pyramid: against the integral
+//! of image times lobe in float64, over families of poses, beside the filter of Heitz et al. 2016.
 
 mod cost;
 mod report;
@@ -120,7 +120,8 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// 600 poses a family, ten rounds: with half as many a few bright poses decide, and errors scatter by a tenth.
+    /// 600 poses a family, ten rounds: with half as many a few bright poses decide, and errors scatter by a
+    /// tenth.
     fn default() -> Self {
         Self { poses: 600, seed: 1, rounds: 10 }
     }

@@ -1,4 +1,5 @@
-//! The white furnace: what surfaces that reflect everything lose, or gain, of light from everywhere, by each quality level.
+//! The white furnace: what surfaces that reflect everything lose, or gain, of light from everywhere, by each
+//! quality level.
 
 use crate::table::Table;
 use arealight::{
@@ -16,7 +17,8 @@ use serde::{Deserialize, Serialize};
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Options {
-    /// Roughnesses from 0 to 1, and views from the normal to [`LAST_VIEW`], evenly in what the table is evenly spaced in.
+    /// Roughnesses from 0 to 1, and views from the normal to [`LAST_VIEW`], evenly in what the table is
+    /// evenly spaced in.
     pub steps: u32,
 }
 
@@ -30,8 +32,9 @@ impl Default for Options {
 /// The last view's angle from the normal, in degrees.
 pub const LAST_VIEW: f64 = 89.9;
 
-/// Half the side of the light, which is 1 above the surface: it fills the hemisphere but for 1e-5 of the cosine. In a mirror's cosine space its corners are
-/// 1e9 times as far as it is: such a light asks for [`FormFactor::Difference`].
+/// Half the side of the light, which is 1 above the surface: it fills the hemisphere but for 1e-5 of the
+/// cosine. In a mirror's cosine space its corners are 1e9 times as far as it is: such a light asks for
+/// [`FormFactor::Difference`].
 const HALF_SIDE: f64 = 1e5;
 
 /// A level, as rows have it.
@@ -196,7 +199,8 @@ impl Furnace {
     /// A section of a document. `command` is what made it.
     pub fn to_markdown(&self, command: &str) -> String {
         format!(
-            "By `{command}` on {}: GGX of F0 = 1 below light of 1 from everywhere, {} roughnesses from 0 to 1 by as many views to {LAST_VIEW}°. Losses and \
+            "By `{command}` on {}: GGX of F0 = 1 below light of 1 from everywhere, {} roughnesses from 0 to \
+            1 by as many views to {LAST_VIEW}°. Losses and \
              gains are of the true lobe's albedo; with multiple scattering of all light.\n\n{}",
             self.device,
             self.steps,

@@ -1,5 +1,5 @@
-//! What accuracy costs in time: every quality level on a device, its error against the integral of the true BRDF and
-//! its time, beside Monte Carlo and what others ship.
+//! What accuracy costs in time: every quality level on a device, its error against the integral of the true
+//! BRDF and its time, beside Monte Carlo and what others ship.
 
 mod compare;
 mod errors;
@@ -125,7 +125,8 @@ pub struct Samples {
 pub struct EffectCost {
     /// Its name.
     pub effect: String,
-    /// Time of a pipeline with it over one without, of a frame in which nothing needs it; of a lobe, where all does.
+    /// Time of a pipeline with it over one without, of a frame in which nothing needs it; of a lobe, where
+    /// all does.
     pub on: Spread,
     /// Time of a frame of lights that need it, over one of quads.
     pub used: Option<Spread>,
@@ -163,8 +164,8 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over textured lights. One
-    /// that gave no number, or was judged nowhere, is none of them.
+    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over
+    /// textured lights. One that gave no number, or was judged nowhere, is none of them.
     ///
     /// # Errors
     /// [`UnknownLevel`] where the levels are in words that this version does not know.
@@ -225,8 +226,9 @@ pub fn run(
         }
     }
 
-    // Time: a patch a point. Once to fill the driver's cache: some make other code the first time than they load later. Then with
-    // pipelines that are made anew again and again: where their code lies, and how good it is, is a part of the spread
+    // Time: a patch a point. Once to fill the driver's cache: some make other code the first time than they
+    // load later. Then with pipelines that are made anew again and again: where their code lies, and how good
+    // it is, is a part of the spread
     let effects: Vec<Effects> = Effects::all().iter().collect();
     let mut timed = time(&engine, &workloads, &effects, options.seed, 0, progress)?;
     let mut engine = engine;
@@ -278,8 +280,8 @@ pub fn run(
     Ok((ladder, pictures))
 }
 
-/// How often pipelines are made anew to be timed, at most: so few that quartiles of all rounds lie in the fastest and the slowest
-/// session.
+/// How often pipelines are made anew to be timed, at most: so few that quartiles of all rounds lie in the
+/// fastest and the slowest session.
 const SESSIONS: usize = 3;
 
 /// Rounds of a session, at least: making its pipelines takes longer.

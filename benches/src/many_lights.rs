@@ -1,4 +1,5 @@
-//! A floor under ever more lamps, shaded with all of them, by tiles of the library's, and by clusters of a host's own: time, memory, error.
+//! A floor under ever more lamps, shaded with all of them, by tiles of the library's, and by clusters of a
+//! host's own: time, memory, error.
 
 use crate::clusters::{Clusters, Grid};
 use crate::ladder::frame::processors;

@@ -39,8 +39,8 @@ pub struct MaterialResult {
     pub pixels: usize,
     /// Mean radiance over that of the reference, of all channels.
     pub ratio: f64,
-    /// Root of the mean squared difference, over the reference's mean. The references' noise is not in it: squares are products of the differences from two
-    /// of them. 0 where noise makes the mean negative.
+    /// Root of the mean squared difference, over the reference's mean. The references' noise is not in it:
+    /// squares are products of the differences from two of them. 0 where noise makes the mean negative.
     pub error: f64,
     /// `error` with two specular lobes ([`SpecularLobes::Two`]).
     pub two_lobes: f64,
@@ -87,7 +87,8 @@ struct Pixels {
     materials: Vec<Option<usize>>,
 }
 
-/// Renders a scene without shadows, at the exact level by one specular lobe, by two and over half vectors, and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
+/// Renders a scene without shadows, at the exact level by one specular lobe, by two and over half vectors,
+/// and twice by Monte Carlo. `progress` is told how many samples a pixel are done, of two times
 /// [`Options::samples`].
 ///
 /// # Errors
@@ -141,7 +142,8 @@ fn render(
             .then_some(triangle.material as usize)
     };
     let materials: Vec<Option<usize>> = positions.iter().map(material).collect();
-    // Ours, each pixel by a pass of what its material needs: one of everything would have one specular lobe below two layers
+    // Ours, each pixel by a pass of what its material needs: one of everything would have one specular lobe
+    // below two layers
     let mut ours = |specular_lobes| -> Result<_, EngineError> {
         let quality = Quality { specular_lobes, ..Quality::default() };
         let mut found = vec![DVec3::ZERO; materials.len()];
@@ -220,7 +222,8 @@ impl MaterialErrors {
     /// The table.
     pub fn to_text(&self) -> String {
         let mut text = format!("{}: {} samples a pixel, two references\n\n", self.device, self.samples);
-        text += "material              pixels  mean / reference  RMSE / mean  by two lobes  half vectors  reference's noise\n";
+        text += "material              pixels  mean / reference  RMSE / mean  by two lobes  half \
+        vectors  reference's noise\n";
         for MaterialResult { name, pixels, ratio, error, two_lobes, half_vectors, noise, .. } in
             &self.materials
         {
@@ -228,7 +231,8 @@ impl MaterialErrors {
                 [error, two_lobes, half_vectors, noise].map(|part| 100.0 * part);
             let _ = writeln!(
                 text,
-                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {half_vectors:10.2} %  {noise:15.2} %"
+                "{name:20} {pixels:7}  {ratio:16.4}  {error:9.2} %  {two_lobes:10.2} %  {half_vectors:10.2} \
+                %  {noise:15.2} %"
             );
         }
         text
@@ -237,10 +241,13 @@ impl MaterialErrors {
     /// The same as Markdown, with the command that repeats it.
     pub fn to_markdown(&self, command: &str) -> String {
         let mut text = format!(
-            "By `{command}` on {}: the exact level, by one specular lobe, by two and over half vectors, beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the squares.\n\n",
+            "By `{command}` on {}: the exact level, by one specular lobe, by two and over half vectors, \
+            beside Monte Carlo of the true BRDF, without shadows. The references' noise is taken out of the \
+            squares.\n\n",
             self.device
         );
-        text += "| material | effects | mean over reference | RMSE over mean | by two lobes | over half vectors |\n|---|---|---|---|---|---|\n";
+        text += "| material | effects | mean over reference | RMSE over mean | by two lobes | over half \
+        vectors |\n|---|---|---|---|---|---|\n";
         for MaterialResult { name, effects, ratio, error, two_lobes, half_vectors, .. } in &self.materials {
             let [error, two_lobes, half_vectors] = [error, two_lobes, half_vectors].map(|part| 100.0 * part);
             let _ = writeln!(

@@ -69,8 +69,8 @@ impl Method {
         METHODS.iter().find(|method| method.name == name)
     }
 
-    /// Whether the method is for such polygons. (The flat families' polygons of four vertices are convex. Of what is no
-    /// polygon at all, any four vertices will do.)
+    /// Whether the method is for such polygons. (The flat families' polygons of four vertices are convex. Of
+    /// what is no polygon at all, any four vertices will do.)
     pub fn takes(&self, case: &HardCase) -> bool {
         let largest = case.offsets.iter().flatten().chain(&case.anchor).fold(0.0_f32, |m, c| m.max(c.abs()));
         let is_wild = !case.is_finite() || largest > 1e30;
@@ -94,7 +94,8 @@ pub static METHODS: &[Method] = &[
     Method::school("clip-by-cases", School::ClipByCases),
     Method::yardstick(
         "clip-and-acos",
-        "any outline clipped; acos(clamp(x, -.9999, .9999)), normalised cross products (the first listing of Heitz et al. 2016)",
+        "any outline clipped; acos(clamp(x, -.9999, .9999)), normalised cross products (the first listing of \
+        Heitz et al. 2016)",
         35,
     ),
 ];

@@ -1,7 +1,8 @@
-//! Modelled frames: which paths through the library's quads the waves of a picture take, counted on any device, times what a GPU's
-//! compiler says of each path.
+//! Modelled frames: which paths through the library's quads the waves of a picture take, counted on any
+//! device, times what a GPU's compiler says of each path.
 //!
-//! A wave pays for every path that one of its invocations takes. Lights other than convex quads without an image are left out.
+//! A wave pays for every path that one of its invocations takes. Lights other than convex quads without an
+//! image are left out.
 
 mod costs;
 mod text;
@@ -240,7 +241,8 @@ fn facing(paths: Paths, costs: &MethodCosts) -> f64 {
     if paths.has(Paths::IN_FRONT) { costs.in_front } else { costs.behind }
 }
 
-/// Counts the paths of a picture whose visibility the renderer has found, for waves of 8 x 4 and 8 x 8 pixels.
+/// Counts the paths of a picture whose visibility the renderer has found, for waves of 8 x 4 and 8 x 8
+/// pixels.
 ///
 /// # Errors
 /// [`ModelError`] where there are too many quads, the size is no multiple of 8, or the device fails.
@@ -289,7 +291,8 @@ mod tests {
         }
     };
 
-    /// Two workgroups side by side: of their halves the first three have a surface. `paths` are those of a light.
+    /// Two workgroups side by side: of their halves the first three have a surface. `paths` are those of a
+    /// light.
     fn picture(paths: [Paths; 4]) -> Vec<Vec4> {
         let mut pixels = vec![Vec4::ZERO; 16 * 8];
         for (half, first) in [0, 4 * 16, 8, 4 * 16 + 8].into_iter().enumerate() {

@@ -1,11 +1,12 @@
-//! A light table of the quality of the one that engines ship: the 64 x 64 table published with Heitz et al. 2016,
-//! *Real-Time Polygonal-Light Shading with Linearly Transformed Cosines*, one matrix for every reflectance.
+//! A light table of the quality of the one that engines ship: the 64 x 64 table published with Heitz et al.
+//! 2016, *Real-Time Polygonal-Light Shading with Linearly Transformed Cosines*, one matrix for every
+//! reflectance.
 //!
-//! The published table itself isn't in this repository. This one is made by the method that its authors describe, written
-//! anew: at each node a lobe with three free parameters, its axis fixed at the BRDF's mean direction, which minimises the cube of
-//! the difference of densities by the simplex method of Nelder and Mead 1965. Its errors are those of the published table within
-//! 10 % ([`arealight_fit::report::PUBLISHED`]; a test compares them). Its albedos are those of our own table: the two differ
-//! by their matrices alone.
+//! The published table itself isn't in this repository. This one is made by the method that its authors
+//! describe, written anew: at each node a lobe with three free parameters, its axis fixed at the BRDF's mean
+//! direction, which minimises the cube of the difference of densities by the simplex method of Nelder and
+//! Mead 1965. Its errors are those of the published table within 10 % ([`arealight_fit::report::PUBLISHED`];
+//! a test compares them). Its albedos are those of our own table: the two differ by their matrices alone.
 //!
 //! `cargo run --release -p arealight-benches --example published_table` makes it again.
 
@@ -124,7 +125,8 @@ impl Node {
         self.frame * DMat3::from_cols(along * DVec3::X, across * DVec3::Y, DVec3::new(shear, 0.0, 1.0))
     }
 
-    /// The integral of the cube of the difference of the lobe and the BRDF, by samples of both, weighted by the balance heuristic.
+    /// The integral of the cube of the difference of the lobe and the BRDF, by samples of both, weighted by
+    /// the balance heuristic.
     fn loss(&self, parameters: Parameters) -> f64 {
         let matrix = self.matrix(parameters);
         let (inverse, determinant) = (matrix.inverse(), matrix.determinant());
@@ -197,7 +199,8 @@ fn simplex(start: Parameters, value: impl Fn(Parameters) -> f64) -> Parameters {
             let vertex = along(middle, worst.1, part);
             (value(vertex), vertex)
         };
-        // Reflect the worst vertex; expand where that is the best, contract where it isn't better than the others
+        // Reflect the worst vertex; expand where that is the best, contract where it isn't better than the
+        // others
         let reflected = tried(-1.0);
         if reflected.0 < best.0 {
             let expanded = tried(-2.0);
@@ -264,7 +267,8 @@ mod tests {
         for (y, fitted) in column(size, last, start).into_iter().enumerate() {
             let stored = table.matrix()[y * size as usize + last as usize];
             for (a, b) in stored.into_iter().zip(fitted) {
-                // Float16, and a step more or less of the simplex method where sines differ in their last bits
+                // Float16, and a step more or less of the simplex method where sines differ in their last
+                // bits
                 assert!((a - b).abs() < 2e-3 * b.abs().max(1.0), "{y}: {stored:?} {fitted:?}");
             }
         }

@@ -21,20 +21,28 @@ pub(crate) const OVERVIEW: [&str; 7] = [
 
 /// The document's words on the first table.
 const PROMISES: &str = "\
-Each family's polygons go through every quality level of the form factor, and through what others ship: sphere-horizon \
-(EEVEE, LearnOpenGL: no clip, a clipped sphere of the same form factor), clipless (three.js, HDRP's default: no clip, a rational \
-function in its place), clip-by-cases (Bevy, Godot, ltc_code: quads clipped by 16 cases); and clip-and-acos, which \
-clips any outline and takes arc cosines, as the first listing of Heitz et al. 2016. The bits of each result are judged against a reference of 106 bits:
+Each family's polygons go through every quality level of the form factor, and through what others ship: \
+sphere-horizon \
+(EEVEE, LearnOpenGL: no clip, a clipped sphere of the same form factor), clipless (three.js, HDRP's default: \
+no clip, a rational \
+function in its place), clip-by-cases (Bevy, Godot, ltc_code: quads clipped by 16 cases); and clip-and-acos, \
+which \
+clips any outline and takes arc cosines, as the first listing of Heitz et al. 2016. The bits of each result \
+are judged against a reference of 106 bits:
 
 1. A finite number in [0, 1]; exactly 0 where a vertex is NaN or infinite.
-2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most 4 x 2^-24 of their distance.
-3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its farthest vertex.
+2. *Backward*: within 6e-7 of the interval of values that the polygons have whose vertices differ by at most \
+4 x 2^-24 of their distance.
+3. *Forward*: error at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its \
+farthest vertex.
 4. *Small light*, of the difference form: error at most 1e-6 of area / (pi distance^2), out to any distance.
 
 The yardsticks are held to the promises of the difference form.
 
-The table gives the largest backward error; **bold** is a promise broken, any of the four. A forward error near 1 \
-beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 vertex says on which side it is.
+The table gives the largest backward error; **bold** is a promise broken, any of the four. A forward error \
+near 1 \
+beside a small backward one is contact: on a light's surface the form factor jumps, and no float32 vertex \
+says on which side it is.
 
 ";
 
@@ -120,7 +128,8 @@ impl Stability {
         format!("{told}{whose}; {polygons} polygons, {not_finite} results not finite")
     }
 
-    /// A summary of each method, and a table of the families where one of ours falls short; or of every family. For a terminal.
+    /// A summary of each method, and a table of the families where one of ours falls short; or of every
+    /// family. For a terminal.
     pub fn to_text(&self, has_every_family: bool) -> String {
         let mut text = String::new();
         for (method, mut rows) in self.by_method() {
@@ -165,7 +174,8 @@ impl Stability {
     /// A document: what is promised, every family by the methods of `OVERVIEW`, and one table a method.
     pub fn to_markdown(&self) -> String {
         let mut text = format!(
-            "# Hard cases, every number\n\nMade by `arealight bench stability --samples {} --seed {} --markdown FILE` on {}. [What they say](../stability.md).\n\n{PROMISES}",
+            "# Hard cases, every number\n\nMade by `arealight bench stability --samples {} --seed {} \
+            --markdown FILE` on {}. [What they say](../stability.md).\n\n{PROMISES}",
             self.samples, self.seed, self.device
         );
         self.write_overview(&mut text);

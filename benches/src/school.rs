@@ -2,14 +2,15 @@
 //!
 //! All run in kernels of ours on the same work with the same reads: see `benches/kernels/yardsticks.glsl`.
 
-/// A way to compute a polygon's form factor that others ship. Edges are the same in all three: the angle over its sine as a
-/// rational function of the cosine (Hill and Heitz 2016).
+/// A way to compute a polygon's form factor that others ship. Edges are the same in all three: the angle over
+/// its sine as a rational function of the cosine (Hill and Heitz 2016).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum School {
     /// Nothing is clipped: the vector form factor gives a sphere, and that is clipped at the horizon.
     SphereHorizon = 0,
-    /// Nothing is clipped: a rational function of the vector form factor's length and height, in place of the clipped sphere.
+    /// Nothing is clipped: a rational function of the vector form factor's length and height, in place of the
+    /// clipped sphere.
     Clipless = 1,
     /// The quad is clipped by one of 16 cases into up to five vertices. For quads alone.
     ClipByCases = 2,

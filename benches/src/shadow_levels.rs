@@ -1,4 +1,5 @@
-//! What shadows err at each level, and what they take: beside the Monte Carlo reference, and beside area sampling with as many rays.
+//! What shadows err at each level, and what they take: beside the Monte Carlo reference, and beside area
+//! sampling with as many rays.
 
 mod area_sampling;
 mod pcss;
@@ -27,7 +28,8 @@ use serde::{Deserialize, Serialize};
 pub struct Options {
     /// Pixels to a side of the pictures.
     pub size: u32,
-    /// Samples a pixel of each of the two references, where there is one light. Many lights have fewer, as each sample is of all of them.
+    /// Samples a pixel of each of the two references, where there is one light. Many lights have fewer, as
+    /// each sample is of all of them.
     pub samples: u32,
     /// Rounds in which time is taken.
     pub rounds: u32,
@@ -73,7 +75,8 @@ pub enum Level {
     History(u32),
     /// So many rays a pixel, by [`AREA_SAMPLING`]. For lights that are convex quads without a texture.
     AreaSampling(u32),
-    /// [`PCSS`] by so many texels for the depth of blockers, and for what arrives. For one light, a convex quad that shines to one side.
+    /// [`PCSS`] by so many texels for the depth of blockers, and for what arrives. For one light, a convex
+    /// quad that shines to one side.
     Pcss(u32, u32),
 }
 

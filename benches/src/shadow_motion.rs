@@ -1,7 +1,7 @@
 //! What shadows err while things move: of each frame of a film the error beside that frame's own truth.
 //!
-//! The truth is a mean over many frames of rays as they are: the lobes are the product's own, so that errors are those of rays, filter and history
-//! alone, and not of the fit.
+//! The truth is a mean over many frames of rays as they are: the lobes are the product's own, so that errors
+//! are those of rays, filter and history alone, and not of the fit.
 
 mod film;
 mod text;
@@ -139,8 +139,8 @@ pub struct FilmErrors {
     pub uncovered: Option<f64>,
     /// Of the frame with the largest error, over its lit pixels.
     pub worst: f64,
-    /// How many frames the shadows are behind, where the light alone moves: what is found is the truth and so much of the way back to that of
-    /// the frame before, by least squares over lit pixels.
+    /// How many frames the shadows are behind, where the light alone moves: what is found is the truth and so
+    /// much of the way back to that of the frame before, by least squares over lit pixels.
     pub lag: Option<f64>,
     /// Results that are NaN or infinite.
     pub not_finite: usize,
@@ -276,7 +276,8 @@ struct Sums {
     penumbra: (f64, usize),
     uncovered: (f64, usize),
     worst: f64,
-    /// Products of what was found beyond the truth with the way back to the truth before, and of that way with itself.
+    /// Products of what was found beyond the truth with the way back to the truth before, and of that way
+    /// with itself.
     lag: [f64; 2],
     not_finite: usize,
 }
@@ -312,7 +313,8 @@ impl Sums {
         Ok(())
     }
 
-    /// Adds what a frame is behind. Halves of either truth are multiplied with each other alone, so that their noise is in no product.
+    /// Adds what a frame is behind. Halves of either truth are multiplied with each other alone, so that
+    /// their noise is in no product.
     fn add_lag(&mut self, before: &FrameTruth, truth: &FrameTruth, found: &[f64]) {
         let halves = |truth: &FrameTruth, pixel: usize| {
             let whole = truth.mean.parts.get(pixel).copied().flatten()?;
@@ -346,7 +348,8 @@ impl Sums {
 mod tests {
     use super::*;
 
-    /// A truth with a step of shadow from left to right, begun at a pixel, and noise that its halves do not share.
+    /// A truth with a step of shadow from left to right, begun at a pixel, and noise that its halves do not
+    /// share.
     fn truth(begin: f64, seed: usize) -> FrameTruth {
         let part = |i: usize| ((i as f64 - begin) / 20.0).clamp(0.0, 1.0);
         let mut random = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(seed as u64 + 1);

@@ -1,13 +1,15 @@
-//! How far a picture with shadows is from the Monte Carlo reference: of each pixel the shadow, which is the part of its unshadowed light that
-//! arrives, and the radiance.
+//! How far a picture with shadows is from the Monte Carlo reference: of each pixel the shadow, which is the
+//! part of its unshadowed light that arrives, and the radiance.
 //!
-//! Pictures are rows of the radiance that surfaces reflect, without what the camera sees of lamps directly, in W/(m² sr).
+//! Pictures are rows of the radiance that surfaces reflect, without what the camera sees of lamps directly,
+//! in W/(m² sr).
 
 use crate::ladder::Errors;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Shadows closer than this to 0 or to 1 are no penumbra: there the noise of a reference of a thousand samples is as large.
+/// Shadows closer than this to 0 or to 1 are no penumbra: there the noise of a reference of a thousand
+/// samples is as large.
 const EDGE: f64 = 0.02;
 
 /// Luminance of linear Rec. 709 colour.
@@ -25,18 +27,21 @@ pub struct SizeError {
     pub wanted: usize,
 }
 
-/// The part of a light that arrives, in luminance: 0 to 1, and none where there is no light, or what is given is NaN or infinite.
+/// The part of a light that arrives, in luminance: 0 to 1, and none where there is no light, or what is given
+/// is NaN or infinite.
 ///
-/// `unshadowed` is of the same surface and the same method as `shadowed`. Of a reference it is best the reference without shadows, of the same
-/// seed and as many samples: where nothing is blocked the two are alike to the bit, and their quotient has no noise. With the fitted lobes'
-/// exact radiance in its place the part has the fit's error, a few per cent for glossy surfaces, and all of the samples' noise.
+/// `unshadowed` is of the same surface and the same method as `shadowed`. Of a reference it is best the
+/// reference without shadows, of the same seed and as many samples: where nothing is blocked the two are
+/// alike to the bit, and their quotient has no noise. With the fitted lobes' exact radiance in its place the
+/// part has the fit's error, a few per cent for glossy surfaces, and all of the samples' noise.
 pub fn part_that_arrives(shadowed: DVec3, unshadowed: DVec3) -> Option<f64> {
     let (shadowed, unshadowed) = (shadowed.dot(LUMINANCE), unshadowed.dot(LUMINANCE));
     let part = shadowed / unshadowed;
     (unshadowed > 0.0 && part.is_finite()).then(|| part.clamp(0.0, 1.0))
 }
 
-/// The part of the light that a method says arrives: any number, as methods with noise have, and 1 where it knows of no light.
+/// The part of the light that a method says arrives: any number, as methods with noise have, and 1 where it
+/// knows of no light.
 pub fn part_found(shadowed: DVec3, unshadowed: DVec3) -> f64 {
     let unshadowed = unshadowed.dot(LUMINANCE);
     if unshadowed == 0.0 { 1.0 } else { shadowed.dot(LUMINANCE) / unshadowed }
@@ -68,8 +73,9 @@ impl ShadowTruth {
         lit().filter(|part| in_penumbra(**part)).count() as f64 / lit().count().max(1) as f64
     }
 
-    /// The errors of a pass: of its shadows, one a pixel, read only where the truth has one, and of its radiance. Beside a second reference of
-    /// another seed they are the noise of both: the root of 2 times that of one.
+    /// The errors of a pass: of its shadows, one a pixel, read only where the truth has one, and of its
+    /// radiance. Beside a second reference of another seed they are the noise of both: the root of 2 times
+    /// that of one.
     ///
     /// # Errors
     /// [`SizeError`] where they are not as many as the truth's pixels.
@@ -118,8 +124,8 @@ pub struct ShadowErrors {
 }
 
 impl ShadowErrors {
-    /// The errors without what of them is independent noise, such as the truth's: its squares are taken out of the means of squares. Other
-    /// numbers stay.
+    /// The errors without what of them is independent noise, such as the truth's: its squares are taken out
+    /// of the means of squares. Other numbers stay.
     #[must_use]
     pub fn without(self, noise: &Self) -> Self {
         let rest = |error: f64, noise: f64| (error * error - noise * noise).max(0.0).sqrt();
@@ -131,7 +137,8 @@ impl ShadowErrors {
         }
     }
 
-    /// A row of a Markdown table, by [`ShadowErrors::HEAD`]: shadows' errors times 100, and the radiance's in per cent of its mean.
+    /// A row of a Markdown table, by [`ShadowErrors::HEAD`]: shadows' errors times 100, and the radiance's in
+    /// per cent of its mean.
     pub fn row(&self, name: &str) -> String {
         let [rmse, penumbra, bias, radiance] =
             [self.rmse, self.penumbra_rmse, self.bias, self.radiance.rmse].map(|error| 100.0 * error);
@@ -139,7 +146,8 @@ impl ShadowErrors {
     }
 
     /// The head of a table of rows.
-    pub const HEAD: &'static str = "| method | shadow, RMSE x 100 | in penumbra | mean error x 100 | radiance, RMSE / mean % |\n\
+    pub const HEAD: &'static str = "| method | shadow, RMSE x 100 | in penumbra | mean error x 100 | \
+    radiance, RMSE / mean % |\n\
          |---|---|---|---|---|";
 }
 

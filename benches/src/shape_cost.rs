@@ -1,8 +1,8 @@
-//! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the ways to a disk how
-//! far off they are: by the library's levels and by yardsticks.
+//! What the form factor of a disk, a sphere or a tube costs on a device that crosses the horizon, and of the
+//! ways to a disk how far off they are: by the library's levels and by yardsticks.
 //!
-//! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them in the same round:
-//! here to a disk, exactly.
+//! As in [`crate::cost`] every method runs in turn, round after round, and is read as a ratio to one of them
+//! in the same round: here to a disk, exactly.
 
 use crate::cost::quantile;
 use crate::shapes::{SHAPES, ShapeArguments, ShapeFunction, ellipse_arguments, tube_arguments};
@@ -79,7 +79,8 @@ pub struct ShapeCost {
     pub ratio: f64,
     /// The quartiles of that ratio.
     pub quartiles: [f64; 2],
-    /// The root of the mean square and the largest of the errors that are finite, and how many are not: of ways to a disk.
+    /// The root of the mean square and the largest of the errors that are finite, and how many are not: of
+    /// ways to a disk.
     pub error: Option<ShapeError>,
 }
 
@@ -216,7 +217,8 @@ fn error(
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[ShapeCost]) -> String {
     let mut text = String::from(
-        "| form factor | time, exact disk = 1 | quartiles | RMS error | largest error |\n|---|---|---|---|---|\n",
+        "| form factor | time, exact disk = 1 | quartiles | RMS error | largest error \
+        |\n|---|---|---|---|---|\n",
     );
     for cost in costs {
         let [low, high] = cost.quartiles;
@@ -232,7 +234,8 @@ pub fn markdown(costs: &[ShapeCost]) -> String {
     text
 }
 
-/// Error against time of the ways to a disk, both logarithmic, as a file in SVG: the library's in blue, yardsticks in orange.
+/// Error against time of the ways to a disk, both logarithmic, as a file in SVG: the library's in blue,
+/// yardsticks in orange.
 pub fn chart(costs: &[ShapeCost], device: &str) -> String {
     let (width, height) = (860.0, 440.0);
     let bounds = [64.0, 34.0, width - 8.0, height - 46.0];

@@ -1,5 +1,5 @@
-//! The battery of disks, spheres and tubes: families of hard cases on a device, each result judged by its bits, and the published
-//! disk beside the disks.
+//! The battery of disks, spheres and tubes: families of hard cases on a device, each result judged by its
+//! bits, and the published disk beside the disks.
 
 mod family;
 
@@ -28,7 +28,8 @@ pub struct ShapeRow {
     pub promise: f64,
     /// Where that was broken.
     pub shortfall: Option<ShapeShortfall>,
-    /// Of disks: how many results of the published disk are not finite, and the largest error of those that are.
+    /// Of disks: how many results of the published disk are not finite, and the largest error of those that
+    /// are.
     pub published: Option<(usize, f64)>,
 }
 
@@ -54,7 +55,8 @@ impl ShapeRow {
     }
 }
 
-/// Runs `samples` shapes of each family, and as many of random bits for each kind. Another `seed` makes other shapes.
+/// Runs `samples` shapes of each family, and as many of random bits for each kind. Another `seed` makes other
+/// shapes.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -179,10 +181,12 @@ fn evaluate(
     Ok(results.into_iter().map(|result| result[0]).collect())
 }
 
-/// The rows as a Markdown table, whose heads say what is in it; after it the worst case of each family that broke its promise.
+/// The rows as a Markdown table, whose heads say what is in it; after it the worst case of each family that
+/// broke its promise.
 pub fn markdown(rows: &[ShapeRow]) -> String {
     let mut text = String::from(
-        "| family | largest error | promised | out of [0, 1] | verdict | published: not finite | its largest error |\n\
+        "| family | largest error | promised | out of [0, 1] | verdict | published: not finite | its largest \
+        error |\n\
          |---|---|---|---|---|---|---|\n",
     );
     for row in rows {

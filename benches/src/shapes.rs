@@ -27,18 +27,19 @@ pub enum ShapeFunction {
     Ellipse = 0,
     /// `arealight_sphere_form_factor` of a center a and a radius a.w, two-sided where d.w is not 0.
     Sphere = 1,
-    /// The form factor of the silhouette of a sphere of a center a and a radius a.w, under the matrix of columns b, c and d.
+    /// The form factor of the silhouette of a sphere of a center a and a radius a.w, under the matrix of
+    /// columns b, c and d.
     Silhouette = 2,
     /// `arealight_arctangent` of a.y and a.x.
     Arctangent = 3,
-    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap one. The level is
-    /// whether its discriminant is clamped.
+    /// The published disk, of a center a and axes b and c: with its sphere for the horizon, and the cheap
+    /// one. The level is whether its discriminant is clamped.
     Published = 4,
-    /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows c, d, and the fourth
-    /// components of c, d and b.
+    /// `arealight_tube_form_factor` of a center a, half an axis b and a radius a.w, under the matrix of rows
+    /// c, d, and the fourth components of c, d and b.
     Tube = 5,
-    /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center and the radius b.x:
-    /// see the kernel for the lobe's matrix.
+    /// `arealight_lobe_shape` of an ellipse of a center a and axes b and c, and of a sphere of that center
+    /// and the radius b.x: see the kernel for the lobe's matrix.
     Lobe = 6,
     /// As `Published`, with the cheap horizon alone.
     PublishedCheap = 7,
@@ -88,7 +89,8 @@ pub fn tube_arguments(tube: &Tube, matrix: &DMat3) -> ShapeArguments {
     ]
 }
 
-/// The arguments of a disk before a lobe: its matrix has these two first rows, and a third one across them of length `alpha`.
+/// The arguments of a disk before a lobe: its matrix has these two first rows, and a third one across them of
+/// length `alpha`.
 pub fn lobe_arguments(ellipse: &Ellipse, rows: [DVec3; 2], alpha: f64) -> ShapeArguments {
     [
         narrow(ellipse.center, rows[0].x),

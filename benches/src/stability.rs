@@ -87,8 +87,8 @@ impl Stability {
     }
 }
 
-/// Runs the battery on a device. `table` gives the lobes of the families that have one; `progress` is told how
-/// many more cases are done.
+/// Runs the battery on a device. `table` gives the lobes of the families that have one; `progress` is told
+/// how many more cases are done.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -124,7 +124,8 @@ pub fn run(
     Ok(Stability { device: host.device_name(), samples: options.samples, seed: options.seed, rows })
 }
 
-/// Judges a batch of cases, the first of which has the index `first`: `results` has the bits of each method's.
+/// Judges a batch of cases, the first of which has the index `first`: `results` has the bits of each
+/// method's.
 fn judge(
     family: &Family,
     first: u64,

@@ -48,16 +48,23 @@ impl Axis {
 
 /// The colours of a drawing that is a file of its own, for light and dark pages: ours blue, others' orange.
 pub const FILE_STYLE: &str = "\
-text { font: 12px system-ui, sans-serif; fill: #1c2430; } .axis { fill: #5b6675; } .title { font-weight: 600; font-size: 14px; }
+text { font: 12px system-ui, sans-serif; fill: #1c2430; } .axis { fill: #5b6675; } .title { font-weight: \
+600; font-size: 14px; }
 line, polyline { fill: none; } .grid { stroke: #d8dde4; } .leader { stroke: #5b6675; } .paper { fill: #fff; }
 .ours { fill: #0b6bcb; } .theirs { fill: #c2410c; } .noise { fill: #6b7280; } .bad { fill: #b91c1c; }
-.line-ours { stroke: #0b6bcb; stroke-width: 2; } .line-theirs { stroke: #c2410c; stroke-width: 2; stroke-dasharray: 6 4; }
-.line-noise, .front { stroke: #6b7280; stroke-dasharray: 2 4; } .ink { stroke: #1c2430; stroke-width: 1.5; } .ink-head { fill: #1c2430; }
-.faint { stroke: #9aa5b4; } .hidden { stroke: #9aa5b4; stroke-dasharray: 3 4; } .area-ours { fill: #0b6bcb; fill-opacity: .22; }
+.line-ours { stroke: #0b6bcb; stroke-width: 2; } .line-theirs { stroke: #c2410c; stroke-width: 2; \
+stroke-dasharray: 6 4; }
+.line-noise, .front { stroke: #6b7280; stroke-dasharray: 2 4; } .ink { stroke: #1c2430; stroke-width: 1.5; } \
+.ink-head { fill: #1c2430; }
+.faint { stroke: #9aa5b4; } .hidden { stroke: #9aa5b4; stroke-dasharray: 3 4; } .area-ours { fill: #0b6bcb; \
+fill-opacity: .22; }
 .area-theirs { fill: #c2410c; fill-opacity: .16; } .area-ball { fill: #9aa5b4; fill-opacity: .12; }
-@media (prefers-color-scheme: dark) { text { fill: #e6e9ee; } .axis { fill: #9aa5b4; } .grid { stroke: #333c48; } .leader { stroke: #9aa5b4; }
-.paper { fill: #14181e; } .ours { fill: #5aa9f5; } .theirs { fill: #fb923c; } .noise { fill: #9aa5b4; } .bad { fill: #f87171; }
-.line-ours { stroke: #5aa9f5; } .line-theirs { stroke: #fb923c; } .ink { stroke: #e6e9ee; } .ink-head { fill: #e6e9ee; } .faint { stroke: #5b6675; }
+@media (prefers-color-scheme: dark) { text { fill: #e6e9ee; } .axis { fill: #9aa5b4; } .grid { stroke: \
+#333c48; } .leader { stroke: #9aa5b4; }
+.paper { fill: #14181e; } .ours { fill: #5aa9f5; } .theirs { fill: #fb923c; } .noise { fill: #9aa5b4; } .bad \
+{ fill: #f87171; }
+.line-ours { stroke: #5aa9f5; } .line-theirs { stroke: #fb923c; } .ink { stroke: #e6e9ee; } .ink-head { \
+fill: #e6e9ee; } .faint { stroke: #5b6675; }
 .area-ours { fill: #5aa9f5; } .area-theirs { fill: #fb923c; } }
 ";
 
@@ -145,7 +152,8 @@ impl Drawing {
     pub fn into_file(self, style: &str) -> String {
         let Self { body, width, height, label } = self;
         format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+            height=\"{height}\" role=\"img\" \
              aria-label=\"{label}\">\n<style>\n{style}</style>\n{body}\n</svg>\n"
         )
     }
@@ -177,7 +185,8 @@ impl Labels {
         self.taken.push([x - 6.0, y - 6.0, x + 6.0, y + 6.0]);
     }
 
-    /// The nearest free place for a label of a dot, and its anchor: beside it, else along ever wider rings, within the width.
+    /// The nearest free place for a label of a dot, and its anchor: beside it, else along ever wider rings,
+    /// within the width.
     pub fn place(&mut self, [x, y]: [f64; 2], text: &str, bounds: [f64; 4]) -> ([f64; 2], &'static str) {
         let width = text.chars().count() as f64 * CHARACTER;
         let candidates = (0..14).flat_map(|ring| {

@@ -1,7 +1,7 @@
 //! What filtering a light's texture costs on a device, as a ratio to a plain chain of mips in the same run.
 //!
-//! Of a GPU, time is what its timestamps say. Of a software device it is the processor's time, of all its threads: on a
-//! shared machine the clock tells who else is there, and more so in the longer run.
+//! Of a GPU, time is what its timestamps say. Of a software device it is the processor's time, of all its
+//! threads: on a shared machine the clock tells who else is there, and more so in the longer run.
 
 use crate::cost::quantile;
 use arealight::kernels::{Access, Binding, BindingKind, Kernel};
@@ -111,7 +111,8 @@ impl Mips {
     }
 }
 
-/// Measures both on an image of `side` × `side` texels, a power of two, in `rounds` rounds after one that warms up.
+/// Measures both on an image of `side` × `side` texels, a power of two, in `rounds` rounds after one that
+/// warms up.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -196,7 +197,8 @@ fn processor_seconds() -> Option<f64> {
 /// The costs as a Markdown table.
 pub fn markdown(costs: &[TextureCost]) -> String {
     let mut text = String::from(
-        "| texels | plain mips, ms per megapixel | pyramid | time, mips = 1 | quartiles | memory, source = 1 |\n\
+        "| texels | plain mips, ms per megapixel | pyramid | time, mips = 1 | quartiles | memory, source = 1 \
+        |\n\
          |---|---|---|---|---|---|\n",
     );
     for cost in costs {

@@ -1,5 +1,5 @@
-//! Whole frames by tiles, beside a yardstick that clips nothing and the same shading without tiles: over scenes, and over a floor
-//! under ever more lights.
+//! Whole frames by tiles, beside a yardstick that clips nothing and the same shading without tiles: over
+//! scenes, and over a floor under ever more lights.
 //!
 //! Every method runs in turn, round after round, and is read as a ratio to the yardstick in the same round.
 
@@ -73,8 +73,8 @@ pub struct TiledFrame {
     pub ratios: [Spread; METHODS],
     /// What was found of the tiles.
     pub counts: TileCounts,
-    /// How much the picture by tiles differs from that without: root mean square over mean, and the largest difference of a
-    /// pixel over the pixel.
+    /// How much the picture by tiles differs from that without: root mean square over mean, and the largest
+    /// difference of a pixel over the pixel.
     pub error: [f64; 2],
 }
 
@@ -138,8 +138,8 @@ pub(crate) fn difference(truth: &[Vec4], found: &[Vec4]) -> [f64; 2] {
     [(squares / count).sqrt() / (mean / count).max(1e-30), largest]
 }
 
-/// A square floor of `side` metres and of this roughness about the origin, in y, which reflects half of what it scatters; and a camera from above
-/// that sees all of it in a picture of `aspect`. Without lights.
+/// A square floor of `side` metres and of this roughness about the origin, in y, which reflects half of what
+/// it scatters; and a camera from above that sees all of it in a picture of `aspect`. Without lights.
 ///
 /// # Panics
 /// Never: the scene that its material is of is a part of the program.
@@ -164,7 +164,8 @@ pub fn floor(roughness: f32, side: f64, aspect: f64) -> Scene {
     scene
 }
 
-/// The middles of as many squares, side by side, as cover one of `side` metres about the origin in x and z, row by row; and their side.
+/// The middles of as many squares, side by side, as cover one of `side` metres about the origin in x and z,
+/// row by row; and their side.
 fn grid(count: usize, side: f64) -> (f64, impl Iterator<Item = DVec3>) {
     let columns = (count as f64).sqrt().ceil() as usize;
     let step = side / columns as f64;
@@ -172,8 +173,8 @@ fn grid(count: usize, side: f64) -> (f64, impl Iterator<Item = DVec3>) {
     (step, (0..count).map(move |index| DVec3::new(place(index % columns), 0.0, place(index / columns))))
 }
 
-/// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so high as half of what
-/// is between them.
+/// Square lamps over a floor of `side` metres about `center`, which lies in y, as many as a square holds; so
+/// high as half of what is between them.
 pub fn lamps(count: usize, side: f64, center: DVec3) -> Vec<Light> {
     let (step, places) = grid(count, side);
     let lamp = |(index, place): (usize, DVec3)| {

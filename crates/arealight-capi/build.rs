@@ -1,4 +1,5 @@
-//! Names the shared library by the version of its ABI, so that the loader finds no other for a program that was linked with it.
+//! Names the shared library by the version of its ABI, so that the loader finds no other for a program that
+//! was linked with it.
 
 use std::env;
 

@@ -4,7 +4,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0) uniform sampler2DArray table; // tables/ggx.ktx2; or texture2DArray and a sampler
-layout(set = 0, binding = 1) uniform sampler2D g_buffer[3]; // position; normal, roughness; base colour, metalness
+// Position; normal, roughness; base colour, metalness
+layout(set = 0, binding = 1) uniform sampler2D g_buffer[3];
 layout(set = 0, binding = 2, rgba16f) uniform writeonly image2D radiance_image;
 struct Lamp { vec3 radiance; float reserved0; vec3 center; float reserved1; vec3 normal; float reserved2; vec4 vertices[4]; };
 layout(set = 0, binding = 3, std430) readonly buffer Lamps { Lamp lamps[]; };
@@ -28,7 +29,8 @@ void main() {
     surface.normal = normal_roughness.xyz;
     surface.view = frame.camera - surface.position;
     surface.roughness = normal_roughness.w;
-    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
+    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04),
+                                     1.0);
 
     // doc: lights
     ArealightPoint point = arealight_point(surface);
@@ -38,7 +40,8 @@ void main() {
         light.radiance = lamps[i].radiance;
         light.center = lamps[i].center; // relative to the origin of positions, as frame.camera is
         light.normal = lamps[i].normal; // of the front, unit
-        light.quad = ArealightQuad(lamps[i].vertices[0].xyz, lamps[i].vertices[1].xyz, lamps[i].vertices[2].xyz,
+        light.quad = ArealightQuad(lamps[i].vertices[0].xyz, lamps[i].vertices[1].xyz,
+                                   lamps[i].vertices[2].xyz,
                                    lamps[i].vertices[3].xyz); // from the center
         light.two_sided = false;
         radiance += arealight_radiance(point, light);

@@ -1,5 +1,5 @@
-// What blocks shadow rays in an engine: here one rectangle, as a stand-in for its own scene. shaders/kernels/shadow_rays.comp includes it with
-// AREALIGHT_HOST_BLOCKER 1.
+// What blocks shadow rays in an engine: here one rectangle, as a stand-in for its own scene.
+// shaders/kernels/shadow_rays.comp includes it with AREALIGHT_HOST_BLOCKER 1.
 
 layout(set = 1, binding = 0, std430) readonly buffer HostBlocker {
     vec4 rectangle[2]; // its corners of least and of largest x and y, at the height of the first

@@ -1,5 +1,6 @@
-// What part of each light arrives in an engine that has shadows of its own: here a mask of each polygon light in a layer of an array, as engines
-// keep what their shadow maps say. shaders/kernels/shade.comp includes it with AREALIGHT_HOST_VISIBILITY 1.
+// What part of each light arrives in an engine that has shadows of its own: here a mask of each polygon light
+// in a layer of an array, as engines keep what their shadow maps say. shaders/kernels/shade.comp includes it
+// with AREALIGHT_HOST_VISIBILITY 1.
 
 layout(set = 1, binding = 0) uniform texture2DArray shadow_masks;
 

@@ -3,7 +3,8 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "arealight/self_test.glsl"
 
-// Says whether the table is loaded as it should be: dispatch it once when your engine starts, and read the word back.
+// Says whether the table is loaded as it should be: dispatch it once when your engine starts, and read the
+// word back.
 
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0) uniform texture2DArray table; // tables/ggx.ktx2

@@ -1,11 +1,12 @@
 #ifndef BVH_GLSL
 #define BVH_GLSL
 
-// Rays through a binary hierarchy of boxes around triangles, as arealight::Blockers builds it. The including kernel defines BVH_NODES_BINDING
-// and the function bvh_meet_triangle.
+// Rays through a binary hierarchy of boxes around triangles, as arealight::Blockers builds it. The including
+// kernel defines BVH_NODES_BINDING and the function bvh_meet_triangle.
 //
-// Nodes lie in the order in which rays come to them, an inner node's first child after it; `first` of an inner node is the one to go on with for a
-// ray that misses it. So a traversal needs no stack, which would take 32 registers.
+// Nodes lie in the order in which rays come to them, an inner node's first child after it; `first` of an
+// inner node is the one to go on with for a ray that misses it. So a traversal needs no stack, which would
+// take 32 registers.
 
 struct ArealightGpuBvhNode {
     vec3 min_corner;
@@ -28,13 +29,16 @@ struct BvhHit {
     bool back;        // the back face was met
 };
 
-// Of the including kernel: makes `hit` that of triangle `index`, where the ray meets it nearer than hit.distance and is to meet it.
+// Of the including kernel: makes `hit` that of triangle `index`, where the ray meets it nearer than
+// hit.distance and is to meet it.
 void bvh_meet_triangle(uint index, vec3 origin, vec3 direction, inout BvhHit hit);
 
-// Whether a ray meets triangle `index` of these vertices, on either face, at a distance above 0 and below `limit`; and where. What is seen
-// edge-on is not met. Error of the distance: 1e-6 of the largest coordinate over the cosine of incidence; a ray within as much of an edge may
-// pass on either side of it. Source: Moeller and Trumbore 1997.
-bool bvh_intersect(vec3 p0, vec3 p1, vec3 p2, uint index, vec3 origin, vec3 direction, float limit, out BvhHit met) {
+// Whether a ray meets triangle `index` of these vertices, on either face, at a distance above 0 and below
+// `limit`; and where. What is seen edge-on is not met. Error of the distance: 1e-6 of the largest coordinate
+// over the cosine of incidence; a ray within as much of an edge may pass on either side of it. Source:
+// Moeller and Trumbore 1997.
+bool bvh_intersect(vec3 p0, vec3 p1, vec3 p2, uint index, vec3 origin, vec3 direction, float limit,
+                   out BvhHit met) {
     vec3 edge1 = p1 - p0;
     vec3 edge2 = p2 - p0;
     vec3 p = cross(direction, edge2);
@@ -61,8 +65,9 @@ bool bvh_enters(ArealightGpuBvhNode node, vec3 origin, vec3 inverse_direction, f
     return enter <= leave;
 }
 
-// What a ray meets before `limit`, both in lengths of its direction: the closest triangle, or with `any_hit` the first one that is found,
-// which costs less. Its triangle is BVH_NO_TRIANGLE, and its distance `limit`, where there is none.
+// What a ray meets before `limit`, both in lengths of its direction: the closest triangle, or with `any_hit`
+// the first one that is found, which costs less. Its triangle is BVH_NO_TRIANGLE, and its distance `limit`,
+// where there is none.
 BvhHit bvh_trace(vec3 origin, vec3 direction, float limit, bool any_hit) {
     BvhHit hit = BvhHit(limit, BVH_NO_TRIANGLE, vec2(0.0), false);
     // A direction along an axis would divide by zero: 1e-30 reaches no box that it should not

@@ -2,10 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Sorts tiles of 8 x 8 pixels into classes by the lights that contribute to them, and lists those lights: a workgroup per tile. Its
-// invocations read a pixel each, and reduce what they found to bounds over the tile; then they test every 64th light each against
-// the bounds. With CULL lights are left out too whose contributions add up to less than the fraction `cull_threshold` of those of the
-// others, from each pixel, in the sum of the channels.
+// Sorts tiles of 8 x 8 pixels into classes by the lights that contribute to them, and lists those lights: a
+// workgroup per tile. Its invocations read a pixel each, and reduce what they found to bounds over the tile;
+// then they test every 64th light each against the bounds. With CULL lights are left out too whose
+// contributions add up to less than the fraction `cull_threshold` of those of the others, from each pixel, in
+// the sum of the channels.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -55,7 +56,8 @@ const bool HAS_COAT_HORIZON = AREALIGHT_HAS_COAT && !AREALIGHT_USES_FORMULA;
 
 #include "classify_lights.glsl"
 
-// The most that each of the first lights contributes is kept where the pixels' values were; that of others is found again
+// The most that each of the first lights contributes is kept where the pixels' values were; that of others is
+// found again
 const uint KEPT_LIGHTS = 8u * TILE_PIXELS;
 
 float kept_light(uint index) {
@@ -89,7 +91,8 @@ float cull_limit() {
     // What is left out is to be a fraction of what stays
     float budget = least * constants.cull_threshold / (1.0 + constants.cull_threshold) / TILE_ROUNDING;
 
-    // Sum what the lights below each of sixteen limits contribute at most: every fourth light by an invocation
+    // Sum what the lights below each of sixteen limits contribute at most: every fourth light by an
+    // invocation
     float limit = budget / float(1u << (invocation & 15u));
     float sum = 0.0;
     for (uint first = 0u; first < light_total(); first += TILE_PIXELS) {
@@ -111,13 +114,15 @@ float cull_limit() {
     // Take the largest limit that the budget has room for
     float largest = 0.0;
     for (uint place = 0u; place < 16u; place++) {
-        float below = tile_parts[place] + tile_parts[place + 16u] + tile_parts[place + 32u] + tile_parts[place + 48u];
+        float below = tile_parts[place] + tile_parts[place + 16u] + tile_parts[place + 32u]
+            + tile_parts[place + 48u];
         largest = below <= budget ? max(largest, budget / float(1u << place)) : largest;
     }
     return largest;
 }
 
-// Which invocations have a light of the tile, a bit each: of three groups of 64 lights in turn, so that a barrier per group is enough.
+// Which invocations have a light of the tile, a bit each: of three groups of 64 lights in turn, so that a
+// barrier per group is enough.
 shared uint listed[3][2];
 
 // How many of the first `count` invocations, up to 64, have a light.
@@ -132,7 +137,8 @@ uint before(uint first, uint end) {
     return min(max(first, end) - first, TILE_PIXELS);
 }
 
-// Lists the lights of the tile in the order of the buffers. How many are convex quads, polygons in all, and lights in all.
+// Lists the lights of the tile in the order of the buffers. How many are convex quads, polygons in all, and
+// lights in all.
 uvec3 list_lights(uint list, float limit) {
     uint invocation = gl_LocalInvocationIndex;
     uvec3 counts = uvec3(0u);

@@ -3,12 +3,12 @@
 
 // Tests lights against the bounds of a tile. What is found holds for every pixel:
 //
-// - A light is left out where it contributes to no lobe: it is wholly below the lobe's horizon, or the pixel is behind
-//   a flat light of one side.
+// - A light is left out where it contributes to no lobe: it is wholly below the lobe's horizon, or the pixel
+//   is behind a flat light of one side.
 // - With CULL its contribution has bounds (tile_contribution.glsl).
 //
-// Margins: 1e-5 of the distances, which is a hundred times what positions and planes are rounded by, and 1e-3 of
-// the radius for lights that are flat to 1e-4 of it. Comparisons are such that NaN leaves nothing out.
+// Margins: 1e-5 of the distances, which is a hundred times what positions and planes are rounded by, and 1e-3
+// of the radius for lights that are flat to 1e-4 of it. Comparisons are such that NaN leaves nothing out.
 
 #include "classify_pixels.glsl"
 
@@ -84,8 +84,8 @@ TileLight tile_light(uint index) {
     return light;
 }
 
-// The least and the most that a light contributes. Without bounds, or without CULL, the most is TILE_FAR; where the light contributes
-// nothing, it is negative.
+// The least and the most that a light contributes. Without bounds, or without CULL, the most is TILE_FAR;
+// where the light contributes nothing, it is negative.
 vec2 contribution(uint index) {
     if (index >= light_total()) {
         return vec2(0.0, -1.0);
@@ -100,7 +100,8 @@ vec2 contribution(uint index) {
     heights.lobe = HAS_HORIZON ? tile_heights(tile_planes(LOBE_PAIR), light).y : 0.0;
     // A rough diffuse lobe leans, and its horizon with it
     bool is_below = !tile_is_diffuse() || (heights.surface.y < 0.0 && (!AREALIGHT_HAS_ROUGH_DIFFUSE || AREALIGHT_CLIPS_AT_SURFACE));
-    // Horizons of fitted lobes lean; GGX over half vectors ends where the surface does, and a coat where its own does
+    // Horizons of fitted lobes lean; GGX over half vectors ends where the surface does, and a coat where its
+    // own does
     bool ends_at_surface = AREALIGHT_CLIPS_AT_SURFACE || light.over_half_vectors;
     if (HAS_GLOSSY) {
         bool is_below_lobe = HAS_HORIZON && heights.lobe < 0.0 && tile_has_lobe() && !light.over_half_vectors;
@@ -123,7 +124,8 @@ vec2 contribution(uint index) {
     vec2 sent = vec2(0.0, TILE_FAR);
     if (CULL != 0u) {
         heights.mirror = HAS_HORIZON ? tile_heights(tile_planes(MIRROR_PAIR), light).y : 0.0;
-        heights.coat.y = tile_coat_spread() >= 0.0 ? tile_heights(tile_planes(COAT_MIRROR_PAIR), light).y : 0.0;
+        heights.coat.y = tile_coat_spread() >= 0.0 ? tile_heights(tile_planes(COAT_MIRROR_PAIR), light).y
+            : 0.0;
         vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
         // NaN is neither little nor much
         bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && !AREALIGHT_RESCATTERS && tile_has_lobe() && tile_has_coat_horizon();

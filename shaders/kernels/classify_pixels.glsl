@@ -3,16 +3,18 @@
 
 // Bounds over the pixels of a tile: an invocation reads a pixel, and the workgroup reduces what they found.
 //
-// Horizons. That of Lambert's lobe is the surface. That of a fitted lobe is a plane through the point as well: its normal is
-// proportional to mirror + q across (table.glsl), with the ratio q = z / w of the texel that the table gives. With p = q / sin,
-// and the unit normal n, the unit vector v to the viewer and the cosine c between them, that normal is
+// Horizons. That of Lambert's lobe is the surface. That of a fitted lobe is a plane through the point as
+// well: its normal is proportional to mirror + q across (table.glsl), with the ratio q = z / w of the texel
+// that the table gives. With p = q / sin, and the unit normal n, the unit vector v to the viewer and the
+// cosine c between them, that normal is
 //
 //     (2 c + p (1 - 2 c^2)) n + (p c - 1) v.
 //
-// LobeHorizons holds the least and the largest p of each cell of the table for both of its lobes; a mixture of the two, by
-// the reflectance, has a weighted mean of theirs. So the table is not read here. The planes of a tile are held by the box of
-// their normals and by the range of their offsets, which makes them sharp on a flat floor however far it extends; the range of p
-// is a spread of the normals. A coat's lobe is that of the table without Fresnel term, about the coat's own normal.
+// LobeHorizons holds the least and the largest p of each cell of the table for both of its lobes; a mixture
+// of the two, by the reflectance, has a weighted mean of theirs. So the table is not read here. The planes of
+// a tile are held by the box of their normals and by the range of their offsets, which makes them sharp on a
+// flat floor however far it extends; the range of p is a spread of the normals. A coat's lobe is that of the
+// table without Fresnel term, about the coat's own normal.
 
 #include "arealight/lobes/diffuse.glsl"
 #include "arealight/thin_film.glsl"
@@ -39,10 +41,12 @@ layout(set = 0, binding = LOBE_HORIZONS_BINDING, std430) readonly buffer LobeHor
 // The pairs of tile_maxima. The least of a value is held as the largest of its negative.
 const int SURFACE_PAIR = 0;    // of the planes of the surfaces: normal and offset, their negatives
 const int LOBE_PAIR = 1;       // of the horizons of the glossy lobes, likewise
-const int POSITION_PAIR = 2;   // position and distance, negative position and the spread of the lobes' horizons
+// Position and distance, negative position and the spread of the lobes' horizons
+const int POSITION_PAIR = 2;
 const int REFLECTION_PAIR = 3; // whether some diffuse albedo is not zero; TileReflection's
 const int MIRROR_PAIR = 4;     // of the planes whose normals are the mirror directions of the view, with CULL
-// With coats: as LOBE_PAIR and MIRROR_PAIR; and the spread of the horizons and TileReflection's. Pixels without a coat have none.
+// With coats: as LOBE_PAIR and MIRROR_PAIR; and the spread of the horizons and TileReflection's. Pixels
+// without a coat have none.
 const int COAT_PAIR = 5;
 const int COAT_MIRROR_PAIR = 6;
 const int COAT_REFLECTION_PAIR = 7;
@@ -86,16 +90,19 @@ PixelLobe pixel_lobe(vec3 normal, vec3 view, float cosine, ArealightGpuLobeHoriz
     float p = 0.5 * (range.x + range.y);
     float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     float scale = inversesqrt(1.0 + p * p * sine * sine);
-    vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0)) * scale;
+    vec3 horizon = (normal * (2.0 * cosine + p * (1.0 - 2.0 * cosine * cosine)) + view * (p * cosine - 1.0))
+        * scale;
     // The cells do not hold for views from below. NaN, of a cell without a horizon, fails every comparison
     float spread = cosine > 0.0 && range.y - range.x < TILE_FAR ? 0.5 * (range.y - range.x) * sine : TILE_FAR;
     // What is left of a lobe above the surface is more than half of it, and has all of its albedo
     float gain = AREALIGHT_CLIPS_AT_SURFACE ? 2.0 : 1.0;
-    return PixelLobe(horizon, spread, 2.0 * cosine * normal - view, vec2(cell.envelope.x * gain, cell.envelope.y));
+    return PixelLobe(horizon, spread, 2.0 * cosine * normal - view,
+                     vec2(cell.envelope.x * gain, cell.envelope.y));
 }
 
-// The density of a coupled diffuse lobe over that of Lambert's with the same albedo, at least and at most: the singular values of
-// arealight_coupled_diffuse_lobe's space for the views where it differs most give 0.874 and 1.151.
+// The density of a coupled diffuse lobe over that of Lambert's with the same albedo, at least and at most:
+// the singular values of arealight_coupled_diffuse_lobe's space for the views where it differs most give
+// 0.874 and 1.151.
 const vec2 COUPLED_DENSITY = vec2(0.87, 1.16);
 
 // The least and the most of its diffuse albedo that a surface reflects, as density over Lambert's.
@@ -104,17 +111,20 @@ vec2 diffuse_part(ArealightSurface surface, float cosine, ArealightGpuLobeHorizo
         return vec2(1.0);
     }
     if (AREALIGHT_COUPLES_BY_ALBEDO) {
-        float most = surface.interface_f0 + max(surface.interface_f90 - surface.interface_f0, 0.0) * cell.schlick_albedo;
+        float most = surface.interface_f0 + max(surface.interface_f90 - surface.interface_f0, 0.0)
+            * cell.schlick_albedo;
         return vec2(HAS_HORIZON ? max(1.0 - most, 0.0) : 0.0, 1.0);
     }
     float part = arealight_coupled_part(clamp(cosine, 0.0, 1.0), surface.interface_f0, surface.interface_f90);
     return part * COUPLED_DENSITY;
 }
 
-// Finds the bounds of a coat's lobe, and takes from the lobes below what the coat reflects: from the diffuse one's bounds, `part`, and
-// from the specular one. `cosine`: of the surface's normal.
-void reduce_coat(inout ArealightSurface surface, inout vec2 part, vec3 normal, vec3 view, float cosine, vec3 position, bool has_surface) {
-    vec3 own_normal = AREALIGHT_HAS_COAT_NORMAL ? arealight_normalize_or(surface.coat.normal, normal) : normal;
+// Finds the bounds of a coat's lobe, and takes from the lobes below what the coat reflects: from the diffuse
+// one's bounds, `part`, and from the specular one. `cosine`: of the surface's normal.
+void reduce_coat(inout ArealightSurface surface, inout vec2 part, vec3 normal, vec3 view, float cosine,
+                 vec3 position, bool has_surface) {
+    vec3 own_normal = AREALIGHT_HAS_COAT_NORMAL ? arealight_normalize_or(surface.coat.normal, normal)
+        : normal;
     float own_cosine = dot(own_normal, view);
     // What it keeps at least from the lobes below, and what it reflects at most
     float kept = AREALIGHT_COATS_BY_ALBEDO ? 0.0 : arealight_coat_share(surface.coat, own_cosine);
@@ -142,7 +152,8 @@ void reduce_sample(ivec2 pixel) {
     bool is_inside = all(lessThan(pixel, ivec2(constants.size)));
     pixel = min(pixel, ivec2(constants.size) - 1);
     ivec2 texel = g_buffer_texel(pixel);
-    bool has_surface = load_position_of(texel, pixel, ivec2(constants.size), position) && is_inside && passes_stencil(texel);
+    bool has_surface = load_position_of(texel, pixel, ivec2(constants.size),
+                                        position) && is_inside && passes_stencil(texel);
     ArealightSurface surface = load_seen_surface(texel, position);
     position = IS_ORTHOGRAPHIC ? position : -surface.view;
     if (IS_TRANSMITTED) {
@@ -173,7 +184,8 @@ void reduce_sample(ivec2 pixel) {
     bool has_sheen = AREALIGHT_HAS_SHEEN && surface.sheen.color != vec3(0.0);
     vec3 reflection = vec3(0.0, -TILE_FAR, 0.0);
     if (HAS_HORIZON) {
-        PixelLobe lobe = pixel_lobe(normal, view, cosine, cell, horizon_range(dot(surface.f0, vec3(1.0 / 3.0)), surface.f90, cell));
+        PixelLobe lobe = pixel_lobe(normal, view, cosine, cell,
+                                    horizon_range(dot(surface.f0, vec3(1.0 / 3.0)), surface.f90, cell));
         spread = lobe.spread;
         reduce_planes(LOBE_PAIR, lobe.horizon, position, has_surface);
 
@@ -184,7 +196,8 @@ void reduce_sample(ivec2 pixel) {
             reflection = vec3(lobe.envelope.x, -lobe.envelope.y, arealight_max_component(albedo));
         }
     }
-    // Of the lobe of sheen nothing is known, nor of one of two roughnesses: the table's cells do not hold for it
+    // Of the lobe of sheen nothing is known, nor of one of two roughnesses: the table's cells do not hold for
+    // it
     bool is_stretched = AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness;
     spread = has_sheen || is_stretched ? TILE_FAR : spread;
     tile_reduce(POSITION_PAIR, has_surface ? vec4(position, known_distance) : vec4(-TILE_FAR),
@@ -224,7 +237,8 @@ bool tile_is_known() {
 
 // Whether the horizons of every pixel's glossy lobe are known: none is stretched, and none has sheen.
 bool tile_has_lobe() {
-    return HAS_HORIZON || (AREALIGHT_HAS_SHEEN && !HAS_GLOSSY) ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
+    return HAS_HORIZON || (AREALIGHT_HAS_SHEEN && !HAS_GLOSSY)
+        ? tile_maxima[2 * POSITION_PAIR + 1].w < TILE_FAR : !HAS_GLOSSY;
 }
 
 // The spread of the horizons of the coats: negative where no pixel has a coat.
@@ -248,7 +262,8 @@ TileBox tile_position() {
 TilePlanes tile_planes(int pair) {
     vec4 high = tile_maxima[2 * pair];
     vec4 low = -tile_maxima[2 * pair + 1];
-    float spread = pair == LOBE_PAIR ? tile_maxima[2 * POSITION_PAIR + 1].w : pair == COAT_PAIR ? tile_coat_spread() : 0.0;
+    float spread = pair == LOBE_PAIR ? tile_maxima[2 * POSITION_PAIR + 1].w : pair == COAT_PAIR
+        ? tile_coat_spread() : 0.0;
     return TilePlanes(TileBox(low.xyz, high.xyz), vec2(low.w, high.w), spread);
 }
 

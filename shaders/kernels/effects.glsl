@@ -1,9 +1,9 @@
 #ifndef EFFECTS_GLSL
 #define EFFECTS_GLSL
 
-// The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including kernel has the
-// specialisation constants EFFECTS, FORM_FACTOR, HORIZON, SPECULAR_LOBES, LOBES and FOOTPRINT, or defines the option of one that it lacks;
-// what EFFECTS lacks is not in the pipeline.
+// The options of the library by the bits of arealight::Effects in Rust (a test compares them). The including
+// kernel has the specialisation constants EFFECTS, FORM_FACTOR, HORIZON, SPECULAR_LOBES, LOBES and FOOTPRINT,
+// or defines the option of one that it lacks; what EFFECTS lacks is not in the pipeline.
 
 const uint EFFECT_DIFFUSE = 1u;
 const uint EFFECT_GLOSSY = 2u;

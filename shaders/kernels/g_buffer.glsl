@@ -1,9 +1,10 @@
 #ifndef G_BUFFER_GLSL
 #define G_BUFFER_GLSL
 
-// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING, SHEEN_BINDING, ANISOTROPY_BINDING and
-// FILM_BINDING where it shades coats, sheen, specular lobes of two roughnesses or rough diffuse ones, and thin films; G_BUFFER_LAYOUT where it knows other layouts
-// than our own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
+// Reading a G-buffer. The including kernel defines G_BUFFER_BINDING, the first of four; COAT_BINDING,
+// SHEEN_BINDING, ANISOTROPY_BINDING and FILM_BINDING where it shades coats, sheen, specular lobes of two
+// roughnesses or rough diffuse ones, and thin films; G_BUFFER_LAYOUT where it knows other layouts than our
+// own; and HAS_SPECULAR_INPUT: whether the dielectric reflectance is an image of its own.
 
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
@@ -24,7 +25,8 @@ const int G_BUFFER_OCTAHEDRAL = 3;
 #define AREALIGHT_HOST_G_BUFFER 0
 #endif
 
-// How many samples its texels have. The module says 1; with more the recorder makes its images multisampled ones, Kernel::words_for.
+// How many samples its texels have. The module says 1; with more the recorder makes its images multisampled
+// ones, Kernel::words_for.
 #ifndef G_BUFFER_SAMPLES
 #define G_BUFFER_SAMPLES 1
 #endif
@@ -35,11 +37,12 @@ layout(set = 0, binding = G_BUFFER_BINDING) uniform texture2D g_position;
 
 #if AREALIGHT_HOST_G_BUFFER
 
-// Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING, ANISOTROPY_BINDING and FILM_BINDING as it likes, and defines
-// arealight_bridge_surface, which sets all but position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its
-// sheen with AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY, its diffuse roughness with
-// AREALIGHT_HAS_ROUGH_DIFFUSE, its film with AREALIGHT_HAS_THIN_FILM alone. It reads g_buffer_sample, so that images may have several samples. It lies in an include folder of the host's
-// compiler.
+// Of the host: declares the images of the next three bindings, of COAT_BINDING, SHEEN_BINDING,
+// ANISOTROPY_BINDING and FILM_BINDING as it likes, and defines arealight_bridge_surface, which sets all but
+// position and view of the surface that a pixel sees, its coat with AREALIGHT_HAS_COAT, its sheen with
+// AREALIGHT_HAS_SHEEN, its anisotropy with AREALIGHT_HAS_ANISOTROPY, its diffuse roughness with
+// AREALIGHT_HAS_ROUGH_DIFFUSE, its film with AREALIGHT_HAS_THIN_FILM alone. It reads g_buffer_sample, so that
+// images may have several samples. It lies in an include folder of the host's compiler.
 ArealightSurface arealight_bridge_surface(ivec2 pixel);
 #include "host_g_buffer.glsl"
 
@@ -68,13 +71,15 @@ layout(set = 0, binding = ANISOTROPY_BINDING) uniform texture2D g_anisotropy;
 layout(set = 0, binding = FILM_BINDING) uniform texture2D g_film;
 #endif
 
-// The coat that a pixel sees, in every layout: its weight, its roughness, and its own normal's place on the octahedron.
+// The coat that a pixel sees, in every layout: its weight, its roughness, and its own normal's place on the
+// octahedron.
 ArealightCoat load_coat(ivec2 pixel) {
     ArealightCoat coat = ArealightCoat(vec3(0.0), 0.0, 0.0);
 #ifdef COAT_BINDING
     if (AREALIGHT_HAS_COAT) {
         vec4 texel = texelFetch(g_coat, pixel, g_buffer_sample);
-        coat = ArealightCoat(AREALIGHT_HAS_COAT_NORMAL ? from_octahedron(texel.ba) : vec3(0.0), texel.r, texel.g);
+        coat = ArealightCoat(AREALIGHT_HAS_COAT_NORMAL ? from_octahedron(texel.ba) : vec3(0.0), texel.r,
+                             texel.g);
     }
 #endif
     return coat;
@@ -92,8 +97,8 @@ ArealightSheen load_sheen(ivec2 pixel) {
     return sheen;
 }
 
-// Sets what a pixel has of two roughnesses, in every layout: the tangent's place on the octahedron, the perceptual roughness along it,
-// 0 where it is the surface's, and the roughness of the diffuse lobe.
+// Sets what a pixel has of two roughnesses, in every layout: the tangent's place on the octahedron, the
+// perceptual roughness along it, 0 where it is the surface's, and the roughness of the diffuse lobe.
 void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
     surface.diffuse_roughness = 0.0;
     surface.anisotropy = ArealightAnisotropy(vec3(0.0), surface.roughness);
@@ -101,12 +106,14 @@ void load_anisotropy(ivec2 pixel, inout ArealightSurface surface) {
     if (AREALIGHT_HAS_ANISOTROPY || AREALIGHT_HAS_ROUGH_DIFFUSE) {
         vec4 texel = texelFetch(g_anisotropy, pixel, g_buffer_sample);
         surface.diffuse_roughness = texel.a;
-        surface.anisotropy = ArealightAnisotropy(from_octahedron(texel.rg), texel.b > 0.0 ? texel.b : surface.roughness);
+        surface.anisotropy = ArealightAnisotropy(from_octahedron(texel.rg), texel.b > 0.0 ? texel.b
+                                                 : surface.roughness);
     }
 #endif
 }
 
-// The thin film that a pixel sees, in every layout: how much of it there is, its index of refraction, and its thickness in nanometres.
+// The thin film that a pixel sees, in every layout: how much of it there is, its index of refraction, and its
+// thickness in nanometres.
 ArealightThinFilm load_film(ivec2 pixel) {
     ArealightThinFilm film = ArealightThinFilm(0.0, 1.0, 0.0);
 #ifdef FILM_BINDING

@@ -1,7 +1,8 @@
 #ifndef LIGHT_REACH_GLSL
 #define LIGHT_REACH_GLSL
 
-// How far the lights of records are of any matter (arealight/reach.glsl), for kernels of a host that fill clusters of their own with them.
+// How far the lights of records are of any matter (arealight/reach.glsl), for kernels of a host that fill
+// clusters of their own with them.
 
 #include "arealight/reach.glsl"
 #include "light_records.glsl"
@@ -12,7 +13,8 @@ struct LightReach {
     vec3 high;
 };
 
-LightReach light_reach(vec3 center, vec3 radiance, ArealightExtent extent, vec3 front, float threshold, float density) {
+LightReach light_reach(vec3 center, vec3 radiance, ArealightExtent extent, vec3 front, float threshold,
+                       float density) {
     LightReach reach;
     reach.radius = arealight_reach(radiance, extent, threshold, density);
     arealight_reach_box(center, reach.radius, extent.size, front, reach.low, reach.high);

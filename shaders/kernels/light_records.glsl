@@ -1,8 +1,8 @@
 #ifndef LIGHT_RECORDS_GLSL
 #define LIGHT_RECORDS_GLSL
 
-// The records of lights, which the CPU writes: crates/arealight/src/gpu.rs has the same, and a test compares the offsets. The including
-// kernel defines LIGHTS_BINDING, SHAPES_BINDING or both.
+// The records of lights, which the CPU writes: crates/arealight/src/gpu.rs has the same, and a test compares
+// the offsets. The including kernel defines LIGHTS_BINDING, SHAPES_BINDING or both.
 
 struct ArealightGpuLight {
     vec3 radiance;

@@ -1,8 +1,8 @@
 #ifndef LIGHT_TEXTURES_GLSL
 #define LIGHT_TEXTURES_GLSL
 
-// The lights' textures for the library. The including kernel defines LIGHT_TEXTURES_BINDING, and AREALIGHT_LIGHT_TEXTURES as 1; also
-// LIGHT_SAMPLER_BINDING where the image and its sampler are bound apart.
+// The lights' textures for the library. The including kernel defines LIGHT_TEXTURES_BINDING, and
+// AREALIGHT_LIGHT_TEXTURES as 1; also LIGHT_SAMPLER_BINDING where the image and its sampler are bound apart.
 
 #ifdef LIGHT_SAMPLER_BINDING
 layout(set = 0, binding = LIGHT_TEXTURES_BINDING) uniform texture2DArray light_images;

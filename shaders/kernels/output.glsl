@@ -1,8 +1,9 @@
 #ifndef OUTPUT_GLSL
 #define OUTPUT_GLSL
 
-// The images that radiance goes to. The including kernel defines RADIANCE_BINDING, GLOSSY_BINDING and the constant OUTPUT; and
-// RADIANCE_ACCESS as writeonly where images of floats cannot be read and written: without OUTPUT_ADD, then.
+// The images that radiance goes to. The including kernel defines RADIANCE_BINDING, GLOSSY_BINDING and the
+// constant OUTPUT; and RADIANCE_ACCESS as writeonly where images of floats cannot be read and written:
+// without OUTPUT_ADD, then.
 
 #include "arealight/light_kind.glsl"
 #include "output_texel.glsl"

@@ -1,7 +1,8 @@
 #ifndef PICK_LIGHTS_GLSL
 #define PICK_LIGHTS_GLSL
 
-// Chooses a light and a lobe for each shadow ray of a pixel, as the lights come. The including kernel has push constants with `seed`.
+// Chooses a light and a lobe for each shadow ray of a pixel, as the lights come. The including kernel has
+// push constants with `seed`.
 
 #include "arealight/shadows/choose.glsl"
 #include "arealight/shadows/sequence.glsl"
@@ -33,7 +34,8 @@ void pick_light(uint light, vec3 diffuse, vec3 specular) {
         float sum = pick_sum;
         if (arealight_choose(pick_random[ray], sum, part)) {
             float of_lobes = diffuse_part;
-            bool is_specular = part > diffuse_part && arealight_choose(pick_random[ray], of_lobes, part - diffuse_part);
+            bool is_specular = part > diffuse_part && arealight_choose(pick_random[ray], of_lobes, part
+                                                                       - diffuse_part);
             picked[ray] = light | (is_specular ? PICK_SPECULAR : 0u);
         }
     }

@@ -1,8 +1,9 @@
 #ifndef PICKED_LIGHT_GLSL
 #define PICKED_LIGHT_GLSL
 
-// A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel defines LIGHTS_BINDING
-// and SHAPES_BINDING, and has effects.glsl: what the frame's lights do not need is not in the pipeline.
+// A light that a shadow ray was picked for, as the outlines that its shading point sees. The including kernel
+// defines LIGHTS_BINDING and SHAPES_BINDING, and has effects.glsl: what the frame's lights do not need is not
+// in the pipeline.
 
 #include "light_records.glsl"
 #include "light_vertices.glsl"
@@ -29,8 +30,8 @@ ArealightShadowOutline sphere_outline(vec3 center, float radius) {
     return arealight_ellipse_outline(part * center, rim * axis_u, rim * axis_v);
 }
 
-// The silhouette of a tube: between its two tangent planes, and as long as it is; round ends as a straight edge of the same area. From within an
-// end's disk extended along the axis: that disk.
+// The silhouette of a tube: between its two tangent planes, and as long as it is; round ends as a straight
+// edge of the same area. From within an end's disk extended along the axis: that disk.
 ArealightShadowOutline tube_outline(vec3 center, vec3 half_axis, float radius, int ends) {
     float half_length = max(length(half_axis), 1e-37);
     vec3 axis = half_axis / half_length;
@@ -91,7 +92,8 @@ bool next_face(inout PickedLight light) {
         uint first = light.row + 1u;
         uint count = clamp(uint(face.w), 1u, light.end - first);
         light.row = first + count;
-        if (count >= 3u && arealight_lit_side(light.center + arealight_bridge_vertex(first), face.xyz, light.two_sided) != 0.0) {
+        if (count >= 3u && arealight_lit_side(light.center + arealight_bridge_vertex(first), face.xyz,
+                                              light.two_sided) != 0.0) {
             light.outline = arealight_vertex_outline(light.center, first, count, count == 3u);
             return true;
         }
@@ -99,7 +101,8 @@ bool next_face(inout PickedLight light) {
     return false;
 }
 
-// The size of the form factor of a light in the space that `to_space` leads to: of a mesh the sum of its faces'.
+// The size of the form factor of a light in the space that `to_space` leads to: of a mesh the sum of its
+// faces'.
 float picked_light_weight(PickedLight light, mat3 to_space) {
     if (!light.is_mesh) {
         return arealight_outline_weight(light.outline, to_space);

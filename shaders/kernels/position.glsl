@@ -1,12 +1,13 @@
 #ifndef POSITION_GLSL
 #define POSITION_GLSL
 
-// Where a pixel's surface is, from a position image or from depth. The including kernel has g_buffer.glsl, the
-// specialisation constant POSITION_SOURCE, and push constants with position_from_clip.
+// Where a pixel's surface is, from a position image or from depth. The including kernel has g_buffer.glsl,
+// the specialisation constant POSITION_SOURCE, and push constants with position_from_clip.
 
 const int POSITION_FROM_DEPTH = 1;
 
-// Where in its pixel the sample lies that is read of the G-buffer, 0 to 1: Vulkan's standard locations of 2, 4 and 8 samples.
+// Where in its pixel the sample lies that is read of the G-buffer, 0 to 1: Vulkan's standard locations of 2,
+// 4 and 8 samples.
 vec2 sample_location() {
     if (G_BUFFER_SAMPLES == 1) {
         return vec2(0.5);
@@ -28,7 +29,8 @@ vec3 position_at_depth(ivec2 pixel, ivec2 size, float depth) {
     return homogeneous.xyz / homogeneous.w;
 }
 
-// The position relative to the origin that a texel of the G-buffer holds for a pixel; false where there is no surface.
+// The position relative to the origin that a texel of the G-buffer holds for a pixel; false where there is no
+// surface.
 bool load_position_of(ivec2 texel, ivec2 pixel, ivec2 size, out vec3 position) {
     vec4 found = texelFetch(g_position, texel, g_buffer_sample);
     if (POSITION_SOURCE != POSITION_FROM_DEPTH) {

@@ -2,9 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Shades a G-buffer with lights of two buffers: polygons and meshes; disks, spheres and tubes. By CLASS either whole frames, with every
-// light, an invocation per pixel; or the tiles of one class that the kernel classify found, with the lights of their lists, a workgroup
-// per tile. A pixel's radiance is the same in both, light by light and arc by arc.
+// Shades a G-buffer with lights of two buffers: polygons and meshes; disks, spheres and tubes. By CLASS
+// either whole frames, with every light, an invocation per pixel; or the tiles of one class that the kernel
+// classify found, with the lights of their lists, a workgroup per tile. A pixel's radiance is the same in
+// both, light by light and arc by arc.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -1,8 +1,9 @@
 #ifndef SHADE_CONSTANTS_GLSL
 #define SHADE_CONSTANTS_GLSL
 
-// The constants of a frame, of the kernels shade and classify: arealight::gpu::ShadeConstants in Rust (a test compares them). They are push
-// constants, or a uniform block at SHADE_CONSTANTS_BINDING where the including kernel defines that. Offsets are the same in both.
+// The constants of a frame, of the kernels shade and classify: arealight::gpu::ShadeConstants in Rust (a test
+// compares them). They are push constants, or a uniform block at SHADE_CONSTANTS_BINDING where the including
+// kernel defines that. Offsets are the same in both.
 #ifdef SHADE_CONSTANTS_BINDING
 layout(set = 0, binding = SHADE_CONSTANTS_BINDING, std140) uniform ShadeConstants {
 #else

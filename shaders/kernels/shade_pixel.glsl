@@ -1,26 +1,29 @@
 #ifndef SHADE_PIXEL_GLSL
 #define SHADE_PIXEL_GLSL
 
-// Shades a pixel with a list of lights. The including kernel, shade.comp or shade_portable.comp, has a struct LightList with quad_count, light_count and
-// shape_count, and
-// - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are convex quads without an image;
+// Shades a pixel with a list of lights. The including kernel, shade.comp or shade_portable.comp, has a struct
+// LightList with quad_count, light_count and shape_count, and
+// - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are
+//   convex quads without an image;
 // - uint shape_at(LightList list, uint index): a disk, sphere or tube of the list;
-// - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other polygons and meshes,
-//   shapes.
+// - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other
+//   polygons and meshes, shapes.
 
 #include "pick_lights.glsl"
 #include "position.glsl"
 #include "view.glsl"
 
-// 1: the host's own shader says what part of each light arrives: from shadow maps, or from anything that it knows.
+// 1: the host's own shader says what part of each light arrives: from shadow maps, or from anything that it
+// knows.
 #ifndef AREALIGHT_HOST_VISIBILITY
 #define AREALIGHT_HOST_VISIBILITY 0
 #endif
 
 #if AREALIGHT_HOST_VISIBILITY
-// Of the host: what part of a light arrives at a pixel's position (relative to what positions are relative to), per channel, from 0 to 1. `light` is
-// the index of its record, of the polygons and meshes or, with `is_shape`, of the disks, spheres and tubes: PackedLights::order and shape_order
-// have its place in the host's list. It lies in an include folder of the host's compiler; what it reads is in descriptor set 1.
+// Of the host: what part of a light arrives at a pixel's position (relative to what positions are relative
+// to), per channel, from 0 to 1. `light` is the index of its record, of the polygons and meshes or, with
+// `is_shape`, of the disks, spheres and tubes: PackedLights::order and shape_order have its place in the
+// host's list. It lies in an include folder of the host's compiler; what it reads is in descriptor set 1.
 vec3 arealight_bridge_visibility(ivec2 pixel, vec3 position, uint light, bool is_shape);
 #include "host_visibility.glsl"
 
@@ -31,7 +34,8 @@ vec3 visibility_position;
 // Adds what is reflected of the light of this radiance at an index, of PICK_SHAPE or 0.
 void add_light_at(inout PixelRadiance sum, uint index, vec3 radiance, ArealightReflected reflected) {
 #if AREALIGHT_HOST_VISIBILITY
-    radiance *= arealight_bridge_visibility(visibility_pixel, visibility_position, index & PICK_INDEX, (index & PICK_SHAPE) != 0u);
+    radiance *= arealight_bridge_visibility(visibility_pixel, visibility_position, index & PICK_INDEX,
+                                            (index & PICK_SHAPE) != 0u);
 #endif
     add_light(sum, radiance, reflected);
     if (HAS_SHADOWS) {
@@ -94,14 +98,16 @@ PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList lis
     return sum;
 }
 
-// Takes those out of the bits `samples` of a texel that hold `surface`, too: the same but for a position that is no farther from its plane than
-// half the samples' distance across the view. How many. So are the samples that a fragment wrote, whose normal leans from its triangle's.
+// Takes those out of the bits `samples` of a texel that hold `surface`, too: the same but for a position that
+// is no farther from its plane than half the samples' distance across the view. How many. So are the samples
+// that a fragment wrote, whose normal leans from its triangle's.
 int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout uint samples) {
     int count = 0;
     for (int index = 1; index < G_BUFFER_SAMPLES; index++) {
         g_buffer_sample = index;
         vec3 position;
-        if ((samples & (1u << index)) == 0u || !load_position_of(texel, pixel, ivec2(constants.size), position)) {
+        if ((samples & (1u << index)) == 0u || !load_position_of(texel, pixel, ivec2(constants.size),
+                                                                 position)) {
             continue;
         }
         vec3 offset = position - surface.position;
@@ -117,7 +123,8 @@ int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout ui
     return count;
 }
 
-// Adds the sample that is read to those of a texel that have a surface, a bit each, if it does; whether it passes the stencil test.
+// Adds the sample that is read to those of a texel that have a surface, a bit each, if it does; whether it
+// passes the stencil test.
 bool find_sample(ivec2 texel, ivec2 pixel, inout uint samples) {
     if (!passes_stencil(texel)) {
         return false;
@@ -129,8 +136,9 @@ bool find_sample(ivec2 texel, ivec2 pixel, inout uint samples) {
     return true;
 }
 
-// The samples of a texel that have a surface; whether any passes the stencil test. What follows the first is apart, here and below: without
-// several samples no loop is around a pixel's work, which some drivers' compilers take long for.
+// The samples of a texel that have a surface; whether any passes the stencil test. What follows the first is
+// apart, here and below: without several samples no loop is around a pixel's work, which some drivers'
+// compilers take long for.
 uint find_samples(ivec2 texel, ivec2 pixel, out bool any_passes) {
     uint samples = 0u;
     any_passes = find_sample(texel, pixel, samples);
@@ -159,8 +167,8 @@ PixelRadiance shade_samples(ivec2 texel, ivec2 pixel, LightList list, inout uint
     return one;
 }
 
-// Shades a pixel of the frame, if it is one that passes the stencil test, and stores it. Of several samples that is their mean; each surface of
-// them is shaded once.
+// Shades a pixel of the frame, if it is one that passes the stencil test, and stores it. Of several samples
+// that is their mean; each surface of them is shaded once.
 void shade_pixel(ivec2 pixel, LightList list) {
     ivec2 size = ivec2(constants.size);
     if (any(greaterThanEqual(pixel, size))) {

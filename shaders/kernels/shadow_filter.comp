@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Multiplies the unshadowed radiance with what of it arrives: the mean of the pixel's rays, or of those of its neighbours in the same plane too,
-// over a part of the penumbra that it is in. Where no neighbour has a ray that is hidden nothing is filtered, nor at contact, whose penumbra has
-// no width.
+// Multiplies the unshadowed radiance with what of it arrives: the mean of the pixel's rays, or of those of
+// its neighbours in the same plane too, over a part of the penumbra that it is in. Where no neighbour has a
+// ray that is hidden nothing is filtered, nor at contact, whose penumbra has no width.
 //
-// Source of the filter's width: Fernando 2005 (percentage-closer soft shadows), with blockers found by the rays themselves.
+// Source of the filter's width: Fernando 2005 (percentage-closer soft shadows), with blockers found by the
+// rays themselves.
 
 #include "shadow_resources.glsl"
 #include "shadow_history.glsl"
@@ -22,17 +23,20 @@ layout(constant_id = 18) const int SHADOW_HISTORY = 0;
 layout(set = 0, binding = UNSHADOWED_BINDING, rgba32f) uniform readonly image2D unshadowed_image;
 layout(set = 0, binding = RADIANCE_BINDING, rgba32f) uniform image2D radiance_image;
 
-// Pixels to each side that are searched for blockers, and that the mean is over. Wider means change the error by less than a tenth.
+// Pixels to each side that are searched for blockers, and that the mean is over. Wider means change the error
+// by less than a tenth.
 const int REACH = 6;
 // The standard deviation of the search's weights, in pixels.
 const float SEARCH_WIDTH = 3.0;
 // Pixels to a side of what a workgroup loads.
 const int PATCH = 8 + 2 * REACH;
-// The mean's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of one ray.
+// The mean's standard deviation as a part of the penumbra's width, and at least, in pixels, for a pixel of
+// one ray.
 const float PENUMBRA_PART = 0.1;
 const float LEAST_WIDTH = 2.0;
 
-// What a workgroup knows of its pixels and those around them: the position, and in w (what arrives, the penumbra's width) as halves.
+// What a workgroup knows of its pixels and those around them: the position, and in w (what arrives, the
+// penumbra's width) as halves.
 shared vec4 patch_texels[PATCH * PATCH];
 // The normal; 0 where there is no light.
 shared uint patch_normals[PATCH * PATCH];
@@ -52,7 +56,8 @@ void load_patch(ivec2 corner, ivec2 size) {
         vec3 position = vec3(0.0);
         vec4 shadow = vec4(0.0);
         uint normal = 0u;
-        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
+        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size,
+                                                                                                  position)) {
             shadow = load_shadow(pixel, size);
             uint word = pack_normal(load_normal(pixel, position));
             normal = shadow.b > 0.0 ? word : 0u;
@@ -78,10 +83,12 @@ struct Center {
 
 // How much a pixel of the patch counts as of the same surface.
 float likeness_of(Center center, int i) {
-    return likeness(patch_texels[i].xyz - center.position, unpack_normal(patch_normals[i]), center.normal, center.plane_scale);
+    return likeness(patch_texels[i].xyz - center.position, unpack_normal(patch_normals[i]), center.normal,
+                    center.plane_scale);
 }
 
-// The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is hidden. In y how far pixels are apart.
+// The width of the penumbra that a pixel is in, in x; less than 0 where no neighbour has a ray that is
+// hidden. In y how far pixels are apart.
 vec2 search(Center center) {
     float hidden = 0.0;
     float width = 0.0;
@@ -91,7 +98,8 @@ vec2 search(Center center) {
             int i = center.place + y * PATCH + x;
             if (patch_normals[i] != 0u) {
                 vec2 shadow = patch_shadow(i);
-                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH))) * likeness_of(center, i);
+                float weight = exp(float(x * x + y * y) * (-0.5 / (SEARCH_WIDTH * SEARCH_WIDTH)))
+                    * likeness_of(center, i);
                 hidden += weight * (1.0 - shadow.x);
                 width += weight * shadow.y;
                 if (abs(x) + abs(y) == 1) {

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Makes one mean of the shadow rays of frames after one another. How far back it goes is measured: the rays of a pixel and its neighbours are coins
-// whose spread is known from their mean, so that what they differ from the history by beyond it is change, and shortens the history.
+// Makes one mean of the shadow rays of frames after one another. How far back it goes is measured: the rays
+// of a pixel and its neighbours are coins whose spread is known from their mean, so that what they differ
+// from the history by beyond it is change, and shortens the history.
 
 #include "shadow_resources.glsl"
 #include "shadow_history.glsl"
@@ -25,29 +26,34 @@ const int POOL = 2;
 // Pixels to a side of what a workgroup loads, and of what it compares.
 const int PATCH = 8 + 2 * (REACH + POOL);
 const int INNER = 8 + 2 * POOL;
-// A pixel of the frame before is of the same surface within this part of the camera's distance out of its plane, and this cosine of the normals.
+// A pixel of the frame before is of the same surface within this part of the camera's distance out of its
+// plane, and this cosine of the normals.
 const float SAME_PLANE = 0.01;
 const float SAME_NORMAL = 0.9;
-// How much more than coins the rays of frames after one another differ: where one frame has too few the next has too many, by its numbers.
+// How much more than coins the rays of frames after one another differ: where one frame has too few the next
+// has too many, by its numbers.
 const float SPREAD = 2.0;
 // What is left of the spread of rays that are all alike.
 const float LEAST_SPREAD = 1e-5;
 
-// Of each pixel around: the position and what arrives by this frame's rays; (what arrived before, of how many frames) as halves; the normal, 0 where
-// there is no light.
+// Of each pixel around: the position and what arrives by this frame's rays; (what arrived before, of how many
+// frames) as halves; the normal, 0 where there is no light.
 shared vec4 patch_texels[PATCH * PATCH];
 shared uint patch_before[PATCH * PATCH];
 shared uint patch_normals[PATCH * PATCH];
-// Of each pixel compared: the squared difference, and the variance that rays alone give it; that is negative where there is no history.
+// Of each pixel compared: the squared difference, and the variance that rays alone give it; that is negative
+// where there is no history.
 shared vec2 differences[INNER * INNER];
 
-// Where a pixel's point was in the image of the frame before, in pixels; false where it was behind the camera.
+// Where a pixel's point was in the image of the frame before, in pixels; false where it was behind the
+// camera.
 bool place_before(ivec2 pixel, ivec2 size, vec3 position, out vec2 place) {
     if (SHADOW_MOTION != 0) {
         place = vec2(pixel) + 0.5 + texelFetch(g_motion, pixel, 0).xy * vec2(size);
         return true;
     }
-    mat4 clip_from_position = mat4(history_head(0u, 1u), history_head(4u, 1u), history_head(8u, 1u), history_head(12u, 1u));
+    mat4 clip_from_position = mat4(history_head(0u, 1u), history_head(4u, 1u), history_head(8u, 1u),
+                                   history_head(12u, 1u));
     vec4 clip = clip_from_position * vec4(position, 1.0);
     place = (0.5 * clip.xy / clip.w + 0.5) * vec2(size);
     return clip.w > 0.0;
@@ -79,7 +85,8 @@ bool find_before(ivec2 pixel, ivec2 size, vec3 position, vec3 normal, out Before
     return place_before(pixel, size, before.position, before.place);
 }
 
-// What is known of a pixel's point from the frame before: the mean of those of the four pixels around its place that are of its surface.
+// What is known of a pixel's point from the frame before: the mean of those of the four pixels around its
+// place that are of its surface.
 HistoryPixel reprojected(Before before, ivec2 size) {
     HistoryPixel mean = HistoryPixel(vec2(0.0), 0.0, vec3(0.0), vec3(0.0));
     vec2 corner = floor(before.place - 0.5);
@@ -101,15 +108,16 @@ HistoryPixel reprojected(Before before, ivec2 size) {
     return mean;
 }
 
-// The cubic weights of four pixels in a row, at a part of the way from the second to the third. Source: Catmull and Rom 1974.
+// The cubic weights of four pixels in a row, at a part of the way from the second to the third. Source:
+// Catmull and Rom 1974.
 vec4 cubic_weights(float part) {
     vec2 squares = vec2(part, part * part) * part;
     return 0.5 * vec4(-part + 2.0 * squares.x - squares.y, 2.0 - 5.0 * squares.x + 3.0 * squares.y,
                       part + 4.0 * squares.x - 3.0 * squares.y, squares.y - squares.x);
 }
 
-// As what is known by the four pixels around, `mean`, by the sixteen around, which does not widen with every frame; held between what the
-// four have. The four's where some of the sixteen are of another surface.
+// As what is known by the four pixels around, `mean`, by the sixteen around, which does not widen with every
+// frame; held between what the four have. The four's where some of the sixteen are of another surface.
 vec2 sharp_shadow(Before before, ivec2 size, vec2 mean) {
     vec2 corner = floor(before.place - 0.5);
     vec2 part = before.place - 0.5 - corner;
@@ -138,7 +146,8 @@ void load_patch(ivec2 corner, ivec2 size) {
         ivec2 pixel = corner + ivec2(i % PATCH, i / PATCH);
         vec3 position = vec3(0.0);
         patch_normals[i] = 0u;
-        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size, position)) {
+        if (all(greaterThanEqual(pixel, ivec2(0))) && all(lessThan(pixel, size)) && load_position(pixel, size,
+                                                                                                  position)) {
             vec4 shadow = imageLoad(shadow_image, pixel);
             if (shadow.b > 0.0) {
                 vec3 normal = load_normal(pixel, position);
@@ -157,7 +166,8 @@ void load_patch(ivec2 corner, ivec2 size) {
     barrier();
 }
 
-// The squared difference of a pixel's rays and history, both means over its neighbours, and the variance of a ray's mean there.
+// The squared difference of a pixel's rays and history, both means over its neighbours, and the variance of a
+// ray's mean there.
 vec2 compared(int center, float rays) {
     vec2 before = unpackHalf2x16(patch_before[center]);
     if (patch_normals[center] == 0u || !(before.y > 0.0)) {
@@ -171,7 +181,8 @@ vec2 compared(int center, float rays) {
         for (int x = -REACH; x <= REACH; x++) {
             int i = center + y * PATCH + x;
             if (patch_normals[i] != 0u) {
-                float alike = likeness(patch_texels[i].xyz - position, unpack_normal(patch_normals[i]), normal, scale);
+                float alike = likeness(patch_texels[i].xyz - position, unpack_normal(patch_normals[i]),
+                                       normal, scale);
                 float weight = exp(float(x * x + y * y) * (-0.5 / (WIDTH * WIDTH))) * alike;
                 sums += weight * vec4(1.0, weight, patch_texels[i].w, unpackHalf2x16(patch_before[i]).x);
             }

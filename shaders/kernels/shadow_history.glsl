@@ -9,9 +9,9 @@
 const uint HISTORY_HEAD = 40u;
 const uint HISTORY_PIXEL = 6u;
 
-// First for frames of even and of odd seeds each a head of 20 words: the matrix from positions to clip space, by columns, and what is added to
-// positions of that frame so that they are relative to the origin of the one before; then for even and for odd ones each a record of every
-// pixel:
+// First for frames of even and of odd seeds each a head of 20 words: the matrix from positions to clip space,
+// by columns, and what is added to positions of that frame so that they are relative to the origin of the one
+// before; then for even and for odd ones each a record of every pixel:
 //
 //     what arrives and the penumbra's width, as halves; of how many frames, 0 for none; position; normal
 layout(set = 0, binding = HISTORY_BINDING, std430) buffer ShadowHistory {
@@ -34,9 +34,11 @@ uint history_record(ivec2 pixel, ivec2 size, uint before) {
 
 HistoryPixel load_history(ivec2 pixel, ivec2 size, uint before) {
     uint at = history_record(pixel, size, before);
-    vec3 position = uintBitsToFloat(uvec3(shadow_history[at + 2u], shadow_history[at + 3u], shadow_history[at + 4u]));
+    vec3 position = uintBitsToFloat(uvec3(shadow_history[at + 2u], shadow_history[at + 3u],
+                                          shadow_history[at + 4u]));
     vec3 normal = 2.0 * unpackUnorm4x8(shadow_history[at + 5u]).xyz - 1.0;
-    return HistoryPixel(unpackHalf2x16(shadow_history[at]), uintBitsToFloat(shadow_history[at + 1u]), position,
+    return HistoryPixel(unpackHalf2x16(shadow_history[at]), uintBitsToFloat(shadow_history[at + 1u]),
+                        position,
                         arealight_normalize_or(normal, vec3(0.0, 0.0, 1.0)));
 }
 
@@ -54,7 +56,8 @@ void store_history(ivec2 pixel, ivec2 size, HistoryPixel history) {
 // The vector at a word of the head of this frame (0) or of the one before (1).
 vec4 history_head(uint word, uint before) {
     uint at = 20u * ((constants.seed ^ before) & 1u) + word;
-    return uintBitsToFloat(uvec4(shadow_history[at], shadow_history[at + 1u], shadow_history[at + 2u], shadow_history[at + 3u]));
+    return uintBitsToFloat(uvec4(shadow_history[at], shadow_history[at + 1u], shadow_history[at + 2u],
+                                 shadow_history[at + 3u]));
 }
 
 #endif

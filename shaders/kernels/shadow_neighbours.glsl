@@ -3,7 +3,8 @@
 
 // What the kernels that take means of shadows over pixels have in common.
 
-// Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this power of their normals' cosine.
+// Neighbours count as of the same surface by this part of the camera's distance out of its plane, and by this
+// power of their normals' cosine.
 const float PLANE_PART = 0.004;
 const float NORMAL_POWER = 32.0;
 
@@ -12,9 +13,11 @@ float plane_scale(vec3 position) {
     return 1.0 / (PLANE_PART * camera_distance(position));
 }
 
-// How much a neighbour at an offset, with its normal, counts as of the surface of this normal and plane_scale.
+// How much a neighbour at an offset, with its normal, counts as of the surface of this normal and
+// plane_scale.
 float likeness(vec3 offset, vec3 neighbour, vec3 normal, float plane_scale) {
-    return exp(-abs(dot(normal, offset)) * plane_scale) * pow(clamp(dot(normal, neighbour), 0.0, 1.0), NORMAL_POWER);
+    return exp(-abs(dot(normal, offset)) * plane_scale)
+        * pow(clamp(dot(normal, neighbour), 0.0, 1.0), NORMAL_POWER);
 }
 
 // A unit normal in a word, which is not 0; and out of it.
@@ -27,7 +30,8 @@ vec3 unpack_normal(uint word) {
 
 // The shading normal of a pixel at a position, unit.
 vec3 load_normal(ivec2 pixel, vec3 position) {
-    return arealight_normalize_or(load_surface(pixel, position, constants.camera).normal, vec3(0.0, 0.0, 1.0));
+    return arealight_normalize_or(load_surface(pixel, position, constants.camera).normal,
+                                  vec3(0.0, 0.0, 1.0));
 }
 
 #endif

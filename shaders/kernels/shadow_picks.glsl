@@ -1,8 +1,9 @@
 #ifndef SHADOW_PICKS_GLSL
 #define SHADOW_PICKS_GLSL
 
-// For which light and which lobe each shadow ray of a pixel is: chosen while the lights are summed, by the luminance of what each adds. The
-// including kernel defines PICKS_BINDING, PICKS_ACCESS and the constant SHADOW_RAYS.
+// For which light and which lobe each shadow ray of a pixel is: chosen while the lights are summed, by the
+// luminance of what each adds. The including kernel defines PICKS_BINDING, PICKS_ACCESS and the constant
+// SHADOW_RAYS.
 
 const bool HAS_SHADOWS = SHADOW_RAYS > 0;
 // The most rays of a pixel: ShadowOptions::MOST_RAYS in Rust (a test compares them).

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Traces the shadow rays that the shade kernel picked a light and a lobe for: each is drawn from that lobe over that light, so that its
-// visibility is an unbiased estimate of what arrives of the pixel's unshadowed radiance.
+// Traces the shadow rays that the shade kernel picked a light and a lobe for: each is drawn from that lobe
+// over that light, so that its visibility is an unbiased estimate of what arrives of the pixel's unshadowed
+// radiance.
 
 #include "shadow_resources.glsl"
 
@@ -25,9 +26,10 @@
 #endif
 
 #if AREALIGHT_HOST_BLOCKER
-// Of the host: the distance of something that blocks a ray from `origin` (relative to what positions are relative to) along `direction`, unit,
-// before `distance`; else `distance` or more. A host that knows only whether there is something returns 0 then. It lies in an include folder of the
-// host's compiler; what it reads is in descriptor set 1.
+// Of the host: the distance of something that blocks a ray from `origin` (relative to what positions are
+// relative to) along `direction`, unit, before `distance`; else `distance` or more. A host that knows only
+// whether there is something returns 0 then. It lies in an include folder of the host's compiler; what it
+// reads is in descriptor set 1.
 float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
 #include "host_blocker.glsl"
 #elif AREALIGHT_RAY_QUERY
@@ -36,7 +38,8 @@ float arealight_bridge_blocker(vec3 origin, vec3 direction, float distance);
 #include "blockers.glsl"
 #endif
 
-// The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each reflects of the light.
+// The pixel's lobe that a ray of its specular pick is drawn from: where there are several, by what each
+// reflects of the light.
 int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
     if (!AREALIGHT_HAS_COAT && !AREALIGHT_HAS_SHEEN && !AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
         return AREALIGHT_LOBE_SPECULAR;
@@ -46,7 +49,8 @@ int chosen_lobe(ArealightPoint point, PickedLight light, inout float random) {
     for (int lobe = AREALIGHT_LOBE_SPECULAR; lobe < AREALIGHT_LOBE_END; lobe++) {
         if (arealight_has_lobe(lobe)) {
             ArealightLobe fitted = arealight_lobe_at(point, lobe);
-            float weight = arealight_luminance(fitted.albedo) * picked_light_weight(light, fitted.space * point.to_frame);
+            float weight = arealight_luminance(fitted.albedo)
+                * picked_light_weight(light, fitted.space * point.to_frame);
             if (weight > 0.0 && arealight_choose(random, sum, weight)) {
                 chosen = lobe;
             }
@@ -62,7 +66,9 @@ vec3 offset_along(ivec2 pixel, ivec2 size, ivec2 axis, vec3 position) {
     for (int side = -1; side <= 1; side += 2) {
         ivec2 neighbour = pixel + side * axis;
         vec3 there;
-        if (all(greaterThanEqual(neighbour, ivec2(0))) && all(lessThan(neighbour, size)) && load_position(neighbour, size, there)) {
+        if (all(greaterThanEqual(neighbour, ivec2(0))) && all(lessThan(neighbour,
+                                                                       size)) && load_position(neighbour,
+                                                                                               size, there)) {
             vec3 offset = there - position;
             if (dot(offset, offset) < least) {
                 least = dot(offset, offset);
@@ -73,10 +79,12 @@ vec3 offset_along(ivec2 pixel, ivec2 size, ivec2 axis, vec3 position) {
     return nearest;
 }
 
-// The normal of the surface's geometry towards the viewer: across its neighbours' positions; the shading normal where those are of another surface.
+// The normal of the surface's geometry towards the viewer: across its neighbours' positions; the shading
+// normal where those are of another surface.
 vec3 geometric_normal(ivec2 pixel, ivec2 size, ArealightSurface surface) {
     vec3 shading = arealight_normalize_or(surface.normal, vec3(0.0, 0.0, 1.0));
-    vec3 across = cross(offset_along(pixel, size, ivec2(1, 0), surface.position), offset_along(pixel, size, ivec2(0, 1), surface.position));
+    vec3 across = cross(offset_along(pixel, size, ivec2(1, 0), surface.position),
+                        offset_along(pixel, size, ivec2(0, 1), surface.position));
     vec3 normal = arealight_normalize_or(across, shading);
     normal = dot(normal, shading) < 0.0 ? -normal : normal;
     normal = dot(normal, shading) < 0.7 ? shading : normal;
@@ -92,7 +100,8 @@ float position_step(ivec2 pixel, ivec2 size, vec3 position) {
     return distance(position_at_depth(pixel, size, depth * (1.0 - 1.1920929e-7)), position);
 }
 
-// How wide the penumbra of a blocker is, by the part of a ray that is before it. A lobe narrower than the light makes it no wider than the lobe.
+// How wide the penumbra of a blocker is, by the part of a ray that is before it. A lobe narrower than the
+// light makes it no wider than the lobe.
 float penumbra_width(PickedLight light, float part, float distance, float alpha) {
     float size = min(light.size, 2.0 * distance * alpha);
     return min(size * part / max(1.0 - part, 1e-3), size * 16.0);

@@ -1,7 +1,8 @@
 #ifndef SHADOW_RESOURCES_GLSL
 #define SHADOW_RESOURCES_GLSL
 
-// What the kernels of shadows, shadow_rays, shadow_history and shadow_filter, have in common: a descriptor set, push constants, specialisation constants.
+// What the kernels of shadows, shadow_rays, shadow_history and shadow_filter, have in common: a descriptor
+// set, push constants, specialisation constants.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -51,8 +52,8 @@ float camera_distance(vec3 position) {
     return IS_ORTHOGRAPHIC ? length(constants.camera) : distance(constants.camera, position);
 }
 
-// Of a pixel with light: what arrives of it in r, from 0 to 1; the penumbra's width in g, in the unit of positions, times the part that is
-// hidden; 1 in b; and in a of how many rays these are means. Else zero.
+// Of a pixel with light: what arrives of it in r, from 0 to 1; the penumbra's width in g, in the unit of
+// positions, times the part that is hidden; 1 in b; and in a of how many rays these are means. Else zero.
 layout(set = 0, binding = SHADOW_BINDING, rgba16f) uniform image2D shadow_image;
 
 #endif

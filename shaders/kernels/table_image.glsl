@@ -1,8 +1,8 @@
 #ifndef TABLE_IMAGE_GLSL
 #define TABLE_IMAGE_GLSL
 
-// The light table as an array image at binding 0: layer 0 the matrix, layer 1 the magnitudes, layer 2 the matrix of
-// Schlick's weight.
+// The light table as an array image at binding 0: layer 0 the matrix, layer 1 the magnitudes, layer 2 the
+// matrix of Schlick's weight.
 
 #include "arealight/lobes/table.glsl"
 

@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Makes a level of the light textures from the one before: half the texels a side, blurred by a separable kernel
-// with the image mirrored beyond its edge. arealight::PyramidSize::kernel gives its weights; sums are in float32.
+// Makes a level of the light textures from the one before: half the texels a side, blurred by a separable
+// kernel with the image mirrored beyond its edge. arealight::PyramidSize::kernel gives its weights; sums are
+// in float32.
 //
-// Each invocation makes a block of texels out of registers: of what it reads, neighbours share the most. Shared memory
-// would read less, and take twice the time in software. Wide groups read long rows.
+// Each invocation makes a block of texels out of registers: of what it reads, neighbours share the most.
+// Shared memory would read less, and take twice the time in software. Wide groups read long rows.
 
 layout(local_size_x = 32, local_size_y = 2) in;
 
@@ -57,7 +58,8 @@ void main() {
         // Read a row of the finer level
         vec3 texels[READ_WIDTH];
         for (int x = 0; x < READ_WIDTH; x++) {
-            // Mirrored once: no tap is farther out than the finer level is wide, but those of texels that are not there
+            // Mirrored once: no tap is farther out than the finer level is wide, but those of texels that are
+            // not there
             ivec2 texel = corner + ivec2(x, row);
             texel = max(texel, -1 - texel);
             texel = max(min(texel, 2 * last + 1 - texel), ivec2(0));

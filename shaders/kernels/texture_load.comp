@@ -32,8 +32,8 @@ const uint LOAD_CLAMP_V = 4u;
 const uint LOAD_MIRROR_U = 8u;
 const uint LOAD_MIRROR_V = 16u;
 
-// The texel of a row or column of `size` that stands at `texel`. In float32, which is exact to 2^21 texels: software
-// divides integers one by one.
+// The texel of a row or column of `size` that stands at `texel`. In float32, which is exact to 2^21 texels:
+// software divides integers one by one.
 int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
     int period = mirrored ? 2 * size : size;
     int wrapped = texel - period * int(floor((float(texel) + 0.5) / float(period)));
@@ -45,11 +45,14 @@ int wrap_texel(int texel, int size, bool clamped, bool mirrored) {
 ivec2 wrap(ivec2 place) {
     ivec2 size = textureSize(source, 0);
     return ivec2(
-        wrap_texel(place.x, size.x, (constants.flags & LOAD_CLAMP_U) != 0u, (constants.flags & LOAD_MIRROR_U) != 0u),
-        wrap_texel(place.y, size.y, (constants.flags & LOAD_CLAMP_V) != 0u, (constants.flags & LOAD_MIRROR_V) != 0u));
+        wrap_texel(place.x, size.x, (constants.flags & LOAD_CLAMP_U) != 0u,
+                   (constants.flags & LOAD_MIRROR_U) != 0u),
+        wrap_texel(place.y, size.y, (constants.flags & LOAD_CLAMP_V) != 0u,
+                   (constants.flags & LOAD_MIRROR_V) != 0u));
 }
 
-// A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they can.
+// A texel in linear light: NaN and negative numbers are zero, and what sixteen bits cannot hold is what they
+// can.
 vec3 fetch_linear(ivec2 texel) {
     vec3 color = texelFetch(source, texel, 0).rgb;
     if ((LOAD_STEPS & STEP_DECODING) != 0u && (constants.flags & LOAD_SRGB) != 0u) {
@@ -58,8 +61,8 @@ vec3 fetch_linear(ivec2 texel) {
     return mix(vec3(0.0), min(color, LARGEST_HALF), greaterThan(color, vec3(0.0)));
 }
 
-// The color at a texel of ours: the mean under a tent, which is as wide as two texels of the source or, where it
-// is minified, of ours.
+// The color at a texel of ours: the mean under a tent, which is as wide as two texels of the source or, where
+// it is minified, of ours.
 vec3 resampled(ivec2 texel) {
     // Place the tent on the source
     vec2 place = constants.first_offset + vec2(texel) * constants.stride;

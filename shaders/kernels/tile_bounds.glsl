@@ -1,8 +1,8 @@
 #ifndef TILE_BOUNDS_GLSL
 #define TILE_BOUNDS_GLSL
 
-// Bounds over the pixels of a tile, and how lights lie to them, by interval arithmetic: what holds for the bounds holds for every
-// pixel. A range is a vec2, its ends in order. Positions are relative to the camera.
+// Bounds over the pixels of a tile, and how lights lie to them, by interval arithmetic: what holds for the
+// bounds holds for every pixel. A range is a vec2, its ends in order. Positions are relative to the camera.
 
 const float TILE_FAR = 3e38;
 
@@ -46,8 +46,9 @@ struct TileLight {
 // How far lights may stand out of the plane of their normal, over their radius.
 const float TILE_FLATNESS = 1e-3;
 
-// The heights of a light's points above the planes, the least and the largest. A flat light within `radius` of its center
-// extends at most radius sqrt(1 - (h.m)^2) along a unit vector h, for its unit normal m: the disk of that radius does.
+// The heights of a light's points above the planes, the least and the largest. A flat light within `radius`
+// of its center extends at most radius sqrt(1 - (h.m)^2) along a unit vector h, for its unit normal m: the
+// disk of that radius does.
 vec2 tile_heights(TilePlanes planes, TileLight light) {
     vec2 height = box_dot(planes.normal, light.center) - planes.offset.yx;
     vec2 along = box_dot(planes.normal, light.normal);

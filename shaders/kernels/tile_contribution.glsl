@@ -3,20 +3,24 @@
 
 #include "tile_bounds.glsl"
 
-// Bounds of a light's contribution: of the radiance that the pixels of a tile reflect of it to the viewer, summed over the channels.
+// Bounds of a light's contribution: of the radiance that the pixels of a tile reflect of it to the viewer,
+// summed over the channels.
 //
-// Above. A lobe's form factor is the integral of its density over the solid angle of the light: no more than the largest values of
-// the two multiplied. The solid angle is at most area times cosine over the square of the distance, and 2 pi; Lambert's
-// density is cosine / pi; a fitted lobe's is below the table's envelope, a / (b + 1 - cos delta)^2 at the angle delta from the
-// mirror direction, times the sine of the elevation above the lobe's horizon (LobeHorizon in Rust). A sphere's solid angle is at most
-// that of a disk of its radius that faces the pixel at the sphere's nearest point: 2 (1 - cos a) <= tan(a)^2 <= r^2 / (D - r)^2 where
-// sin a = r / D. Of a tube no pixel sees more than half of the surface: of two points opposite to each other about its center, one at most.
+// Above. A lobe's form factor is the integral of its density over the solid angle of the light: no more than
+// the largest values of the two multiplied. The solid angle is at most area times cosine over the square of
+// the distance, and 2 pi; Lambert's density is cosine / pi; a fitted lobe's is below the table's envelope, a
+// / (b + 1 - cos delta)^2 at the angle delta from the mirror direction, times the sine of the elevation above
+// the lobe's horizon (LobeHorizon in Rust). A sphere's solid angle is at most that of a disk of its radius
+// that faces the pixel at the sphere's nearest point: 2 (1 - cos a) <= tan(a)^2 <= r^2 / (D - r)^2 where sin
+// a = r / D. Of a tube no pixel sees more than half of the surface: of two points opposite to each other
+// about its center, one at most.
 //
-// Below. What Lambert's lobe alone reflects of a flat light that is wholly above the surface. All of its points are as far in front
-// of a pixel, f, and at least as high above the surface as the lowest, h: so its form factor is at least area f h / pi times the
-// mean over its area of 1 / d^4, d being the distance. That is at least 1 / (D^2 + radius^2)^2, for the distance D of its center,
-// which is that of its area: 1 / x^2 is convex (Jensen's inequality), and the mean of d^2 is D^2 and that of the squares about the center.
-// A sphere's is r^2 h / D^3, with the height of its center.
+// Below. What Lambert's lobe alone reflects of a flat light that is wholly above the surface. All of its
+// points are as far in front of a pixel, f, and at least as high above the surface as the lowest, h: so its
+// form factor is at least area f h / pi times the mean over its area of 1 / d^4, d being the distance. That
+// is at least 1 / (D^2 + radius^2)^2, for the distance D of its center, which is that of its area: 1 / x^2 is
+// convex (Jensen's inequality), and the mean of d^2 is D^2 and that of the squares about the center. A
+// sphere's is r^2 h / D^3, with the height of its center.
 
 // Bounds of the pixels' fitted lobes.
 struct TileLobe {
@@ -36,8 +40,8 @@ const float TILE_ROUNDING = 1.001;
 
 const float TILE_PI = 3.1415927;
 
-// The heights of a light above the planes of a tile: the least and the largest above the surfaces, the largest above the horizons of the
-// glossy lobes and along their mirror directions, and of the coats'.
+// The heights of a light above the planes of a tile: the least and the largest above the surfaces, the
+// largest above the horizons of the glossy lobes and along their mirror directions, and of the coats'.
 struct TileLightHeights {
     vec2 surface;
     float lobe;
@@ -45,16 +49,17 @@ struct TileLightHeights {
     vec2 coat;
 };
 
-// The most that a fitted lobe reflects of a light of this solid angle whose points have no larger cosines to the normal of the lobe's
-// horizon (x) and to its mirror direction (y).
+// The most that a fitted lobe reflects of a light of this solid angle whose points have no larger cosines to
+// the normal of the lobe's horizon (x) and to its mirror direction (y).
 float lobe_contribution(TileLobe lobe, float solid_angle, vec2 cosines) {
     float fall = lobe.envelope.y + 1.0 - cosines.y;
     return lobe.albedo * min(solid_angle * lobe.envelope.x / (fall * fall) * cosines.x, 1.0);
 }
 
-// The least and the largest contribution of a light with bounds; `behind` is the range of how far the pixels are behind its center,
-// along its normal: negative in front of it.
-vec2 tile_contribution(TileReflection reflection, TileBox position, TileLight light, TileLightHeights heights, vec2 behind) {
+// The least and the largest contribution of a light with bounds; `behind` is the range of how far the pixels
+// are behind its center, along its normal: negative in front of it.
+vec2 tile_contribution(TileReflection reflection, TileBox position, TileLight light, TileLightHeights heights,
+                       vec2 behind) {
     vec3 to_low = position.low - light.center;
     vec3 to_high = position.high - light.center;
     vec3 near = max(max(to_low, -to_high), vec3(0.0));
@@ -86,7 +91,8 @@ vec2 tile_contribution(TileReflection reflection, TileBox position, TileLight li
     float least_height = max(heights.surface.x, 0.0); // none where it is not wholly above the surface
     float per_far = inversesqrt(farthest * farthest + light.radius * light.radius);
     float least_cosine = is_flat ? front * per_far : 1.0;
-    float least = light.radiance * reflection.diffuse.x / TILE_PI * (light.least * per_far * per_far) * least_cosine
+    float least = light.radiance * reflection.diffuse.x / TILE_PI * (light.least * per_far * per_far)
+        * least_cosine
                 * (least_height * per_far);
     return vec2(least / TILE_ROUNDING, most);
 }

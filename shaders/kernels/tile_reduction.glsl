@@ -13,8 +13,8 @@ shared float tile_parts[TILE_PIXELS];
 const int TILE_PAIRS = AREALIGHT_HAS_COAT ? 8 : 5;
 shared vec4 tile_maxima[2 * TILE_PAIRS];
 
-// Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after the next barrier. With several samples a
-// pixel, of those from the first to the one that is read.
+// Finds the maxima of eight values of each invocation's pixel: in two steps of eight. They are there after
+// the next barrier. With several samples a pixel, of those from the first to the one that is read.
 void tile_reduce(int pair, vec4 first, vec4 second) {
     uint invocation = gl_LocalInvocationIndex;
     tile_scratch[invocation] = first;

@@ -1,8 +1,9 @@
 #ifndef TILES_GLSL
 #define TILES_GLSL
 
-// What the kernel classify finds of each tile of 8 x 8 pixels, and shade reads. crates/arealight/src/tiles.rs has
-// the same numbers, and a test compares them. The including kernel defines TILE_LISTS_BINDING and TILE_LISTS_ACCESS.
+// What the kernel classify finds of each tile of 8 x 8 pixels, and shade reads. crates/arealight/src/tiles.rs
+// has the same numbers, and a test compares them. The including kernel defines TILE_LISTS_BINDING and
+// TILE_LISTS_ACCESS.
 
 #include "shade_constants.glsl"
 
@@ -17,10 +18,11 @@ const uint CLASS_FRAME = 3u;
 
 // The words of the lists:
 // - for each class VkDispatchIndirectCommand, and how many tiles it has;
-// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row, 16 bits each;
-// - for each tile a record: how many convex quads without an image it has, how many polygons in all, and how many shapes (or
-//   TILE_ALL_LIGHTS thrice, for the lights of the frame); then the indices of its polygons and of its shapes, in the order of their
-//   buffers, in as many words as the capacity.
+// - from TILE_FIRST_LIST on, for each class its tiles, in as many words as there are tiles: column and row,
+//   16 bits each;
+// - for each tile a record: how many convex quads without an image it has, how many polygons in all, and how
+//   many shapes (or TILE_ALL_LIGHTS thrice, for the lights of the frame); then the indices of its polygons
+//   and of its shapes, in the order of their buffers, in as many words as the capacity.
 const uint TILE_CLASS_WORDS = 4u;
 const uint TILE_FIRST_LIST = 12u;
 const uint TILE_RECORD_HEADER = 3u;
@@ -45,7 +47,8 @@ uint class_list(uint tile_class) {
 
 // Where a tile's record is.
 uint tile_record(uvec2 tile) {
-    return class_list(CLASS_ANY + 1u) + (tile.y * tile_counts().x + tile.x) * (TILE_RECORD_HEADER + constants.capacity);
+    return class_list(CLASS_ANY + 1u) + (tile.y * tile_counts().x + tile.x)
+        * (TILE_RECORD_HEADER + constants.capacity);
 }
 
 // A tile's column and row in a word, and out of it.

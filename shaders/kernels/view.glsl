@@ -1,8 +1,9 @@
 #ifndef VIEW_GLSL
 #define VIEW_GLSL
 
-// Where a pixel of the frame is in the host's images, and from where it is seen. The including kernel has the specialisation constant VIEW,
-// position.glsl, g_buffer.glsl and shade_constants.glsl; it defines STENCIL_BINDING where frames may have a stencil. The bits are those of
+// Where a pixel of the frame is in the host's images, and from where it is seen. The including kernel has the
+// specialisation constant VIEW, position.glsl, g_buffer.glsl and shade_constants.glsl; it defines
+// STENCIL_BINDING where frames may have a stencil. The bits are those of
 // arealight::plan::ShadeOptions::view_bits.
 #include "camera.glsl"
 const uint VIEW_RECTANGLE = 2u;
@@ -23,7 +24,8 @@ ivec2 g_buffer_texel(ivec2 pixel) {
 layout(set = 0, binding = STENCIL_BINDING) uniform utexture2D g_stencil;
 #endif
 
-// Whether a texel of the G-buffer passes the frame's stencil test: its stencil is equal to the reference in the bits of the compare mask.
+// Whether a texel of the G-buffer passes the frame's stencil test: its stencil is equal to the reference in
+// the bits of the compare mask.
 bool passes_stencil(ivec2 texel) {
 #ifdef STENCIL_BINDING
     if ((VIEW & VIEW_STENCIL) != 0u) {

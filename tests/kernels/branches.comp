@@ -1,7 +1,7 @@
 #version 450
 
-// What can happen to a branch by a specialisation constant, for what leaves such branches out before a driver sees them. Each case writes
-// a number of its own; tests/tests/gpu/prune.rs knows them.
+// What can happen to a branch by a specialisation constant, for what leaves such branches out before a driver
+// sees them. Each case writes a number of its own; tests/tests/gpu/prune.rs knows them.
 
 layout(local_size_x = 8) in;
 

@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// Single functions of the library over a list of arguments, so that tests can hold them to what their comments say.
+// Single functions of the library over a list of arguments, so that tests can hold them to what their
+// comments say.
 
 layout(local_size_x = 64) in;
 
@@ -68,7 +69,8 @@ ProbeResults ggx_of(vec3 view, vec3 light, vec2 alpha, vec2 u) {
     return ProbeResults(vec4(arealight_ggx_evaluate(view, light, alpha, vec3(0.04, 0.5, 1.0), 0.9),
                              arealight_ggx_density(view, light, alpha)),
                         vec4(half_vector, arealight_ggx_distribution(half_vector, alpha)),
-                        vec4(arealight_ggx_sample(view, alpha, u), arealight_ggx_visibility(view, light, alpha)),
+                        vec4(arealight_ggx_sample(view, alpha, u),
+                             arealight_ggx_visibility(view, light, alpha)),
                         vec4(0.0));
 }
 

@@ -57,9 +57,12 @@ void main() {
     ShadowPoint given = points[index / RAYS];
     ArealightCoat no_coat = ArealightCoat(vec3(0.0), 0.0, 0.0);
     ArealightSheen no_sheen = ArealightSheen(vec3(0.0), 0.0);
-    ArealightPoint point = arealight_point(ArealightSurface(vec3(0.0), given.normal, given.view, given.diffuse_albedo, given.f0,
-                                                            given.f90, given.roughness, 0.0, 0.0, 0.0, no_coat,
-                                                            ArealightAnisotropy(vec3(0.0), given.roughness), no_sheen,
+    ArealightPoint point = arealight_point(ArealightSurface(vec3(0.0), given.normal, given.view,
+                                                            given.diffuse_albedo, given.f0,
+                                                            given.f90, given.roughness, 0.0, 0.0, 0.0,
+                                                                no_coat,
+                                                            ArealightAnisotropy(vec3(0.0), given.roughness),
+                                                                no_sheen,
                                                             AREALIGHT_NO_FILM));
     // The R3 sequence, for the choice and for the direction
     vec3 random = fract(0.5 + float(index % RAYS) * vec3(0.8191725134, 0.6710436067, 0.5497004779));
@@ -71,7 +74,8 @@ void main() {
     for (uint i = 0u; i < given.triangle_count; i++) {
         uint first = 3u * (given.first_triangle + i);
         vec3 last = point.to_frame * corners[first + 2u].xyz;
-        ArealightQuad triangle = ArealightQuad(point.to_frame * corners[first].xyz, point.to_frame * corners[first + 1u].xyz, last, last);
+        ArealightQuad triangle = ArealightQuad(point.to_frame * corners[first].xyz, point.to_frame
+                                               * corners[first + 1u].xyz, last, last);
         for (int lobe = AREALIGHT_LOBE_DIFFUSE; lobe <= AREALIGHT_LOBE_SPECULAR; lobe++) {
             vec3 vector = arealight_quad_vector(arealight_transformed(point.lobes[lobe].space, triangle));
             float weight = luminance(given.radiance * point.lobes[lobe].albedo) * abs(vector.z);

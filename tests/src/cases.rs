@@ -98,8 +98,8 @@ impl TestEngine {
         results.download().expect("the results come back")
     }
 
-    /// Each case's first channel by a level, for a pass that has these lobes: a form factor where radiance and
-    /// albedo are one.
+    /// Each case's first channel by a level, for a pass that has these lobes: a form factor where radiance
+    /// and albedo are one.
     ///
     /// # Panics
     /// Where the device fails, or an answer's bits are not those of a number from 0 to 1 and a rounding.

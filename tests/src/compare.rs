@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-/// What float32 may lose of a form factor in the lobe of `alpha`; Lambert's is as wide as 1. Vertices, frame and
-/// matrix are rounded about sixteen times, each by 2^-24 of a direction, and the lobe turns a direction's error
-/// into 1/alpha of itself; beside that stands the edge sum's own 1e-6.
+/// What float32 may lose of a form factor in the lobe of `alpha`; Lambert's is as wide as 1. Vertices, frame
+/// and matrix are rounded about sixteen times, each by 2^-24 of a direction, and the lobe turns a direction's
+/// error into 1/alpha of itself; beside that stands the edge sum's own 1e-6.
 pub fn rounding(alpha: f64) -> f64 {
     1e-6 + 16.0 * 2.0_f64.powi(-24) / alpha
 }

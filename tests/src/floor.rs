@@ -1,4 +1,5 @@
-//! A floor under lights as a host has it: images of a G-buffer, buffers of lights, a pass, and what the oracle says of each pixel.
+//! A floor under lights as a host has it: images of a G-buffer, buffers of lights, a pass, and what the
+//! oracle says of each pixel.
 
 use crate::TestEngine;
 use crate::one_pixel::{BEFORE, lamp, material};
@@ -132,7 +133,8 @@ impl<'a> Floor<'a> {
         }
     }
 
-    /// What the images of radiance hold after a frame by a new pass, over [`BEFORE`]. By a context with push descriptors they are pushed.
+    /// What the images of radiance hold after a frame by a new pass, over [`BEFORE`]. By a context with push
+    /// descriptors they are pushed.
     ///
     /// # Panics
     /// Where the device fails.

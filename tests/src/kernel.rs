@@ -144,21 +144,22 @@ pub enum Function {
     Frame = 0,
     /// `arealight_normalize_or` of a and b, and in w `arealight_power_of_two_scale` of a.w.
     Common = 1,
-    /// `arealight_table_space` at a normal a, a view b and a roughness a.w: its columns, with albedo, Schlick part and
-    /// alpha; and the texel of the second matrix.
+    /// `arealight_table_space` at a normal a, a view b and a roughness a.w: its columns, with albedo, Schlick
+    /// part and alpha; and the texel of the second matrix.
     Table = 2,
-    /// `arealight_ggx_*` of a view a, a light b, an alpha a.w and two random numbers c: f cos with density; half vector with
-    /// distribution; sample with visibility.
+    /// `arealight_ggx_*` of a view a, a light b, an alpha a.w and two random numbers c: f cos with density;
+    /// half vector with distribution; sample with visibility.
     Ggx = 3,
-    /// `arealight_arc` of vertices a and b by a form a.w: their directions, with the arc, and where it crosses the horizon.
+    /// `arealight_arc` of vertices a and b by a form a.w: their directions, with the arc, and where it
+    /// crosses the horizon.
     Arc = 4,
     /// `arealight_ray_origin` of a position a, a normal b and a step b.w.
     RayOrigin = 5,
 }
 
 impl TestEngine {
-    /// Runs a kernel of the tests over `count` invocations, with `inputs` bound in turn and the results, `R` per invocation, at the
-    /// last binding.
+    /// Runs a kernel of the tests over `count` invocations, with `inputs` bound in turn and the results, `R`
+    /// per invocation, at the last binding.
     ///
     /// # Panics
     /// Where the device fails.

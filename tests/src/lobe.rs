@@ -1,17 +1,18 @@
-//! What a lobe sees of a light, in float64, from the numbers that the kernel is given to the bit; and how far float32
-//! may be from it.
+//! What a lobe sees of a light, in float64, from the numbers that the kernel is given to the bit; and how far
+//! float32 may be from it.
 //!
 //! # The bound
-//! A backward one: the kernel's result is what some inputs near the given ones have, but for what is promised of the
-//! form factor itself (6e-7, and a short series' share). The inputs move by
-//! - 4 units in the last place of each vertex' distance in cosine space, as `form_factor/quad.glsl` says of it;
+//! A backward one: the kernel's result is what some inputs near the given ones have, but for what is promised
+//! of the form factor itself (6e-7, and a short series' share). The inputs move by
+//! - 4 units in the last place of each vertex' distance in cosine space, as `form_factor/quad.glsl` says of
+//!   it;
 //! - `PRODUCT` units of each row's length times a vertex' distance, for the products that take it there;
 //! - `ROW` units of each row's length, for the row itself: the frame, the texel, the mirror frame;
 //! - `AXIS` units of the table's two axes.
 //!
-//! How far the result moves with them is measured: each coordinate is moved both ways by its share, in float64, and the
-//! larger change counts. So the bound is as sharp for a mirror as for a Lambert lobe, and wide only where the light's
-//! edge really hangs on the last bits.
+//! How far the result moves with them is measured: each coordinate is moved both ways by its share, in
+//! float64, and the larger change counts. So the bound is as sharp for a mirror as for a Lambert lobe, and
+//! wide only where the light's edge really hangs on the last bits.
 
 use crate::{Cases, Level};
 use arealight::gpu::GpuLight;
@@ -24,11 +25,11 @@ use glam::{DMat3, DVec3, DVec4};
 
 /// float32's unit in the last place.
 const UNIT: f64 = 1.0 / (1 << 24) as f64;
-/// Units in the products of a row with center and offset, and in their sum: five roundings in two scalar products each,
-/// of which half or less coincide.
+/// Units in the products of a row with center and offset, and in their sum: five roundings in two scalar
+/// products each, of which half or less coincide.
 const PRODUCT: f64 = 4.0;
-/// Units in a row. The frame's axes are good to 3e-7, five units; the bilinear weights and the two vectors of the mirror
-/// frame take three more.
+/// Units in a row. The frame's axes are good to 3e-7, five units; the bilinear weights and the two vectors of
+/// the mirror frame take three more.
 const ROW: f64 = 8.0;
 
 /// Units in an axis of the table: sine and cosine of the view, their product, and its place among the nodes.
@@ -255,7 +256,8 @@ impl Judge {
     /// How far a level's answer may be from it.
     pub fn bound(&self, level: Level) -> f64 {
         let edges = level.promises().backward;
-        // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are multiplied
+        // The albedo is looked up to 4e-7; it and the gain, which is of a unit vector's component, are
+        // multiplied
         let factors = self.albedo_reach + 4e-7 + 8.0 * UNIT;
         self.albedo * self.gain * (edges + self.reach) + factors * self.gain * self.form_factor
     }

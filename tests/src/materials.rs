@@ -22,7 +22,8 @@ pub fn lobe_qualities() -> [Quality; 5] {
     ]
 }
 
-/// A point under a polygon of 3 to 8 vertices anywhere, above, across or below its horizon; every third has two sides.
+/// A point under a polygon of 3 to 8 vertices anywhere, above, across or below its horizon; every third has
+/// two sides.
 pub fn under_polygon(random: &mut Random, index: usize, surface: Surface, view: DVec3) -> EvalPoint {
     let center = random.direction();
     let size = random.between(0.1, 1.5);
@@ -62,8 +63,9 @@ pub fn polygon_twin(quality: Quality, given: &EvalPoint) -> DVec3 {
     ltc_on(quality, &TABLE, &given.surface, given.normal, given.view, &light)
 }
 
-/// Three times what the twin changes where a point is moved by 2e-6, some ten roundings of float32: over half vectors an edge's parts are halved or not in steps of
-/// about 1e-4 of a lobe, and narrow lobes at grazing views magnify rounding by both. Nothing on other levels.
+/// Three times what the twin changes where a point is moved by 2e-6, some ten roundings of float32: over half
+/// vectors an edge's parts are halved or not in steps of about 1e-4 of a lobe, and narrow lobes at grazing
+/// views magnify rounding by both. Nothing on other levels.
 pub fn step_within_rounding(quality: Quality, given: &EvalPoint) -> f64 {
     if quality.specular_lobes != SpecularLobes::HalfVectors {
         return 0.0;
@@ -84,8 +86,8 @@ pub fn step_within_rounding(quality: Quality, given: &EvalPoint) -> f64 {
 }
 
 impl TestEngine {
-    /// Compares points under polygons with their float64 twins. The twin's twin: of more than a tenth of them it notices a `change` of
-    /// the surface.
+    /// Compares points under polygons with their float64 twins. The twin's twin: of more than a tenth of them
+    /// it notices a `change` of the surface.
     ///
     /// # Panics
     /// Where they differ by more than `bound`, or the device fails.
@@ -158,7 +160,8 @@ impl TestEngine {
             answers.chunks_exact(faces.len()).map(|faces| faces.iter().map(|face| face.x).sum()).collect();
         assert_eq!(sums.len(), surfaces.len());
         for (sum, given) in sums.iter().zip(surfaces) {
-            // Six faces and a lobe of each, 1e-6 every one; and the lobe's gain. Over half vectors the chords of six faces
+            // Six faces and a lobe of each, 1e-6 every one; and the lobe's gain. Over half vectors the chords
+            // of six faces
             let chords = if quality.specular_lobes == SpecularLobes::HalfVectors { 1e-2 } else { 0.0 };
             assert!((0.0..=1.0 + 2e-5 + chords).contains(sum), "{quality:?}: {sum} of {given:?}");
         }

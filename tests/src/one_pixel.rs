@@ -65,7 +65,8 @@ pub struct OnePixel<'a> {
 }
 
 impl<'a> OnePixel<'a> {
-    /// A grey, half rough, a quarter metallic surface without a coat that looks up, at `position` (w = 0: none), and what the depth buffer says of it.
+    /// A grey, half rough, a quarter metallic surface without a coat that looks up, at `position` (w = 0:
+    /// none), and what the depth buffer says of it.
     ///
     /// # Panics
     /// Where the device fails.

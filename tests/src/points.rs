@@ -38,8 +38,8 @@ impl Random {
         DVec3::new(radius * cos, radius * sin, z)
     }
 
-    /// A star-shaped polygon of `count` vertices around `center`, with radii from `low` to `high`, whose front
-    /// faces the origin.
+    /// A star-shaped polygon of `count` vertices around `center`, with radii from `low` to `high`, whose
+    /// front faces the origin.
     pub fn polygon(&mut self, center: DVec3, count: usize, low: f64, high: f64) -> Vec<DVec3> {
         let mut normal = self.direction();
         if normal.dot(center) > 0.0 {

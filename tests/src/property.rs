@@ -69,8 +69,8 @@ impl<'a> Property<'a> {
         self.judges(level).chunks_exact(self.size).map(|group| group[0].gain).collect()
     }
 
-    /// Asserts for every level and group that both sides of `relation` are the same, but for the bounds of the group's
-    /// form factors.
+    /// Asserts for every level and group that both sides of `relation` are the same, but for the bounds of
+    /// the group's form factors.
     ///
     /// # Panics
     /// Where they are not.
@@ -85,7 +85,8 @@ impl<'a> Property<'a> {
         }
     }
 
-    /// The twin of [`Property::assert`]: a relation that does not hold is noticed in more than this part of the groups.
+    /// The twin of [`Property::assert`]: a relation that does not hold is noticed in more than this part of
+    /// the groups.
     ///
     /// # Panics
     /// Where it is not.

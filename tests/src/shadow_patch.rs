@@ -1,4 +1,5 @@
-//! The shade pass and the shadow pass over an image whose pixels all see one shading point, each by rays of its own.
+//! The shade pass and the shadow pass over an image whose pixels all see one shading point, each by rays of
+//! its own.
 
 use crate::TestEngine;
 use arealight::plan::{ShadeOptions, ShadowFilter, TileOptions};
@@ -86,7 +87,8 @@ impl<'a> PatchPasses<'a> {
         Self { shade: shade.unwrap(), ..passes }
     }
 
-    /// As [`PatchPasses::new`], where a module of the host's says what blocks, which reads set 1 of this layout.
+    /// As [`PatchPasses::new`], where a module of the host's says what blocks, which reads set 1 of this
+    /// layout.
     ///
     /// # Panics
     /// Where the device fails.
@@ -107,7 +109,8 @@ impl<'a> PatchPasses<'a> {
 }
 
 impl<'a> PatchPasses<'a> {
-    /// As [`PatchPasses::new`], where a module of the host's says what part of each light arrives, which reads set 1 of this layout.
+    /// As [`PatchPasses::new`], where a module of the host's says what part of each light arrives, which
+    /// reads set 1 of this layout.
     ///
     /// # Panics
     /// Where the device fails.

@@ -1,4 +1,5 @@
-//! Embeds the GLSL library, so that `arealight export` can write it: `library.rs` lists the files with their texts.
+//! Embeds the GLSL library, so that `arealight export` can write it: `library.rs` lists the files with their
+//! texts.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -3,8 +3,8 @@
 use super::{Compiled, Family, Measured};
 use std::fmt::Write as _;
 
-/// How much more than the file an inverse throughput may be, as a part of it: what a change of the code before moves by other
-/// choices of the compiler's, where nothing was added.
+/// How much more than the file an inverse throughput may be, as a part of it: what a change of the code
+/// before moves by other choices of the compiler's, where nothing was added.
 pub const THROUGHPUT_TOLERANCE: f64 = 0.03;
 
 /// What differs from the file.
@@ -51,7 +51,8 @@ pub struct Check {
 /// Why nothing can be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the file's numbers of {family} are by {file}, and this is {here}: another version of the compiler makes other code, so that \
+    "the file's numbers of {family} are by {file}, and this is {here}: another version of the compiler makes \
+    other code, so that \
      they can't be compared"
 )]
 pub struct OtherDriver {
@@ -61,7 +62,8 @@ pub struct OtherDriver {
 }
 
 impl Check {
-    /// Holds `found` against `file`. Rows that the file alone has are [`Finding::Gone`] where `all` were compiled.
+    /// Holds `found` against `file`. Rows that the file alone has are [`Finding::Gone`] where `all` were
+    /// compiled.
     ///
     /// # Errors
     /// [`OtherDriver`] where the file was made by another version of the driver.

@@ -13,8 +13,8 @@ use arealight_engine::host::null_hardware::ComputeShader;
 use arealight_vk::prune;
 use ash::vk;
 
-/// What rows of the shade kernel are held against: quads by the clipless method, in a kernel of the same branches and loops, that
-/// reads lights, surfaces and the table as the shade kernel does.
+/// What rows of the shade kernel are held against: quads by the clipless method, in a kernel of the same
+/// branches and loops, that reads lights, surfaces and the table as the shade kernel does.
 pub const YARDSTICK: &str = "shade_yardstick: quads, clipless";
 
 /// Likewise of the README's pixel.
@@ -38,8 +38,8 @@ pub struct Row {
     pub lights: &'static str,
     /// The quality level, lobe or option.
     pub level: &'static str,
-    /// The row whose inverse throughput it is held against: one of the same branches and loops, since the compiler's estimate
-    /// depends on how deep code lies in them. `None` where there is none.
+    /// The row whose inverse throughput it is held against: one of the same branches and loops, since the
+    /// compiler's estimate depends on how deep code lies in them. `None` where there is none.
     pub yardstick: Option<&'static str>,
     source: Source,
 }
@@ -49,7 +49,8 @@ pub struct Row {
 enum Source {
     /// A kernel with values of its specialisation constants.
     Kernel(&'static Kernel, Vec<(u32, u32)>),
-    /// A module with the bindings of shaders/examples/deferred.comp, and values of its specialisation constants.
+    /// A module with the bindings of shaders/examples/deferred.comp, and values of its specialisation
+    /// constants.
     Deferred(&'static [u8], Vec<(u32, u32)>),
 }
 

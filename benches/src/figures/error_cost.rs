@@ -1,4 +1,5 @@
-//! Error against cost of every method, from what is stored: errors and times of `arealight bench`, and what a GPU's compiler counts.
+//! Error against cost of every method, from what is stored: errors and times of `arealight bench`, and what a
+//! GPU's compiler counts.
 
 use crate::compiled::{Compiled, Family};
 use crate::ladder::{CASES_PUBLISHED, CLIPLESS_PUBLISHED, Ladder, Row, percent};
@@ -45,7 +46,8 @@ struct Dot<'a> {
     is_ours: bool,
 }
 
-/// Error over compiled cost to the left, over time on the bench's device to the right; clipless costs 1 in both.
+/// Error over compiled cost to the left, over time on the bench's device to the right; clipless costs 1 in
+/// both.
 ///
 /// # Errors
 /// [`ErrorCostError`] where there is nothing to draw.

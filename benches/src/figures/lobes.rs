@@ -1,4 +1,5 @@
-//! Lobes in the plane of incidence, as polar plots: the distance from the point is the density, over the largest.
+//! Lobes in the plane of incidence, as polar plots: the distance from the point is the density, over the
+//! largest.
 
 use crate::svg::{Drawing, FILE_STYLE};
 use arealight::LightTable;
@@ -10,7 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Steps of a curve from horizon to horizon.
 const STEPS: usize = 96;
 
-/// A direction of the plane of incidence: `angle` from the normal, positive towards the light's side (away from the view).
+/// A direction of the plane of incidence: `angle` from the normal, positive towards the light's side (away
+/// from the view).
 fn direction(angle: f64) -> DVec3 {
     DVec3::new(-angle.sin(), 0.0, angle.cos())
 }

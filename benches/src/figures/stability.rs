@@ -14,7 +14,8 @@ const METHODS: [(&str, &str, &str); 5] = [
 ];
 
 /// Colours of the methods that other charts have not.
-const COLORS: &str = ".sphere { fill: #7c3aed; } .acos { fill: #15803d; } .promise { stroke: #0b6bcb; stroke-dasharray: 5 4; }\n";
+const COLORS: &str = ".sphere { fill: #7c3aed; } .acos { fill: #15803d; } .promise { stroke: #0b6bcb; \
+stroke-dasharray: 5 4; }\n";
 
 /// Backward errors below are drawn as this one.
 const LEAST: f64 = 1e-8;
@@ -22,7 +23,8 @@ const LEAST: f64 = 1e-8;
 /// What is promised: see the document.
 const PROMISE: f64 = 6e-7;
 
-/// A line for each family that is judged by its errors, a dot for each method; a column to the right for results that are NaN or infinite.
+/// A line for each family that is judged by its errors, a dot for each method; a column to the right for
+/// results that are NaN or infinite.
 pub fn stability(found: &Stability) -> String {
     debug_assert!(METHODS.iter().all(|(method, ..)| OVERVIEW.contains(method)));
     let mut families: Vec<&str> = found.rows.iter().map(|row| row.family).collect();
@@ -62,7 +64,8 @@ pub fn stability(found: &Stability) -> String {
     drawing.into_file(&(FILE_STYLE.to_owned() + COLORS))
 }
 
-/// Where a method's dot is, and what it says; none where the method takes no case of the family, or has no error there.
+/// Where a method's dot is, and what it says; none where the method takes no case of the family, or has no
+/// error there.
 fn dot(row: &Row, x: &Axis, column: usize) -> Option<(f64, String)> {
     let tally = &row.tally;
     if tally.samples == 0 {

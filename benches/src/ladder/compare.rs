@@ -49,8 +49,8 @@ impl Comparison {
     }
 }
 
-/// Compares two runs: errors to the digits that are shown, and ratios of time by whether their quartiles overlap. What one
-/// of them has alone is apart.
+/// Compares two runs: errors to the digits that are shown, and ratios of time by whether their quartiles
+/// overlap. What one of them has alone is apart.
 pub fn compare(a: &Ladder, b: &Ladder) -> Comparison {
     let mut found = Comparison { numbers: 0, apart: vec![] };
     let missing = |what: String, is_first: bool| {

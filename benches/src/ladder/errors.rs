@@ -66,10 +66,12 @@ impl Errors {
 pub struct SplitErrors {
     /// All of it: the device's answer against the integral of the true BRDF.
     pub all: Errors,
-    /// What the lobes cannot follow: those fitted to just this roughness and view, integrated in float64, against the truth.
+    /// What the lobes cannot follow: those fitted to just this roughness and view, integrated in float64,
+    /// against the truth.
     pub fit: f64,
-    /// What the table's nodes, or the formula, lose between them: integrals of their lobes against those of the fit. None of a
-    /// yardstick with a table of its own, to which no lobes are fitted point by point: then `fit` holds both.
+    /// What the table's nodes, or the formula, lose between them: integrals of their lobes against those of
+    /// the fit. None of a yardstick with a table of its own, to which no lobes are fitted point by point:
+    /// then `fit` holds both.
     pub table: Option<f64>,
     /// What the device's integral loses: its answer against the table's lobes integrated in float64.
     pub integral: f64,
@@ -190,7 +192,8 @@ impl Known {
         }
     }
 
-    /// What lobes give at every point, integrated in float64. Once for all methods: of textured lights it takes long.
+    /// What lobes give at every point, integrated in float64. Once for all methods: of textured lights it
+    /// takes long.
     fn integrals(&mut self, of: Integrand, table: &LightTable) -> &[DVec3] {
         let done = self.integrals.iter().position(|(done, _)| *done == of);
         let index = done.unwrap_or_else(|| {
@@ -225,7 +228,8 @@ impl Known {
     }
 }
 
-/// The images that the textured lights show: those that [lookups are judged by](crate::footprints), and noise again.
+/// The images that the textured lights show: those that [lookups are judged by](crate::footprints), and noise
+/// again.
 pub fn pictures() -> Vec<Arc<Texture>> {
     let mut pictures = footprints::judged_pictures();
     pictures.push(footprints::noise(2));

@@ -184,7 +184,8 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Runs a method with all lights, or with the first of them. Seconds of the device; see [`device_seconds`].
+    /// Runs a method with all lights, or with the first of them. Seconds of the device; see
+    /// [`device_seconds`].
     pub fn run(&self, ready: &Ready, lights: u32, seed: u32) -> Result<f64, EngineError> {
         let light_count = lights.min(self.summary.light_count);
         let [width, height] = self.size();
@@ -237,8 +238,8 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Seconds that the device takes. Of a GPU what its timestamps say; of a software device the processor time of its threads over
-/// their number, which is what the clock would say if nobody else ran.
+/// Seconds that the device takes. Of a GPU what its timestamps say; of a software device the processor time
+/// of its threads over their number, which is what the clock would say if nobody else ran.
 fn device_seconds(
     engine: &Engine,
     record: impl FnOnce(ash::vk::CommandBuffer) -> Result<(), EngineError>,

@@ -67,13 +67,15 @@ pub struct View {
     pub repeats: usize,
 }
 
-/// What of a scene is shaded: its diffuse lobes are added, not coupled, in every method, as the reference adds them.
+/// What of a scene is shaded: its diffuse lobes are added, not coupled, in every method, as the reference
+/// adds them.
 fn effects_of(scene: &Scene) -> Effects {
     scene.effects() - Effects::COUPLED - Effects::COUPLED_BY_ALBEDO
 }
 
-/// Renders scenes, such as the frames of a film, by the two methods that stand beside the truth in a document: the default level, and
-/// a yardstick with the published table. The scenes share the first one's textures.
+/// Renders scenes, such as the frames of a film, by the two methods that stand beside the truth in a
+/// document: the default level, and a yardstick with the published table. The scenes share the first one's
+/// textures.
 ///
 /// # Errors
 /// [`EngineError`] where the device fails.
@@ -108,8 +110,8 @@ pub fn yardstick_for(scene: &Scene) -> (&'static str, School) {
     }
 }
 
-/// What is shown: yardsticks as they are shipped, with their table, but for scenes that are too much for them; quality levels; and
-/// Monte Carlo.
+/// What is shown: yardsticks as they are shipped, with their table, but for scenes that are too much for
+/// them; quality levels; and Monte Carlo.
 fn methods(scene: &Scene) -> Vec<(&'static str, Method)> {
     let effects = effects_of(scene);
     let level = |quality| Method::Level { effects, quality };

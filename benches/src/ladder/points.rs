@@ -1,7 +1,7 @@
 //! The shading points that accuracy and cost are measured at, and the lights about them.
 //!
-//! Points lie before the lights, at .5 to 8 times their size; half of them look at a light's mirror image, the others
-//! anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
+//! Points lie before the lights, at .5 to 8 times their size; half of them look at a light's mirror image,
+//! the others anywhere, so that lights stand high, low and across the horizon. Roughness runs from .05 to 1.
 
 use arealight::{Light, LightShape, LightTexture};
 use arealight_oracle::material::{Material, Surface};

@@ -1,9 +1,10 @@
 //! A Monte Carlo reference whose own noise is known, and errors against it that are free of that noise.
 //!
-//! The reference is the mean of two independent halves A and B. Whatever a picture X is, (X - A) (X - B) has the square of
-//! X's error as its expectation, for the halves' noise is independent: it's the square of the difference from the mean less
-//! (A - B)² / 4, an estimate of the mean's variance. What is left of the noise is an uncertainty: of normal noise,
-//! the product's variance is the expectation of ((X - (A + B) / 2) (A - B))².
+//! The reference is the mean of two independent halves A and B. Whatever a picture X is, (X - A) (X - B) has
+//! the square of X's error as its expectation, for the halves' noise is independent: it's the square of the
+//! difference from the mean less (A - B)² / 4, an estimate of the mean's variance. What is left of the noise
+//! is an uncertainty: of normal noise, the product's variance is the expectation of ((X - (A + B) / 2) (A -
+//! B))².
 
 use glam::DVec3;
 
@@ -101,7 +102,8 @@ mod tests {
         let error = |reference: Reference| reference.error_of(&picture(), &judged);
         let found = error(Reference::new([half(1), half(2)]));
         assert!(found.range[0] < ERROR && ERROR < found.range[1], "{found:?}");
-        // A standard deviation of about .1 (.03 + .1) / sqrt(4000) of the square, which is 9e-4: 10 % of the root
+        // A standard deviation of about .1 (.03 + .1) / sqrt(4000) of the square, which is 9e-4: 10 % of the
+        // root
         assert!((found.rmse / ERROR - 1.0).abs() < 0.2, "{found:?}");
         assert!(found.range[1] - found.range[0] < 0.5 * ERROR, "{found:?}");
         // The twins: what isn't corrected has the noise in it, .1 / sqrt(2); nor does a half correct itself

@@ -4,7 +4,8 @@ use super::{BASELINE, Ladder, Row, SplitErrors, Spread};
 use crate::table::Table;
 use std::fmt::Write as _;
 
-/// Errors, in the order of every table of them: all, of it fit, table and integral; p99, worst, bias; how many are no numbers.
+/// Errors, in the order of every table of them: all, of it fit, table and integral; p99, worst, bias; how
+/// many are no numbers.
 pub fn error_cells(errors: &SplitErrors) -> [String; 8] {
     [
         percent(errors.all.rmse),
@@ -148,8 +149,10 @@ impl Ladder {
             "GPU time, by timestamps"
         };
         format!(
-            "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are of a frame of {} pixels \
-             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. Ratios are to {} \
+            "Errors are over the mean of the truth, the integral of the true BRDF, at {} points. Times are \
+            of a frame of {} pixels \
+             and {} lights, over its lights and megapixels ({clock}); medians of {} rounds, with quartiles. \
+             Ratios are to {} \
              on the same device. {READS}",
             self.points,
             self.pixels,

@@ -35,7 +35,8 @@ const PATHS: [(Path, [&str; LOBES]); 7] = [
     (Path::Mixed, ["diffuse above, branch on edges: both", "specular above, branch on edges: both"]),
 ];
 
-/// Behind a light, or in front of it with both lobes above: the name of the row in a loop, and of that of one light.
+/// Behind a light, or in front of it with both lobes above: the name of the row in a loop, and of that of one
+/// light.
 const BEHIND: [&str; 2] = ["behind", "behind, one light"];
 const IN_FRONT: [&str; 2] = ["in front", "in front, one light"];
 

@@ -37,7 +37,8 @@ pub fn markdown(scenes: &[Modelled], found: &Compiled, size: [u32; 2]) -> String
 /// Each table with the sentence before it.
 fn sections(scenes: &[Modelled], found: &Compiled, [width, height]: [u32; 2]) -> Vec<(String, Table)> {
     let head = format!(
-        "Shares of waves of 8 x 4 pixels a light, in pictures of {width} x {height}; of waves with a surface, and of quads alone:"
+        "Shares of waves of 8 x 4 pixels a light, in pictures of {width} x {height}; of waves with a \
+        surface, and of quads alone:"
     );
     let mut sections = vec![(head, shares(scenes))];
     for family in &found.families {

@@ -17,7 +17,8 @@ pub(super) const RADIANCE: Binding = Binding {
     content: "radiance is added to, or multiplied (rgba32f)",
 };
 
-/// Plain area sampling: of each ray the light by power over distance squared, and a point of it by area. For convex quads without a texture.
+/// Plain area sampling: of each ray the light by power over distance squared, and a point of it by area. For
+/// convex quads without a texture.
 pub static AREA_SAMPLING: Kernel = Kernel {
     name: "area_sampling",
     spirv: include_bytes!("../../spirv/area_sampling.spv"),

@@ -7,13 +7,20 @@ use std::fmt::Write as _;
 
 /// What the tables' columns are.
 const MEASURES: &str = "\
-*S* is the part of a pixel's unshadowed light that arrives, in luminance; its errors are those of lit pixels times 100, the root of their mean \
-square over all of them and over those in a penumbra, and their mean (above 0 too much arrives). The error of the radiance is the root of its \
-mean square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with and without shadows by the same \
-samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames at rest. \
-`area sampling` chooses for each ray a light by its power over its distance squared, and a point of it by area: the same \
-rays through the same blockers, without what is known of the unshadowed radiance. `PCSS` is percentage-closer soft shadows (Fernando 2005): so many \
-texels of a shadow map of 512 x 512 are looked up for the depth of what blocks, and then for how much arrives; its time is in the column of the \
+*S* is the part of a pixel's unshadowed light that arrives, in luminance; its errors are those of lit pixels \
+times 100, the root of their mean \
+square over all of them and over those in a penumbra, and their mean (above 0 too much arrives). The error \
+of the radiance is the root of its \
+mean square over its mean. The truth is the mean of two Monte Carlo references of the true BRDF, each with \
+and without shadows by the same \
+samples; their noise, measured by their difference, is taken out of the squares. A history is of 16 frames \
+at rest. \
+`area sampling` chooses for each ray a light by its power over its distance squared, and a point of it by \
+area: the same \
+rays through the same blockers, without what is known of the unshadowed radiance. `PCSS` is \
+percentage-closer soft shadows (Fernando 2005): so many \
+texels of a shadow map of 512 x 512 are looked up for the depth of what blocks, and then for how much \
+arrives; its time is in the column of the \
 filter, and that of making the map is not counted.";
 
 const HEADS: [&str; 11] = [
@@ -60,8 +67,10 @@ impl SceneResult {
         let [penumbra, noise_all, noise] =
             [*penumbra, noise.rmse, noise.penumbra_rmse].map(|part| 100.0 * part);
         format!(
-            "{lights} {many}, {blockers} triangles that block; {penumbra:.0} % of the lit pixels are in a penumbra. Each reference has \
-             {samples} samples a pixel of each light; the noise of their S is {noise_all:.2}, in penumbra {noise:.2}."
+            "{lights} {many}, {blockers} triangles that block; {penumbra:.0} % of the lit pixels are in a \
+            penumbra. Each reference has \
+             {samples} samples a pixel of each light; the noise of their S is {noise_all:.2}, in penumbra \
+             {noise:.2}."
         )
     }
 }
@@ -75,7 +84,8 @@ impl ShadowLevels {
             "of the device"
         };
         format!(
-            "Pictures of {size} x {size} pixels; times are medians of {rounds} rounds, in milliseconds {clock}."
+            "Pictures of {size} x {size} pixels; times are medians of {rounds} rounds, in milliseconds \
+            {clock}."
         )
     }
 

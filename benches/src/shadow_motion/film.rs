@@ -18,7 +18,8 @@ const STEP: f64 = 0.04;
 /// Rays a pixel of a truth's frames.
 const TRUTH_RAYS: u32 = 4;
 
-/// Out of its plane by this part of the camera's distance, a point is of another surface: as the history has it.
+/// Out of its plane by this part of the camera's distance, a point is of another surface: as the history has
+/// it.
 const PLANE_PART: f64 = 0.01;
 
 /// A point that a pixel sees, relative to the scene's origin, and its normal.

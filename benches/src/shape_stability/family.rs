@@ -1,6 +1,7 @@
 //! Families of hard disks, spheres and tubes, and the judgement of a result.
 //!
-//! As for polygons, a case is the same on every machine, and is rounded to float32 before anything is computed from it.
+//! As for polygons, a case is the same on every machine, and is rounded to float32 before anything is
+//! computed from it.
 
 use crate::shapes::{ShapeArguments, ShapeFunction, ellipse_arguments, sphere_arguments, tube_arguments};
 use arealight_cases::hard::{ellipse as hard, nearby_shape};
@@ -10,7 +11,8 @@ use arealight_oracle::stream::Stream;
 use arealight_oracle::tube::{self, Ends, Tube};
 use glam::{DMat3, DVec3};
 
-/// The largest backward error: the distance to the values of shapes whose numbers differ by [`MOVE`] of their length.
+/// The largest backward error: the distance to the values of shapes whose numbers differ by [`MOVE`] of their
+/// length.
 const BACKWARD: f64 = 1e-6;
 /// Far shapes: the largest error as a part of what one sends at the zenith; of tubes by the difference form.
 const RELATIVE: f64 = 1e-5;
@@ -73,8 +75,8 @@ impl Case {
         }
     }
 
-    /// What it would send if it stood at the zenith and faced the surface: its area over pi times the squared distance, as far
-    /// polygons are judged.
+    /// What it would send if it stood at the zenith and faced the surface: its area over pi times the squared
+    /// distance, as far polygons are judged.
     fn most(&self) -> f64 {
         let (center, area) = match self {
             Self::Ellipse(e) => (e.center, e.axis_u.cross(e.axis_v).length()),
@@ -87,7 +89,8 @@ impl Case {
         area / center.length_squared()
     }
 
-    /// An upper bound of the backward error of `found`; the search for shapes nearby stops at a tenth of the promise.
+    /// An upper bound of the backward error of `found`; the search for shapes nearby stops at a tenth of the
+    /// promise.
     fn backward_error(&self, found: f64) -> f64 {
         let enough = BACKWARD * 0.1;
         let forward = (found - self.value()).abs();

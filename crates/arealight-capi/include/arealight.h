@@ -19,8 +19,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
-// with. They must be equal; arealight_create refuses another. On ELF systems the shared library's SONAME ends in it.
+// The version of structs and functions: of the header that a host was compiled with, and of the library that
+// it runs with. They must be equal; arealight_create refuses another. On ELF systems the shared library's
+// SONAME ends in it.
 #define AREALIGHT_ABI_VERSION 2
 
 // The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
@@ -53,7 +54,8 @@
 // Some light has several faces: a mesh.
 #define AREALIGHT_EFFECT_MESH 2048
 
-// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is
+// set then, too.
 #define AREALIGHT_EFFECT_TEXTURED_ELLIPSE 4096
 
 // Some surface has a clear coat: ArealightResources.coat is read.
@@ -62,13 +64,15 @@
 // Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 #define AREALIGHT_EFFECT_COAT_NORMAL 16384
 
-// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular
+// lobe.
 #define AREALIGHT_EFFECT_COUPLED 32768
 
 // They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
 #define AREALIGHT_EFFECT_COUPLED_BY_ALBEDO 65536
 
-// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then,
+// too.
 #define AREALIGHT_EFFECT_COAT_BY_ALBEDO 131072
 
 // Some diffuse lobe is rough: ArealightResources.anisotropy is read.
@@ -83,8 +87,8 @@
 // What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
 #define AREALIGHT_EFFECT_MULTIPLE_SCATTERING 2097152
 
-// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a pass of its own whose base colour is the part of the
-// light that is let through.
+// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a
+// pass of its own whose base colour is the part of the light that is let through.
 #define AREALIGHT_EFFECT_TRANSMISSION 4194304
 
 // Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
@@ -108,7 +112,8 @@
 // Two, at .6 to .8 times the error, exact in the reflectance and its colour.
 #define AREALIGHT_SPECULAR_LOBES_TWO 1
 
-// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth of two lobes' error.
+// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth
+// of two lobes' error.
 #define AREALIGHT_SPECULAR_LOBES_HALF_VECTORS 2
 
 // The glossy lobe is the table's.
@@ -138,24 +143,26 @@
 // It is the direction to the camera, of any length but 0: an orthographic one.
 #define AREALIGHT_CAMERA_ORTHOGRAPHIC 1
 
-// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set, arealight_pass_record.
+// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set,
+// arealight_pass_record.
 #define AREALIGHT_DESCRIPTORS_SETS 0
 
-// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with ArealightFrame.light_offsets, and their
-// ArealightBuffer.range is given.
+// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with
+// ArealightFrame.light_offsets, and their ArealightBuffer.range is given.
 #define AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS 1
 
 // Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
 #define AREALIGHT_DESCRIPTORS_PUSHED 2
 
-// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
-// F0 and F90.
+// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and
+// metalness; dielectric F0 and F90.
 #define AREALIGHT_G_BUFFER_AREALIGHT 0
 
 // Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
 #define AREALIGHT_G_BUFFER_UNREAL 1
 
-// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
+// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no
+// accurate normals.
 #define AREALIGHT_G_BUFFER_UNITY 2
 
 // A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
@@ -206,7 +213,8 @@
 // Several flat faces.
 #define AREALIGHT_LIGHT_MESH 1
 
-// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
+// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to
+// the side of their cross product.
 #define AREALIGHT_LIGHT_DISK 2
 
 // A sphere about `center`.
@@ -254,7 +262,8 @@ typedef enum ArealightResult {
     AREALIGHT_RESULT_ERROR_TABLE = 6,
     // An array of the host is too small; the size that is needed was written.
     AREALIGHT_RESULT_ERROR_TOO_SMALL = 7,
-    // A fault of the library, which is worth a report. The object of the call is good only for being destroyed.
+    // A fault of the library, which is worth a report. The object of the call is good only for being
+    // destroyed.
     AREALIGHT_RESULT_ERROR_INTERNAL = 8,
 } ArealightResult;
 
@@ -301,8 +310,8 @@ typedef struct ArealightHost {
 
 // Which light table.
 typedef struct ArealightTable {
-    // A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for the table of
-    // GGX that is built in.
+    // A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for
+    // the table of GGX that is built in.
     const uint8_t *bytes;
     // How many bytes.
     size_t size;
@@ -340,7 +349,8 @@ typedef struct ArealightUpload {
     void *command_buffer;
 } ArealightUpload;
 
-// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its kind.
+// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its
+// kind.
 typedef struct ArealightLight {
     // For messages, UTF-8; may be null.
     const char *name;
@@ -350,8 +360,9 @@ typedef struct ArealightLight {
     uint32_t two_sided;
     // Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
     float radiance[3];
-    // 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the front of a disk, its rows run
-    // along `axis_u` and its top is where `axis_v` points to; the parallelogram of both touches its edges.
+    // 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the
+    // front of a disk, its rows run along `axis_u` and its top is where `axis_v` points to; the
+    // parallelogram of both touches its edges.
     uint32_t textured;
     // Read only with `textured`.
     uint32_t texture_layer;
@@ -359,13 +370,15 @@ typedef struct ArealightLight {
     uint32_t vertex_count;
     // Of a polygon or mesh: three numbers a vertex; seen from the front, counter-clockwise.
     const double *vertices;
-    // Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions.
+    // Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function
+    // of the positions.
     const double *texture_coordinates;
-    // Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    // in the light's plane and inside.
+    // Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in
+    // `vertices`, in either direction; they lie in the light's plane and inside.
     const uint32_t *hole_vertex_counts;
-    // Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in `vertices`, each an
-    // outline of its own, such as the three of a triangle. What a face hides of another is added all the same.
+    // Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in
+    // `vertices`, each an outline of its own, such as the three of a triangle. What a face hides of another
+    // is added all the same.
     const uint32_t *face_vertex_counts;
     // How many holes.
     uint32_t hole_count;
@@ -397,7 +410,8 @@ typedef struct ArealightLightSummary {
     uint32_t effects;
 } ArealightLightSummary;
 
-// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
+// null to ask for the sizes alone.
 typedef struct ArealightPackedLights {
     // Where polygons and meshes go.
     void *lights;
@@ -421,7 +435,8 @@ typedef struct ArealightReach {
     double center[3];
     // How far from there it may reflect more than the threshold; infinite where nothing bounds it.
     double radius;
-    // The corners of a box outside of which it does not either: smaller for flat lights that shine to one side.
+    // The corners of a box outside of which it does not either: smaller for flat lights that shine to one
+    // side.
     double low[3];
     // Likewise.
     double high[3];
@@ -429,8 +444,10 @@ typedef struct ArealightReach {
 
 // What a pass is specialised for. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
-    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    // _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
+    // _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
+    // _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
+    // from ArealightFrame.lights.
     uint32_t surfaces;
     // One of AREALIGHT_FORM_FACTOR_*.
     uint32_t form_factor;
@@ -452,29 +469,35 @@ typedef struct ArealightPassOptions {
     uint32_t radiance_format;
     // One of AREALIGHT_G_BUFFER_*.
     uint32_t g_buffer;
-    // 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels holds, such as 128; a tile that
-    // more lights contribute to is shaded by all.
+    // 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels
+    // holds, such as 128; a tile that more lights contribute to is shaded by all.
     uint32_t tile_capacity;
-    // With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
-    // radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
+    // With tiles: lights are culled from a tile that together contribute less than this fraction of what its
+    // other lights do, to the radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only
+    // those that contribute nothing.
     float tile_cull_threshold;
-    // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
+    // With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without,
+    // which takes less time; such as 4.
     uint32_t tile_least_quads;
-    // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
+    // How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an
+    // ArealightShadowPass. 0: no shadows.
     uint32_t shadow_rays;
     // One of AREALIGHT_CAMERA_*.
     uint32_t camera;
-    // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
+    // 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by
+    // side; without shadow rays. Else 0.
     uint32_t rectangle;
-    // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
-    // rays. 0 is 1.
+    // How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is
+    // shaded: 2 is half resolution. Not with shadow rays. 0 is 1.
     uint32_t texels_per_pixel;
-    // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance is the mean over them. Not with shadow rays or
-    // half resolution. 0 is 1.
+    // How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
+    // is the mean over them. Not with shadow rays or half resolution. 0 is 1.
     uint32_t samples;
-    // 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are; without shadow rays. Else 0.
+    // 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are;
+    // without shadow rays. Else 0.
     uint32_t stencil;
-    // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run; ArealightFrame.lights says the most. Else 0.
+    // 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
+    // ArealightFrame.lights says the most. Else 0.
     uint32_t light_counts;
     // One of AREALIGHT_DESCRIPTORS_*.
     uint32_t descriptors;
@@ -518,8 +541,8 @@ typedef struct ArealightImage {
     uint32_t reserved;
 } ArealightImage;
 
-// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are left as they
-// are.
+// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are
+// left as they are.
 typedef struct ArealightResources {
     // ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
     struct ArealightBuffer lights;
@@ -533,43 +556,49 @@ typedef struct ArealightResources {
     struct ArealightImage normal;
     // Linear base colour in rgb, metalness in a (rgba8).
     struct ArealightImage base_color;
-    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
-    // AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
+    // Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass
+    // with AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     struct ArealightImage specular;
-    // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
-    // normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
+    // Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with
+    // AREALIGHT_EFFECT_COAT_NORMAL the coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded
+    // octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     struct ArealightImage coat;
-    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
+    // Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
+    // AREALIGHT_EFFECT_SHEEN.
     struct ArealightImage sheen;
-    // Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron,
-    // perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
-    // without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+    // Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on
+    // an unfolded octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the
+    // roughness of the diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and
+    // _DIFFUSE_ROUGHNESS.
     struct ArealightImage anisotropy;
-    // Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g, its thickness in nanometres in b
-    // (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+    // Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g,
+    // its thickness in nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
     struct ArealightImage film;
-    // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    // describes. May be 0 where no frame has textured lights.
+    // The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
+    // `arealight export` describes. May be 0 where no frame has textured lights.
     struct ArealightImage light_textures;
-    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
+    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format in
+    // VK_IMAGE_LAYOUT_GENERAL.
     struct ArealightImage radiance;
     // Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
     struct ArealightImage glossy;
     // What arealight_lobe_horizons wrote. Without tiles 0.
     struct ArealightBuffer lobe_horizons;
-    // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
+    // What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without
+    // tiles 0.
     struct ArealightBuffer tile_lists;
     // Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     struct ArealightBuffer shadow_picks;
-    // A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint). Without ArealightPassOptions.stencil 0.
+    // A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint).
+    // Without ArealightPassOptions.stencil 0.
     struct ArealightImage stencil;
-    // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are convex quads without a texture. Without
-    // ArealightPassOptions.light_counts 0.
+    // Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
+    // convex quads without a texture. Without ArealightPassOptions.light_counts 0.
     struct ArealightBuffer light_counts;
 } ArealightResources;
 
-// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
-// waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
+// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
 typedef struct ArealightTileMemory {
     // Bytes; 0 for a pass without tiles.
     uint64_t size;
@@ -597,39 +626,45 @@ typedef struct ArealightViewport {
 
 // What differs from frame to frame.
 typedef struct ArealightFrame {
-    // How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may be larger.
+    // How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may
+    // be larger.
     uint32_t width;
     // Likewise.
     uint32_t height;
-    // The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays
-    // its length is that at which a perspective camera would stand that sees as much.
+    // The camera's position relative to the origin of positions and lights; with
+    // AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays its length is that at which a
+    // perspective camera would stand that sees as much.
     float camera[3];
     // ArealightPackedLights.summary of the lights in the set's buffers.
     struct ArealightLightSummary lights;
     // With shadow rays, of their random numbers: one more in each frame. Else 0.
     uint32_t seed;
-    // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
-    // be null with AREALIGHT_POSITION_IMAGE.
+    // Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the
+    // origin. May be null with AREALIGHT_POSITION_IMAGE.
     const float *position_from_clip;
     // With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     struct ArealightBuffer tile_lists;
-    // The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of the frame's pixels, y down. Only
-    // positions from depth, and a shadow's history, depend on it.
+    // The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of
+    // the frame's pixels, y down. Only positions from depth, and a shadow's history, depend on it.
     struct ArealightViewport viewport;
     // With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
     uint32_t offset[2];
-    // The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
-    // watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
+    // The rows of pixels that this record shades, from the first to before the second, of those of `height`:
+    // a frame of more work than a driver's watchdog allows is recorded and submitted in parts. Both are
+    // multiples of 8, or the second is `height`. 0, 0: all.
     uint32_t rows[2];
-    // With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and every pixel is shaded.
+    // With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and
+    // every pixel is shaded.
     uint32_t stencil_compare_mask;
     // What those bits must be, at most 255.
     uint32_t stencil_reference;
-    // With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else 0.
+    // With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in
+    // bytes after what the set was written with. Else 0.
     uint32_t light_offsets[3];
 } ArealightFrame;
 
-// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
+// null to ask for the sizes alone.
 typedef struct ArealightBlockerArrays {
     // Where the hierarchy's nodes go.
     void *nodes;
@@ -655,14 +690,15 @@ typedef struct ArealightShadowOptions {
 typedef struct ArealightShadowResources {
     // A storage image (rgba16f) of the frame's size, in VK_IMAGE_LAYOUT_GENERAL. The pass alone writes it.
     struct ArealightImage shadow;
-    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the unshadowed one in
-    // ArealightResources.radiance.
+    // Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the
+    // unshadowed one in ArealightResources.radiance.
     struct ArealightImage radiance;
-    // With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros before the first frame and after each cut. The
-    // pass alone writes it; it is the same for all frames of a view. Else 0.
+    // With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros
+    // before the first frame and after each cut. The pass alone writes it; it is the same for all frames of
+    // a view. Else 0.
     struct ArealightBuffer history;
-    // With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is, in parts of the image's
-    // width and height (rg16f). Else 0.
+    // With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is,
+    // in parts of the image's width and height (rg16f). Else 0.
     struct ArealightImage motion;
     // ArealightBlockerArrays.nodes. 0 with a module of the host's.
     struct ArealightBuffer blocker_nodes;
@@ -672,12 +708,13 @@ typedef struct ArealightShadowResources {
 
 // What a shadow pass records.
 typedef struct ArealightShadowFrame {
-    // That of the shade pass. With a history it has `position_from_clip`, also where positions come from an image, and `seed` counts frames.
+    // That of the shade pass. With a history it has `position_from_clip`, also where positions come from an
+    // image, and `seed` counts frames.
     const struct ArealightFrame *frame;
     // VkDescriptorSet for set 1 of a module of the host's. Else 0.
     uint64_t host_set;
-    // What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with a
-    // history.
+    // What is added to positions relative to this frame's origin for positions relative to that of the frame
+    // before. Read only with a history.
     float origin_shift[3];
     // 0
     uint32_t reserved;
@@ -729,7 +766,8 @@ typedef struct ArealightTextureSetup {
 typedef struct ArealightTextureUpdate {
     // VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
     uint64_t source_set;
-    // The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    // The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first
+    // texel.
     double part_low[2];
     // What is added to them at (1, 1); positive.
     double part_size[2];
@@ -754,7 +792,8 @@ extern "C" {
 // AREALIGHT_ABI_VERSION of the library, for those that load it at run time.
 uint32_t arealight_abi_version(void);
 
-// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
+// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to
+// destroy.
 //
 // The host sees to it:
 // Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
@@ -768,25 +807,28 @@ enum ArealightResult arealight_create(const struct ArealightHost *host,
 // Pointers are null or valid.
 enum ArealightResult arealight_table_memory(const struct Arealight *arealight, struct ArealightMemory *out);
 
-// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what arealight_table_memory asks for, and is freed after
-// arealight_destroy. From then on sets may be written. Again with the same memory it is nothing.
+// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what
+// arealight_table_memory asks for, and is freed after arealight_destroy. From then on sets may be written.
+// Again with the same memory it is nothing.
 //
 // The host sees to it:
-// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of it.
+// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of
+// it.
 enum ArealightResult arealight_table_bind_memory(struct Arealight *arealight,
                                                  uint64_t memory,
                                                  uint64_t memory_offset);
 
-// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once, when the table has memory; the commands run before
-// any that shade. Commands that were never run are made good by another call.
+// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once,
+// when the table has memory; the commands run before any that shade. Commands that were never run are made
+// good by another call.
 //
 // The host sees to it:
 // Pointers are null or valid, and `upload` is as ArealightUpload says.
 enum ArealightResult arealight_table_upload(struct Arealight *arealight,
                                             const struct ArealightUpload *upload);
 
-// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness: for arealight_light_reach. Ask
-// once.
+// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness:
+// for arealight_light_reach. Ask once.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -795,8 +837,10 @@ enum ArealightResult arealight_lobe_density(const struct Arealight *arealight,
                                             double roughness,
                                             double *out);
 
-// Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
-// `specular_lobes`: what the passes are made with, one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+// Writes where the horizons of the table's lobes are, for passes with tiles:
+// ArealightResources.lobe_horizons, which is uploaded once. `specular_lobes`: what the passes are made with,
+// one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that
+// are needed; null for `data` asks for them alone.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many bytes.
@@ -805,19 +849,20 @@ enum ArealightResult arealight_lobe_horizons(const struct Arealight *arealight,
                                              void *data,
                                              uint64_t *size);
 
-// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
-// nothing.
+// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new
+// sets. Null is nothing.
 //
 // The host sees to it:
 // No commands that shade are pending, the device is alive, and no other thread uses the object.
 enum ArealightResult arealight_destroy(struct Arealight *arealight);
 
-// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty where none
-// has. Valid until the next call of this thread that fails.
+// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty
+// where none has. Valid until the next call of this thread that fails.
 const char *arealight_last_error(void);
 
-// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which uploads them to its buffers,
-// and says what a frame needs to know of them. With null arrays, only says how large they must be.
+// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which
+// uploads them to its buffers, and says what a frame needs to know of them. With null arrays, only says how
+// large they must be.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many items as their counts say.
@@ -826,9 +871,10 @@ enum ArealightResult arealight_pack_lights(const struct ArealightLight *lights,
                                            const double *origin,
                                            struct ArealightPackedLights *packed);
 
-// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface reflects more of it than `threshold`, in
-// W/(m² sr), in any channel. `density`, a steradian, is of the surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without
-// specular lobe, else that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
+// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface
+// reflects more of it than `threshold`, in W/(m² sr), in any channel. `density`, a steradian, is of the
+// surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without specular lobe, else
+// that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -846,9 +892,9 @@ enum ArealightResult arealight_pass_create(const struct Arealight *arealight,
                                            const struct ArealightPassOptions *options,
                                            struct ArealightPass **out);
 
-// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
-// own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V, `size` its bytes. Images that the module
-// does not declare may be any in ArealightResources.
+// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a
+// G-buffer of its own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V,
+// `size` its bytes. Images that the module does not declare may be any in ArealightResources.
 //
 // The host sees to it:
 // Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
@@ -865,8 +911,8 @@ enum ArealightResult arealight_pass_create_with_module(const struct Arealight *a
 enum ArealightResult arealight_pass_set_layout(const struct ArealightPass *pass,
                                                struct ArealightSetLayout *out);
 
-// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
-// which was uploaded.
+// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with
+// the table, which was uploaded.
 //
 // The host sees to it:
 // Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
@@ -884,19 +930,21 @@ enum ArealightResult arealight_pass_tile_memory(const struct ArealightPass *pass
                                                 uint32_t height,
                                                 struct ArealightTileMemory *out);
 
-// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins their lists, a dispatch that
-// classifies them, one for each class, and the barriers between. Barriers before and after are the host's.
+// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins
+// their lists, a dispatch that classifies them, one for each class, and the barriers between. Barriers
+// before and after are the host's.
 //
 // The host sees to it:
-// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
-// set was written, with images of the frame's size and buffers of the lights that `frame.lights` is of.
+// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that
+// computes. The set was written, with images of the frame's size and buffers of the lights that
+// `frame.lights` is of.
 enum ArealightResult arealight_pass_record(const struct ArealightPass *pass,
                                            void *command_buffer,
                                            uint64_t set,
                                            const struct ArealightFrame *frame);
 
-// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of `arealight`, are pushed, and no descriptor set
-// is needed.
+// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of
+// `arealight`, are pushed, and no descriptor set is needed.
 //
 // The host sees to it:
 // As arealight_pass_record. The resources outlive the commands.
@@ -906,8 +954,8 @@ enum ArealightResult arealight_pass_record_pushed(const struct ArealightPass *pa
                                                   const struct ArealightResources *resources,
                                                   const struct ArealightFrame *frame);
 
-// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
-// would take a moment for otherwise.
+// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what
+// arealight_pass_record would take a moment for otherwise.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -920,8 +968,8 @@ enum ArealightResult arealight_pass_prepare(const struct ArealightPass *pass,
 // No commands of the pass are pending, the device is alive, and no other thread uses the pass.
 enum ArealightResult arealight_pass_destroy(struct ArealightPass *pass);
 
-// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with, in any vertex order. It takes a microsecond or
-// two a triangle. `*out` is the host's to destroy.
+// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with,
+// in any vertex order. It takes a microsecond or two a triangle. `*out` is the host's to destroy.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many items as the count says.
@@ -929,7 +977,8 @@ enum ArealightResult arealight_blockers_create(const float *vertices,
                                                uint32_t triangle_count,
                                                struct ArealightBlockers **out);
 
-// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only says how large they must be.
+// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only
+// says how large they must be.
 //
 // The host sees to it:
 // Pointers are null or valid, with as many bytes as their sizes say.
@@ -942,8 +991,8 @@ enum ArealightResult arealight_blockers_read(const struct ArealightBlockers *blo
 // No other thread uses it.
 enum ArealightResult arealight_blockers_destroy(struct ArealightBlockers *blockers);
 
-// Makes a shadow pass, after shade passes of `options`; its rays meet ArealightShadowResources.blocker_nodes. `*out` is the host's to
-// destroy.
+// Makes a shadow pass, after shade passes of `options`; its rays meet
+// ArealightShadowResources.blocker_nodes. `*out` is the host's to destroy.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -952,12 +1001,14 @@ enum ArealightResult arealight_shadow_pass_create(const struct Arealight *areali
                                                   const struct ArealightShadowOptions *shadows,
                                                   struct ArealightShadowPass **out);
 
-// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of `arealight export` with its own answer to what
-// blocks a ray, such as an acceleration structure. What that reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`.
-// `words` is SPIR-V, `size` its bytes.
+// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of
+// `arealight export` with its own answer to what blocks a ray, such as an acceleration structure. What that
+// reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`. `words` is SPIR-V, `size`
+// its bytes.
 //
 // The host sees to it:
-// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long as the pass.
+// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long
+// as the pass.
 enum ArealightResult arealight_shadow_pass_create_with_module(const struct Arealight *arealight,
                                                               const struct ArealightPassOptions *options,
                                                               const struct ArealightShadowOptions *shadows,
@@ -966,7 +1017,8 @@ enum ArealightResult arealight_shadow_pass_create_with_module(const struct Areal
                                                               uint64_t host_set_layout,
                                                               struct ArealightShadowPass **out);
 
-// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a pass without shadow rays.
+// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a
+// pass without shadow rays.
 //
 // The host sees to it:
 // Pointers are null or valid.
@@ -988,7 +1040,8 @@ enum ArealightResult arealight_shadow_history_size(uint32_t width, uint32_t heig
 enum ArealightResult arealight_shadow_pass_set_layout(const struct ArealightShadowPass *pass,
                                                       struct ArealightSetLayout *out);
 
-// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of the shade pass before.
+// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of
+// the shade pass before.
 //
 // The host sees to it:
 // Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
@@ -998,20 +1051,21 @@ enum ArealightResult arealight_shadow_pass_write_set(const struct ArealightShado
                                                      const struct ArealightResources *shade,
                                                      const struct ArealightShadowResources *resources);
 
-// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what arealight_shadow_pass_record
-// would take a moment for otherwise.
+// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what
+// arealight_shadow_pass_record would take a moment for otherwise.
 //
 // The host sees to it:
 // Pointers are null or valid.
 enum ArealightResult arealight_shadow_pass_prepare(const struct ArealightShadowPass *pass,
                                                    const struct ArealightFrame *frame);
 
-// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or three with a history, with barriers
-// between them. The barrier for what the shade pass wrote is the host's, and so is one after. `resources` are those that the set was written
-// with.
+// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or
+// three with a history, with barriers between them. The barrier for what the shade pass wrote is the host's,
+// and so is one after. `resources` are those that the set was written with.
 //
 // The host sees to it:
-// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was recorded earlier on the same queue.
+// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was
+// recorded earlier on the same queue.
 enum ArealightResult arealight_shadow_pass_record(const struct ArealightShadowPass *pass,
                                                   void *command_buffer,
                                                   uint64_t set,
@@ -1039,11 +1093,13 @@ enum ArealightResult arealight_textures_create(const struct Arealight *arealight
 enum ArealightResult arealight_textures_needs(const struct ArealightTextures *textures,
                                               struct ArealightTextureNeeds *out);
 
-// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the commands run before
-// any others that use the textures. Commands that were never run are made good by another call with the same memory.
+// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the
+// commands run before any others that use the textures. Commands that were never run are made good by
+// another call with the same memory.
 //
 // The host sees to it:
-// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the textures or sets.
+// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the
+// textures or sets.
 enum ArealightResult arealight_textures_setup(struct ArealightTextures *textures,
                                               const struct ArealightTextureSetup *setup);
 
@@ -1056,13 +1112,14 @@ enum ArealightResult arealight_textures_write_source_set(const struct ArealightT
                                                          uint64_t set,
                                                          struct ArealightImage source);
 
-// Records that images replace layers and are filtered, with the barriers between and around: afterwards they are visible to
-// shaders. The cost is that of the layers given. The host's barriers make the images visible to compute shaders before.
-// Frames that are recorded later on the same queue see the new layers, those before the old ones; nothing waits.
+// Records that images replace layers and are filtered, with the barriers between and around: afterwards they
+// are visible to shaders. The cost is that of the layers given. The host's barriers make the images visible
+// to compute shaders before. Frames that are recorded later on the same queue see the new layers, those
+// before the old ones; nothing waits.
 //
 // The host sees to it:
-// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes, after
-// the commands of arealight_textures_setup.
+// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that
+// computes, after the commands of arealight_textures_setup.
 enum ArealightResult arealight_textures_update(const struct ArealightTextures *textures,
                                                void *command_buffer,
                                                const struct ArealightTextureUpdate *updates,

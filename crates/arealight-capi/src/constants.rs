@@ -20,17 +20,20 @@ pub const AREALIGHT_EFFECT_SPHERE: u32 = 512;
 pub const AREALIGHT_EFFECT_TUBE: u32 = 1024;
 /// Some light has several faces: a mesh.
 pub const AREALIGHT_EFFECT_MESH: u32 = 2048;
-/// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is set then, too.
+/// Some disk or ellipse is textured: ArealightResources.light_textures is read. AREALIGHT_EFFECT_ELLIPSE is
+/// set then, too.
 pub const AREALIGHT_EFFECT_TEXTURED_ELLIPSE: u32 = 4096;
 /// Some surface has a clear coat: ArealightResources.coat is read.
 pub const AREALIGHT_EFFECT_COAT: u32 = 8192;
 /// Some coat has a normal of its own. AREALIGHT_EFFECT_COAT is set then, too.
 pub const AREALIGHT_EFFECT_COAT_NORMAL: u32 = 16384;
-/// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular lobe.
+/// Diffuse lobes get what the Fresnel term above them leaves, as in glTF; else they are added to the specular
+/// lobe.
 pub const AREALIGHT_EFFECT_COUPLED: u32 = 32768;
 /// They get what the specular lobe's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COUPLED is set then, too.
 pub const AREALIGHT_EFFECT_COUPLED_BY_ALBEDO: u32 = 65536;
-/// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then, too.
+/// What is below a coat gets what the coat's albedo leaves, as in OpenPBR. AREALIGHT_EFFECT_COAT is set then,
+/// too.
 pub const AREALIGHT_EFFECT_COAT_BY_ALBEDO: u32 = 131072;
 /// Some diffuse lobe is rough: ArealightResources.anisotropy is read.
 pub const AREALIGHT_EFFECT_DIFFUSE_ROUGHNESS: u32 = 262144;
@@ -40,8 +43,8 @@ pub const AREALIGHT_EFFECT_SHEEN: u32 = 524288;
 pub const AREALIGHT_EFFECT_ANISOTROPY: u32 = 1048576;
 /// What specular lobes' facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF.
 pub const AREALIGHT_EFFECT_MULTIPLE_SCATTERING: u32 = 2097152;
-/// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a pass of its own whose base colour is the part of the
-/// light that is let through.
+/// The pass is of light that thin surfaces let through: what the G-buffer holds is shaded from behind, for a
+/// pass of its own whose base colour is the part of the light that is let through.
 pub const AREALIGHT_EFFECT_TRANSMISSION: u32 = 4194304;
 /// Some surface has a thin film that its reflectances lack: ArealightResources.film is read.
 pub const AREALIGHT_EFFECT_THIN_FILM: u32 = 8388608;
@@ -59,7 +62,8 @@ pub const AREALIGHT_HORIZON_BOTH: u32 = 1;
 pub const AREALIGHT_SPECULAR_LOBES_ONE: u32 = 0;
 /// Two, at .6 to .8 times the error, exact in the reflectance and its colour.
 pub const AREALIGHT_SPECULAR_LOBES_TWO: u32 = 1;
-/// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth of two lobes' error.
+/// GGX itself over half vectors, of polygons and meshes without an image: lobes of two roughnesses at a tenth
+/// of two lobes' error.
 pub const AREALIGHT_SPECULAR_LOBES_HALF_VECTORS: u32 = 2;
 
 /// The glossy lobe is the table's.
@@ -84,20 +88,22 @@ pub const AREALIGHT_CAMERA_PERSPECTIVE: u32 = 0;
 /// It is the direction to the camera, of any length but 0: an orthographic one.
 pub const AREALIGHT_CAMERA_ORTHOGRAPHIC: u32 = 1;
 
-/// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set, arealight_pass_record.
+/// Passes read resources by descriptor sets: arealight_pass_set_layout, arealight_pass_write_set,
+/// arealight_pass_record.
 pub const AREALIGHT_DESCRIPTORS_SETS: u32 = 0;
-/// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with ArealightFrame.light_offsets, and their
-/// ArealightBuffer.range is given.
+/// Likewise; the buffers of lights, vertices and shapes are VK_DESCRIPTOR_TYPE_STORAGE_BUFFER_DYNAMIC, with
+/// ArealightFrame.light_offsets, and their ArealightBuffer.range is given.
 pub const AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS: u32 = 1;
 /// Without sets: arealight_pass_record_pushed. The device was made with VK_KHR_push_descriptor.
 pub const AREALIGHT_DESCRIPTORS_PUSHED: u32 = 2;
 
-/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and metalness; dielectric
-/// F0 and F90.
+/// What ArealightResources.normal, base_color and specular hold: normal and roughness; base colour and
+/// metalness; dielectric F0 and F90.
 pub const AREALIGHT_G_BUFFER_AREALIGHT: u32 = 0;
 /// Unreal Engine's `GBufferA`, `GBufferC` and `GBufferB`, of its default shading model.
 pub const AREALIGHT_G_BUFFER_UNREAL: u32 = 1;
-/// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no accurate normals.
+/// `GBuffer2`, `GBuffer0` and `GBuffer1` of Unity's Universal Render Pipeline: metallic materials, no
+/// accurate normals.
 pub const AREALIGHT_G_BUFFER_UNITY: u32 = 2;
 /// A signed place on an octahedron; base colour; occlusion (not used), roughness, metalness.
 pub const AREALIGHT_G_BUFFER_OCTAHEDRAL: u32 = 3;
@@ -138,7 +144,8 @@ pub const AREALIGHT_TABLE_RGBA16F: u32 = 1;
 pub const AREALIGHT_LIGHT_POLYGON: u32 = 0;
 /// Several flat faces.
 pub const AREALIGHT_LIGHT_MESH: u32 = 1;
-/// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to the side of their cross product.
+/// A flat disk or ellipse about `center` with the conjugate half axes `axis_u` and `axis_v`, which shines to
+/// the side of their cross product.
 pub const AREALIGHT_LIGHT_DISK: u32 = 2;
 /// A sphere about `center`.
 pub const AREALIGHT_LIGHT_SPHERE: u32 = 3;

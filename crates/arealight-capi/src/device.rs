@@ -68,7 +68,8 @@ impl Arealight {
     }
 }
 
-/// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to destroy.
+/// Makes the library's view of a device. `table` may be null: GGX in 32-bit floats. `*out` is the host's to
+/// destroy.
 ///
 /// # Safety
 /// Pointers are null or valid. The host's handles are valid and belong together; they outlive what is made.
@@ -86,7 +87,8 @@ pub unsafe extern "C" fn arealight_create(
         let version = *unsafe { arguments::read(host.cast::<u32>(), "host") }?;
         if version != AREALIGHT_ABI_VERSION {
             let message = format!(
-                "host.abi_version: {version}, but this library has {AREALIGHT_ABI_VERSION}; compile the host with the \
+                "host.abi_version: {version}, but this library has {AREALIGHT_ABI_VERSION}; compile the host \
+                with the \
                  header that came with the library"
             );
             return Err(Failure::new(ArealightResult::ErrorAbiVersion, message));
@@ -95,7 +97,8 @@ pub unsafe extern "C" fn arealight_create(
         let (host, (table, format)) = unsafe { (arguments::read(host, "host")?, read_table(table)?) };
         if host.api_version < vk::API_VERSION_1_1 {
             let message = format!(
-                "host.api_version: {}.{}, but every kernel needs Vulkan 1.1: set VkApplicationInfo.apiVersion",
+                "host.api_version: {}.{}, but every kernel needs Vulkan 1.1: set \
+                VkApplicationInfo.apiVersion",
                 vk::api_version_major(host.api_version),
                 vk::api_version_minor(host.api_version)
             );
@@ -170,11 +173,13 @@ impl Arealight {
     }
 }
 
-/// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what arealight_table_memory asks for, and is freed after
-/// arealight_destroy. From then on sets may be written. Again with the same memory it is nothing.
+/// Binds memory to the table, once: `memory` is a VkDeviceMemory that has at `memory_offset` what
+/// arealight_table_memory asks for, and is freed after arealight_destroy. From then on sets may be written.
+/// Again with the same memory it is nothing.
 ///
 /// # Safety
-/// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of it.
+/// The pointer is null or valid, the memory is the host's, large enough, and nothing else uses that part of
+/// it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_table_bind_memory(
     arealight: *mut Arealight,
@@ -201,8 +206,9 @@ pub unsafe extern "C" fn arealight_table_bind_memory(
     })
 }
 
-/// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once, when the table has memory; the commands run before
-/// any that shade. Commands that were never run are made good by another call.
+/// Writes the table's texels to the staging buffer, and records the copy, with its barriers. Needed once,
+/// when the table has memory; the commands run before any that shade. Commands that were never run are made
+/// good by another call.
 ///
 /// # Safety
 /// Pointers are null or valid, and `upload` is as ArealightUpload says.
@@ -250,8 +256,8 @@ pub unsafe extern "C" fn arealight_table_upload(
     })
 }
 
-/// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness: for arealight_light_reach. Ask
-/// once.
+/// How dense, a steradian, the table's lobes are at most on surfaces of at least this perceptual roughness:
+/// for arealight_light_reach. Ask once.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -275,8 +281,10 @@ pub unsafe extern "C" fn arealight_lobe_density(
     })
 }
 
-/// Writes where the horizons of the table's lobes are, for passes with tiles: ArealightResources.lobe_horizons, which is uploaded once.
-/// `specular_lobes`: what the passes are made with, one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that are needed; null for `data` asks for them alone.
+/// Writes where the horizons of the table's lobes are, for passes with tiles:
+/// ArealightResources.lobe_horizons, which is uploaded once. `specular_lobes`: what the passes are made with,
+/// one of AREALIGHT_SPECULAR_LOBES_*. `*size` comes in as the bytes at `data`, and goes out as the bytes that
+/// are needed; null for `data` asks for them alone.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many bytes.
@@ -312,8 +320,8 @@ pub unsafe extern "C" fn arealight_lobe_horizons(
     })
 }
 
-/// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new sets. Null is
-/// nothing.
+/// Destroys the library's view of a device, and the table's image. Passes live on, but cannot be given new
+/// sets. Null is nothing.
 ///
 /// # Safety
 /// No commands that shade are pending, the device is alive, and no other thread uses the object.

@@ -25,7 +25,8 @@ pub enum ArealightResult {
     ErrorTable = 6,
     /// An array of the host is too small; the size that is needed was written.
     ErrorTooSmall = 7,
-    /// A fault of the library, which is worth a report. The object of the call is good only for being destroyed.
+    /// A fault of the library, which is worth a report. The object of the call is good only for being
+    /// destroyed.
     ErrorInternal = 8,
 }
 
@@ -87,8 +88,8 @@ fn remember(message: &str) {
     let _ = MESSAGE.try_with(|last| last.replace(text));
 }
 
-/// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty where none
-/// has. Valid until the next call of this thread that fails.
+/// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty
+/// where none has. Valid until the next call of this thread that fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn arealight_last_error() -> *const c_char {
     MESSAGE.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
@@ -127,7 +128,13 @@ mod tests {
         let text = failure(
             "made without ShadeOptions::rectangle; see ShadeOptions::reads_coat and ShadowOptions::output",
         );
-        assert!(text.contains("ArealightPassOptions.rectangle; see ArealightResources.coat and ArealightShadowOptions.output"), "{text}");
+        assert!(
+            text.contains(
+                "ArealightPassOptions.rectangle; see ArealightResources.coat and \
+        ArealightShadowOptions.output"
+            ),
+            "{text}"
+        );
         assert!(!text.contains("::"), "{text}");
     }
 

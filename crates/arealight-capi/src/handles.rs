@@ -1,12 +1,13 @@
-//! Which objects of the host are alive, so that a handle that was destroyed, or is of another kind, is refused.
+//! Which objects of the host are alive, so that a handle that was destroyed, or is of another kind, is
+//! refused.
 
 use crate::failure::Failure;
 use std::any::{TypeId, type_name};
 use std::collections::HashMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// Addresses of objects, with their types. An address that is used again for another object of the same type cannot be told
-/// from it.
+/// Addresses of objects, with their types. An address that is used again for another object of the same type
+/// cannot be told from it.
 static ALIVE: LazyLock<Mutex<HashMap<usize, TypeId>>> = LazyLock::new(Mutex::default);
 
 fn alive<R>(function: impl FnOnce(&mut HashMap<usize, TypeId>) -> R) -> R {

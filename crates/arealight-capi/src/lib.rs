@@ -1,9 +1,10 @@
 //! Arealight's recorder for hosts in C and C++.
 //!
-//! Start with the header, which is the manual of hosts, and with `examples/cpp` of the repository, an engine of one file.
+//! Start with the header, which is the manual of hosts, and with `examples/cpp` of the repository, an engine
+//! of one file.
 //!
-//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embed-c.md goes through it.
-//! Here is how it is done:
+//! `include/arealight.h` is made from this crate, and says all that a host must know; docs/embed-c.md goes
+//! through it. Here is how it is done:
 //!
 //! | module | holds |
 //! |---|---|
@@ -47,8 +48,9 @@ pub use shadows::*;
 pub use textures::*;
 pub use types::*;
 
-/// The version of structs and functions: of the header that a host was compiled with, and of the library that it runs
-/// with. They must be equal; arealight_create refuses another. On ELF systems the shared library's SONAME ends in it.
+/// The version of structs and functions: of the header that a host was compiled with, and of the library that
+/// it runs with. They must be equal; arealight_create refuses another. On ELF systems the shared library's
+/// SONAME ends in it.
 pub const AREALIGHT_ABI_VERSION: u32 = 2;
 
 /// AREALIGHT_ABI_VERSION of the library, for those that load it at run time.

@@ -13,8 +13,9 @@ use arealight::{
 use glam::{DVec2, DVec3, Vec3};
 use std::ffi::{CStr, c_char, c_void};
 
-/// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which uploads them to its buffers,
-/// and says what a frame needs to know of them. With null arrays, only says how large they must be.
+/// Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which
+/// uploads them to its buffers, and says what a frame needs to know of them. With null arrays, only says how
+/// large they must be.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many items as their counts say.
@@ -65,9 +66,10 @@ pub unsafe extern "C" fn arealight_pack_lights(
     })
 }
 
-/// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface reflects more of it than `threshold`, in
-/// W/(m² sr), in any channel. `density`, a steradian, is of the surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without
-/// specular lobe, else that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
+/// Says how far a light is of any matter, for hosts with clusters of their own: outside of `*out` no surface
+/// reflects more of it than `threshold`, in W/(m² sr), in any channel. `density`, a steradian, is of the
+/// surfaces' lobes times their albedos where they are densest: 1/pi for surfaces without specular lobe, else
+/// that and arealight_lobe_density of the least roughness. What several lights add up to may be more.
 ///
 /// # Safety
 /// Pointers are null or valid.

@@ -48,9 +48,9 @@ pub unsafe extern "C" fn arealight_pass_create(
     })
 }
 
-/// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a G-buffer of its
-/// own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V, `size` its bytes. Images that the module
-/// does not declare may be any in ArealightResources.
+/// As arealight_pass_create, of a module that the host compiled from the sources of `arealight export`, for a
+/// G-buffer of its own: `options.g_buffer` does not count then, and tiles cannot be had. `words` is SPIR-V,
+/// `size` its bytes. Images that the module does not declare may be any in ArealightResources.
 ///
 /// # Safety
 /// Pointers are null or valid. The module is valid SPIR-V of this version's kernel.
@@ -65,7 +65,8 @@ pub unsafe extern "C" fn arealight_pass_create_with_module(
     let make = |_: &Arealight, context: &Context, options, tiles: Option<TileOptions>| {
         if tiles.is_some() {
             return Err(Failure::argument(
-                "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the host's own",
+                "options.tile_capacity: must be 0, since tiles are not classified by a G-buffer of the \
+                host's own",
             ));
         }
         if !size.is_multiple_of(4) {
@@ -135,8 +136,8 @@ pub(crate) fn set_layout(
     }
 }
 
-/// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with the table,
-/// which was uploaded.
+/// Points a VkDescriptorSet, made with arealight_pass_set_layout, at resources; `arealight` is the one with
+/// the table, which was uploaded.
 ///
 /// # Safety
 /// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
@@ -266,12 +267,14 @@ pub unsafe extern "C" fn arealight_pass_tile_memory(
     })
 }
 
-/// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins their lists, a dispatch that
-/// classifies them, one for each class, and the barriers between. Barriers before and after are the host's.
+/// Records the pass into a VkCommandBuffer: binding, push constants, one dispatch; with tiles, what begins
+/// their lists, a dispatch that classifies them, one for each class, and the barriers between. Barriers
+/// before and after are the host's.
 ///
 /// # Safety
-/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes. The
-/// set was written, with images of the frame's size and buffers of the lights that `frame.lights` is of.
+/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that
+/// computes. The set was written, with images of the frame's size and buffers of the lights that
+/// `frame.lights` is of.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_pass_record(
     pass: *const ArealightPass,
@@ -293,8 +296,8 @@ pub unsafe extern "C" fn arealight_pass_record(
     })
 }
 
-/// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of `arealight`, are pushed, and no descriptor set
-/// is needed.
+/// As arealight_pass_record, of a pass with AREALIGHT_DESCRIPTORS_PUSHED: the resources, with the table of
+/// `arealight`, are pushed, and no descriptor set is needed.
 ///
 /// # Safety
 /// As arealight_pass_record. The resources outlive the commands.
@@ -359,8 +362,8 @@ fn viewport(viewport: ArealightViewport) -> Viewport {
     Viewport { x, y, width, height, min_depth, max_depth }
 }
 
-/// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what arealight_pass_record
-/// would take a moment for otherwise.
+/// Makes the pipeline for frames whose lights need what this one's do, if it is not made yet: what
+/// arealight_pass_record would take a moment for otherwise.
 ///
 /// # Safety
 /// Pointers are null or valid.

@@ -23,8 +23,8 @@ pub struct ArealightBlockers {
     blockers: Blockers,
 }
 
-/// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with, in any vertex order. It takes a microsecond or
-/// two a triangle. `*out` is the host's to destroy.
+/// Builds the hierarchy of triangles: nine numbers each, relative to the origin that lights are packed with,
+/// in any vertex order. It takes a microsecond or two a triangle. `*out` is the host's to destroy.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many items as the count says.
@@ -52,7 +52,8 @@ fn refused(error: BlockerError) -> Failure {
     Failure::argument(error.to_string())
 }
 
-/// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only says how large they must be.
+/// Copies the hierarchy into arrays of the host, which uploads them to its buffers. With null arrays, only
+/// says how large they must be.
 ///
 /// # Safety
 /// Pointers are null or valid, with as many bytes as their sizes say.
@@ -103,8 +104,8 @@ pub struct ArealightShadowPass {
     pass: ShadowPass,
 }
 
-/// Makes a shadow pass, after shade passes of `options`; its rays meet ArealightShadowResources.blocker_nodes. `*out` is the host's to
-/// destroy.
+/// Makes a shadow pass, after shade passes of `options`; its rays meet
+/// ArealightShadowResources.blocker_nodes. `*out` is the host's to destroy.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -123,12 +124,14 @@ pub unsafe extern "C" fn arealight_shadow_pass_create(
     })
 }
 
-/// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of `arealight export` with its own answer to what
-/// blocks a ray, such as an acceleration structure. What that reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`.
-/// `words` is SPIR-V, `size` its bytes.
+/// As arealight_shadow_pass_create, of a module that the host compiled from `shadow_rays.comp` of
+/// `arealight export` with its own answer to what blocks a ray, such as an acceleration structure. What that
+/// reads is in descriptor set 1, of the VkDescriptorSetLayout `host_set_layout`. `words` is SPIR-V, `size`
+/// its bytes.
 ///
 /// # Safety
-/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long as the pass.
+/// Pointers are null or valid. The module is valid SPIR-V of this version's kernel; the layout lives as long
+/// as the pass.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_shadow_pass_create_with_module(
     arealight: *const Arealight,
@@ -188,7 +191,8 @@ fn shadow_options(options: &ArealightShadowOptions) -> Result<ShadowOptions, Fai
     })
 }
 
-/// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a pass without shadow rays.
+/// How many bytes ArealightResources.shadow_picks needs, for images of `width` x `height` pixels; 0 for a
+/// pass without shadow rays.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -239,7 +243,8 @@ pub unsafe extern "C" fn arealight_shadow_pass_set_layout(
     })
 }
 
-/// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of the shade pass before.
+/// Points a VkDescriptorSet, made with arealight_shadow_pass_set_layout, at resources: `shade` are those of
+/// the shade pass before.
 ///
 /// # Safety
 /// Pointers are null or valid. No pending commands use the set, and the resources outlive those that will.
@@ -280,8 +285,8 @@ fn read_shadow_resources(resources: &ArealightShadowResources) -> ShadowResource
     }
 }
 
-/// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what arealight_shadow_pass_record
-/// would take a moment for otherwise.
+/// Makes the pipelines for frames whose lights need what this one's do, if they are not made yet: what
+/// arealight_shadow_pass_record would take a moment for otherwise.
 ///
 /// # Safety
 /// Pointers are null or valid.
@@ -298,12 +303,13 @@ pub unsafe extern "C" fn arealight_shadow_pass_prepare(
     })
 }
 
-/// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or three with a history, with barriers
-/// between them. The barrier for what the shade pass wrote is the host's, and so is one after. `resources` are those that the set was written
-/// with.
+/// Records the pass into a VkCommandBuffer, for the frame that the shade pass recorded: two dispatches, or
+/// three with a history, with barriers between them. The barrier for what the shade pass wrote is the host's,
+/// and so is one after. `resources` are those that the set was written with.
 ///
 /// # Safety
-/// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was recorded earlier on the same queue.
+/// Pointers are null or valid. As arealight_pass_record; with a history, the frame before of this view was
+/// recorded earlier on the same queue.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_shadow_pass_record(
     pass: *const ArealightShadowPass,

@@ -113,11 +113,13 @@ pub unsafe extern "C" fn arealight_textures_needs(
     })
 }
 
-/// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the commands run before
-/// any others that use the textures. Commands that were never run are made good by another call with the same memory.
+/// Binds memory, writes the sets of the levels, and records that every layer is black. Needed once; the
+/// commands run before any others that use the textures. Commands that were never run are made good by
+/// another call with the same memory.
 ///
 /// # Safety
-/// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the textures or sets.
+/// Pointers are null or valid, and `setup` is as ArealightTextureSetup says. No pending commands use the
+/// textures or sets.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_textures_setup(
     textures: *mut ArealightTextures,
@@ -186,13 +188,14 @@ pub unsafe extern "C" fn arealight_textures_write_source_set(
     })
 }
 
-/// Records that images replace layers and are filtered, with the barriers between and around: afterwards they are visible to
-/// shaders. The cost is that of the layers given. The host's barriers make the images visible to compute shaders before.
-/// Frames that are recorded later on the same queue see the new layers, those before the old ones; nothing waits.
+/// Records that images replace layers and are filtered, with the barriers between and around: afterwards they
+/// are visible to shaders. The cost is that of the layers given. The host's barriers make the images visible
+/// to compute shaders before. Frames that are recorded later on the same queue see the new layers, those
+/// before the old ones; nothing waits.
 ///
 /// # Safety
-/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that computes, after
-/// the commands of arealight_textures_setup.
+/// Pointers are null or valid. The command buffer is being recorded, outside a render pass, on a queue that
+/// computes, after the commands of arealight_textures_setup.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn arealight_textures_update(
     textures: *const ArealightTextures,

@@ -1,7 +1,7 @@
 //! What crosses the boundary.
 //!
-//! Handles of Vulkan: those that are pointers everywhere (instance, device, command buffer) are `void *`, all others
-//! `uint64_t`, so that vulkan.h is not needed.
+//! Handles of Vulkan: those that are pointers everywhere (instance, device, command buffer) are `void *`, all
+//! others `uint64_t`, so that vulkan.h is not needed.
 
 use std::ffi::{c_char, c_void};
 
@@ -38,8 +38,8 @@ pub struct ArealightHost {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightTable {
-    /// A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for the table of
-    /// GGX that is built in.
+    /// A file in OpenEXR, KTX2 or DDS, as `arealight fit` and `arealight table convert` write them; null for
+    /// the table of GGX that is built in.
     pub bytes: *const u8,
     /// How many bytes.
     pub size: usize,
@@ -85,8 +85,10 @@ pub struct ArealightUpload {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
-    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL, _COAT_BY_ALBEDO, _SHEEN,
-    /// _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO, _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known from ArealightFrame.lights.
+    /// What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
+    /// _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
+    /// _MULTIPLE_SCATTERING, _TRANSMISSION and _THIN_FILM. 0 is DIFFUSE and GLOSSY. What lights need is known
+    /// from ArealightFrame.lights.
     pub surfaces: u32,
     /// One of AREALIGHT_FORM_FACTOR_*.
     pub form_factor: u32,
@@ -108,29 +110,35 @@ pub struct ArealightPassOptions {
     pub radiance_format: u32,
     /// One of AREALIGHT_G_BUFFER_*.
     pub g_buffer: u32,
-    /// 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels holds, such as 128; a tile that
-    /// more lights contribute to is shaded by all.
+    /// 0: a pass without tiles. Else the most lights, of all kinds, that the list of a tile of 8 x 8 pixels
+    /// holds, such as 128; a tile that more lights contribute to is shaded by all.
     pub tile_capacity: u32,
-    /// With tiles: lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the
-    /// radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only those that contribute nothing.
+    /// With tiles: lights are culled from a tile that together contribute less than this fraction of what its
+    /// other lights do, to the radiance of each of its pixels, in the sum of the channels; in [0, 1). 0: only
+    /// those that contribute nothing.
     pub tile_cull_threshold: f32,
-    /// With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without, which takes less time; such as 4.
+    /// With tiles: frames of fewer lights, all of them convex quads without a texture, are shaded without,
+    /// which takes less time; such as 4.
     pub tile_least_quads: u32,
-    /// How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an ArealightShadowPass. 0: no shadows.
+    /// How many shadow rays a pixel has, at most 4: the pass picks a light and a lobe for each, for an
+    /// ArealightShadowPass. 0: no shadows.
     pub shadow_rays: u32,
     /// One of AREALIGHT_CAMERA_*.
     pub camera: u32,
-    /// 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by side; without shadow rays. Else 0.
+    /// 1: frames are rectangles of larger images, each from ArealightFrame.offset on, such as views side by
+    /// side; without shadow rays. Else 0.
     pub rectangle: u32,
-    /// How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is shaded: 2 is half resolution. Not with shadow
-    /// rays. 0 is 1.
+    /// How many texels of the G-buffer a pixel of radiance has to a side, at most 16; of them the first is
+    /// shaded: 2 is half resolution. Not with shadow rays. 0 is 1.
     pub texels_per_pixel: u32,
-    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance is the mean over them. Not with shadow rays or
-    /// half resolution. 0 is 1.
+    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. Radiance
+    /// is the mean over them. Not with shadow rays or half resolution. 0 is 1.
     pub samples: u32,
-    /// 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are; without shadow rays. Else 0.
+    /// 1: frames have a stencil test, by ArealightResources.stencil; pixels that fail it stay as they are;
+    /// without shadow rays. Else 0.
     pub stencil: u32,
-    /// 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run; ArealightFrame.lights says the most. Else 0.
+    /// 1: how many lights a frame has is read from ArealightResources.light_counts when the commands run;
+    /// ArealightFrame.lights says the most. Else 0.
     pub light_counts: u32,
     /// One of AREALIGHT_DESCRIPTORS_*.
     pub descriptors: u32,
@@ -156,7 +164,8 @@ pub struct ArealightSetLayout {
     pub reserved: u32,
 }
 
-/// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its kind.
+/// A light of constant radiance, or a textured one, in world positions. Which fields are read depends on its
+/// kind.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightLight {
@@ -168,8 +177,9 @@ pub struct ArealightLight {
     pub two_sided: u32,
     /// Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
     pub radiance: [f32; 3],
-    /// 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the front of a disk, its rows run
-    /// along `axis_u` and its top is where `axis_v` points to; the parallelogram of both touches its edges.
+    /// 1: `texture_layer` of the light textures multiplies the radiance of a polygon or disk. Seen from the
+    /// front of a disk, its rows run along `axis_u` and its top is where `axis_v` points to; the
+    /// parallelogram of both touches its edges.
     pub textured: u32,
     /// Read only with `textured`.
     pub texture_layer: u32,
@@ -177,13 +187,15 @@ pub struct ArealightLight {
     pub vertex_count: u32,
     /// Of a polygon or mesh: three numbers a vertex; seen from the front, counter-clockwise.
     pub vertices: *const f64,
-    /// Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function of the positions.
+    /// Of a textured polygon: two texture coordinates a vertex of the outline, in [0, 1], an affine function
+    /// of the positions.
     pub texture_coordinates: *const f64,
-    /// Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in `vertices`, in either direction; they lie
-    /// in the light's plane and inside.
+    /// Of a polygon: null, or how many vertices each hole has. Their vertices follow the outline's in
+    /// `vertices`, in either direction; they lie in the light's plane and inside.
     pub hole_vertex_counts: *const u32,
-    /// Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in `vertices`, each an
-    /// outline of its own, such as the three of a triangle. What a face hides of another is added all the same.
+    /// Of a mesh: how many vertices each face has, `vertex_count` in all. Faces follow one another in
+    /// `vertices`, each an outline of its own, such as the three of a triangle. What a face hides of another
+    /// is added all the same.
     pub face_vertex_counts: *const u32,
     /// How many holes.
     pub hole_count: u32,
@@ -211,7 +223,8 @@ pub struct ArealightReach {
     pub center: [f64; 3],
     /// How far from there it may reflect more than the threshold; infinite where nothing bounds it.
     pub radius: f64,
-    /// The corners of a box outside of which it does not either: smaller for flat lights that shine to one side.
+    /// The corners of a box outside of which it does not either: smaller for flat lights that shine to one
+    /// side.
     pub low: [f64; 3],
     /// Likewise.
     pub high: [f64; 3],
@@ -231,7 +244,8 @@ pub struct ArealightLightSummary {
     pub effects: u32,
 }
 
-/// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+/// Arrays of the host for packed lights, as the buffers of ArealightResources hold them; aligned to 4 bytes,
+/// null to ask for the sizes alone.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightPackedLights {
@@ -275,8 +289,8 @@ pub struct ArealightBuffer {
     pub range: u64,
 }
 
-/// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are left as they
-/// are.
+/// The host's resources of a pass. The host's barriers make them visible to the compute stage; layouts are
+/// left as they are.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightResources {
@@ -292,38 +306,44 @@ pub struct ArealightResources {
     pub normal: ArealightImage,
     /// Linear base colour in rgb, metalness in a (rgba8).
     pub base_color: ArealightImage,
-    /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass with
-    /// AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
+    /// Dielectric F0 in rgb, F90 in a (rgba8). May be 0 without AREALIGHT_EFFECT_SPECULAR_INPUT, in a pass
+    /// with AREALIGHT_G_BUFFER_AREALIGHT. Other layouts have other contents here and in the two before.
     pub specular: ArealightImage,
-    /// Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with AREALIGHT_EFFECT_COAT_NORMAL the coat's
-    /// normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
+    /// Of clear coats, in every layout: weight in r, perceptual roughness in g (rg8), and with
+    /// AREALIGHT_EFFECT_COAT_NORMAL the coat's normal in ba, as its place in [-1, 1] x [-1, 1] on an unfolded
+    /// octahedron (rgba16f). May be 0 without AREALIGHT_EFFECT_COAT.
     pub coat: ArealightImage,
-    /// Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without AREALIGHT_EFFECT_SHEEN.
+    /// Of sheen, in every layout: linear colour in rgb, perceptual roughness in a (rgba8). May be 0 without
+    /// AREALIGHT_EFFECT_SHEEN.
     pub sheen: ArealightImage,
-    /// Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on an unfolded octahedron,
-    /// perceptual roughness along it in b, 0 where there is one roughness; and the roughness of the diffuse lobe in a (rgba16f). May be 0
-    /// without AREALIGHT_EFFECT_ANISOTROPY and _DIFFUSE_ROUGHNESS.
+    /// Of lobes of two roughnesses, in every layout: the tangent in rg, as its place in [-1, 1] x [-1, 1] on
+    /// an unfolded octahedron, perceptual roughness along it in b, 0 where there is one roughness; and the
+    /// roughness of the diffuse lobe in a (rgba16f). May be 0 without AREALIGHT_EFFECT_ANISOTROPY and
+    /// _DIFFUSE_ROUGHNESS.
     pub anisotropy: ArealightImage,
-    /// Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g, its thickness in nanometres in b
-    /// (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
+    /// Of thin films, in every layout: how much of the surface one covers in r, its index of refraction in g,
+    /// its thickness in nanometres in b (rgba16f). May be 0 without AREALIGHT_EFFECT_THIN_FILM.
     pub film: ArealightImage,
-    /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that `arealight export`
-    /// describes. May be 0 where no frame has textured lights.
+    /// The lights' images: what arealight_textures_image says, or a 2D array (rgba16f) with the levels that
+    /// `arealight export` describes. May be 0 where no frame has textured lights.
     pub light_textures: ArealightImage,
-    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in VK_IMAGE_LAYOUT_GENERAL.
+    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format in
+    /// VK_IMAGE_LAYOUT_GENERAL.
     pub radiance: ArealightImage,
     /// Where the glossy lobe's goes with AREALIGHT_IMAGES_SEPARATE: another such image. Else 0.
     pub glossy: ArealightImage,
     /// What arealight_lobe_horizons wrote. Without tiles 0.
     pub lobe_horizons: ArealightBuffer,
-    /// What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without tiles 0.
+    /// What arealight_pass_tile_memory asks for: frames that run at the same time need one each. Without
+    /// tiles 0.
     pub tile_lists: ArealightBuffer,
     /// Of arealight_pass_shadow_picks_size bytes. Without shadow rays 0.
     pub shadow_picks: ArealightBuffer,
-    /// A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint). Without ArealightPassOptions.stencil 0.
+    /// A stencil for each texel of the G-buffer: the stencil aspect (s8_uint) or unsigned integers (r8_uint).
+    /// Without ArealightPassOptions.stencil 0.
     pub stencil: ArealightImage,
-    /// Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are convex quads without a texture. Without
-    /// ArealightPassOptions.light_counts 0.
+    /// Three numbers of 32 bits: how many lights, how many shapes, and how many of the first lights are
+    /// convex quads without a texture. Without ArealightPassOptions.light_counts 0.
     pub light_counts: ArealightBuffer,
 }
 
@@ -349,40 +369,45 @@ pub struct ArealightViewport {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightFrame {
-    /// How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may be larger.
+    /// How many pixels are shaded, from the first of the radiance image on, or from `offset`. The images may
+    /// be larger.
     pub width: u32,
     /// Likewise.
     pub height: u32,
-    /// The camera's position relative to the origin of positions and lights; with AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays
-    /// its length is that at which a perspective camera would stand that sees as much.
+    /// The camera's position relative to the origin of positions and lights; with
+    /// AREALIGHT_CAMERA_ORTHOGRAPHIC the direction to it. With shadow rays its length is that at which a
+    /// perspective camera would stand that sees as much.
     pub camera: [f32; 3],
     /// ArealightPackedLights.summary of the lights in the set's buffers.
     pub lights: ArealightLightSummary,
     /// With shadow rays, of their random numbers: one more in each frame. Else 0.
     pub seed: u32,
-    /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the origin. May
-    /// be null with AREALIGHT_POSITION_IMAGE.
+    /// Column-major 4 x 4: the inverse of projection times view, from clip space to positions relative to the
+    /// origin. May be null with AREALIGHT_POSITION_IMAGE.
     pub position_from_clip: *const f32,
     /// With tiles, ArealightResources.tile_lists of the set: dispatches are read from it. Else 0.
     pub tile_lists: ArealightBuffer,
-    /// The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of the frame's pixels, y down. Only
-    /// positions from depth, and a shadow's history, depend on it.
+    /// The viewport that drew the G-buffer, with a negative height where y is up. All 0: just the texels of
+    /// the frame's pixels, y down. Only positions from depth, and a shadow's history, depend on it.
     pub viewport: ArealightViewport,
     /// With ArealightPassOptions.rectangle the first pixel that is shaded, x and y. Else 0.
     pub offset: [u32; 2],
-    /// The rows of pixels that this record shades, from the first to before the second, of those of `height`: a frame of more work than a driver's
-    /// watchdog allows is recorded and submitted in parts. Both are multiples of 8, or the second is `height`. 0, 0: all.
+    /// The rows of pixels that this record shades, from the first to before the second, of those of `height`:
+    /// a frame of more work than a driver's watchdog allows is recorded and submitted in parts. Both are
+    /// multiples of 8, or the second is `height`. 0, 0: all.
     pub rows: [u32; 2],
-    /// With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and every pixel is shaded.
+    /// With ArealightPassOptions.stencil, which bits of the stencil are compared, at most 255: 0 is none, and
+    /// every pixel is shaded.
     pub stencil_compare_mask: u32,
     /// What those bits must be, at most 255.
     pub stencil_reference: u32,
-    /// With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else 0.
+    /// With AREALIGHT_DESCRIPTORS_LIGHT_OFFSETS, where the frame's lights, vertices and shapes begin, in
+    /// bytes after what the set was written with. Else 0.
     pub light_offsets: [u32; 3],
 }
 
-/// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before another frame uses it, the host
-/// waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
+/// The buffer of ArealightResources.tile_lists. The pass alone writes it, with barriers of its own; before
+/// another frame uses it, the host waits for the stages `TRANSFER`, `COMPUTE_SHADER` and `DRAW_INDIRECT`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ArealightTileMemory {
@@ -412,14 +437,15 @@ pub struct ArealightShadowOptions {
 pub struct ArealightShadowResources {
     /// A storage image (rgba16f) of the frame's size, in VK_IMAGE_LAYOUT_GENERAL. The pass alone writes it.
     pub shadow: ArealightImage,
-    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the unshadowed one in
-    /// ArealightResources.radiance.
+    /// Where radiance goes: a storage image of ArealightPassOptions.radiance_format. 0: it replaces the
+    /// unshadowed one in ArealightResources.radiance.
     pub radiance: ArealightImage,
-    /// With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros before the first frame and after each cut. The
-    /// pass alone writes it; it is the same for all frames of a view. Else 0.
+    /// With a history: arealight_shadow_history_size bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT too, of zeros
+    /// before the first frame and after each cut. The pass alone writes it; it is the same for all frames of
+    /// a view. Else 0.
     pub history: ArealightBuffer,
-    /// With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is, in parts of the image's
-    /// width and height (rg16f). Else 0.
+    /// With AREALIGHT_SHADOW_HISTORY_MOTION: where a pixel's point was in the frame before less where it is,
+    /// in parts of the image's width and height (rg16f). Else 0.
     pub motion: ArealightImage,
     /// ArealightBlockerArrays.nodes. 0 with a module of the host's.
     pub blocker_nodes: ArealightBuffer,
@@ -431,18 +457,20 @@ pub struct ArealightShadowResources {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightShadowFrame {
-    /// That of the shade pass. With a history it has `position_from_clip`, also where positions come from an image, and `seed` counts frames.
+    /// That of the shade pass. With a history it has `position_from_clip`, also where positions come from an
+    /// image, and `seed` counts frames.
     pub frame: *const ArealightFrame,
     /// VkDescriptorSet for set 1 of a module of the host's. Else 0.
     pub host_set: u64,
-    /// What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with a
-    /// history.
+    /// What is added to positions relative to this frame's origin for positions relative to that of the frame
+    /// before. Read only with a history.
     pub origin_shift: [f32; 3],
     /// 0
     pub reserved: u32,
 }
 
-/// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes, null to ask for the sizes alone.
+/// Arrays of the host for blockers, as the buffers of ArealightShadowResources hold them; aligned to 4 bytes,
+/// null to ask for the sizes alone.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightBlockerArrays {
@@ -510,7 +538,8 @@ pub struct ArealightTextureSetup {
 pub struct ArealightTextureUpdate {
     /// VkDescriptorSet that arealight_textures_write_source_set pointed at the image.
     pub source_set: u64,
-    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first
+    /// texel.
     pub part_low: [f64; 2],
     /// What is added to them at (1, 1); positive.
     pub part_size: [f64; 2],

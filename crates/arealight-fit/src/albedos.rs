@@ -1,4 +1,5 @@
-//! Albedos as a table holds them at grazing views: those at its nodes, changed so that what is interpolated between them errs least.
+//! Albedos as a table holds them at grazing views: those at its nodes, changed so that what is interpolated
+//! between them errs least.
 
 use arealight::{MIN_ALPHA, TableDescription};
 use glam::{DMat3, DVec3};
@@ -17,8 +18,9 @@ const NEAR_HORIZON: [f64; 3] = [0.97, 0.99, 0.998];
 /// Iterations of Lawson's method: more change the largest error by less than a hundredth.
 const ITERATIONS: usize = 30;
 
-/// The albedos, with the description's dip filled, of the last [`ROWS`] nodes of a column, from `column`, those of all of its nodes: the largest
-/// error between them is the least. `None` for a table that has no more rows.
+/// The albedos, with the description's dip filled, of the last [`ROWS`] nodes of a column, from `column`,
+/// those of all of its nodes: the largest error between them is the least. `None` for a table that has no
+/// more rows.
 pub(crate) fn balanced(
     brdf: &dyn Brdf,
     description: &TableDescription,
@@ -53,8 +55,8 @@ pub(crate) fn balanced(
     }))
 }
 
-/// The `x` for which the largest of `|error + nodes . x|` is the least. Source: Lawson 1961, *Contributions to the Theory of Linear Least Maximum
-/// Approximation*: least squares, weighted by the errors that are left.
+/// The `x` for which the largest of `|error + nodes . x|` is the least. Source: Lawson 1961, *Contributions
+/// to the Theory of Linear Least Maximum Approximation*: least squares, weighted by the errors that are left.
 fn least_largest(errors: &[(f64, DVec3)]) -> DVec3 {
     let mut weights = vec![1.0 / errors.len() as f64; errors.len()];
     let mut best = (f64::INFINITY, DVec3::ZERO);

@@ -34,7 +34,8 @@ pub trait Brdf: Sync {
     /// The two albedos of an alpha and a view, which may lie in the surface, to about 1e-7.
     fn magnitude(&self, alpha: f64, cos_view: f64) -> Magnitude;
 
-    /// Whether its albedos are smooth enough for a table towards the horizon with [`arealight::table::ggx_grazing_dip`] added.
+    /// Whether its albedos are smooth enough for a table towards the horizon with
+    /// [`arealight::table::ggx_grazing_dip`] added.
     fn has_ggx_dip(&self) -> bool {
         false
     }
@@ -97,13 +98,13 @@ impl Brdf for GgxBrdf {
     }
 }
 
-/// Integrates a BRDF's albedos over half vectors in polar coordinates, because there the horizon of the light is a boundary
-/// in closed form, and a product of Gauss rules meets no kink: with the half vector at `theta` and
-/// azimuth `phi`, `light.z = sin_view cos(phi) sin(2 theta) + cos_view cos(2 theta)`. For lobes about the half vector that are about as wide as GGX of
-/// this alpha, and for smooth ones.
+/// Integrates a BRDF's albedos over half vectors in polar coordinates, because there the horizon of the light
+/// is a boundary in closed form, and a product of Gauss rules meets no kink: with the half vector at `theta`
+/// and azimuth `phi`, `light.z = sin_view cos(phi) sin(2 theta) + cos_view cos(2 theta)`. For lobes about the
+/// half vector that are about as wide as GGX of this alpha, and for smooth ones.
 ///
-/// `evaluate` has the unit half vector and the direction of the light, and says `f cos theta_light` and Schlick's weight ([`Brdf::schlick_weight`]); it is
-/// called 3,840 times. `view` is as for [`Brdf`].
+/// `evaluate` has the unit half vector and the direction of the light, and says `f cos theta_light` and
+/// Schlick's weight ([`Brdf::schlick_weight`]); it is called 3,840 times. `view` is as for [`Brdf`].
 pub fn half_vector_magnitude(
     alpha: f64,
     view: DVec3,

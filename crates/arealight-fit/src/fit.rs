@@ -23,7 +23,8 @@ pub struct Settings {
     pub size: u32,
     /// The lobes that are fitted at each node.
     pub aim: Aim,
-    /// Whether pairs of lobes are fitted beside them ([`arealight::table::LobePairs`]), which takes twice as long as the rest.
+    /// Whether pairs of lobes are fitted beside them ([`arealight::table::LobePairs`]), which takes twice as
+    /// long as the rest.
     pub pairs: bool,
 }
 
@@ -35,11 +36,12 @@ impl Default for Settings {
 
 /// Fits a table to a BRDF.
 ///
-/// Each column (a roughness) of each matrix runs from the normal to the horizon, each texel starting from the one before, so
-/// that neighbours settle alike. Columns do not depend on each other: the result is the same on any number of
-/// threads.
+/// Each column (a roughness) of each matrix runs from the normal to the horizon, each texel starting from the
+/// one before, so that neighbours settle alike. Columns do not depend on each other: the result is the same
+/// on any number of threads.
 ///
-/// `progress` is called from any thread with the number of steps done and the number to do, [`Settings::steps`].
+/// `progress` is called from any thread with the number of steps done and the number to do,
+/// [`Settings::steps`].
 ///
 /// # Errors
 /// [`FitError`] if the settings are out of range, or the BRDF yields no lobe at some texel.
@@ -114,8 +116,9 @@ pub fn fit(
 /// What the pair of a texel counts as steps of [`Settings::steps`]: it takes about as long.
 const STEPS_A_PAIR: u64 = 4;
 
-/// Fits the lobes of one roughness, from 0 to 1, and one view, starting from what `table` interpolates there: a table that
-/// gives this fit, to be looked up at that place alone. So what the nodes of `table` between them lose is known.
+/// Fits the lobes of one roughness, from 0 to 1, and one view, starting from what `table` interpolates there:
+/// a table that gives this fit, to be looked up at that place alone. So what the nodes of `table` between
+/// them lose is known.
 ///
 /// # Errors
 /// As [`fit`], whose `settings.aim` this takes.
@@ -190,7 +193,8 @@ pub(crate) fn node_of(size: u32, i: usize) -> (f64, f64) {
     ((roughness * roughness).max(MIN_ALPHA), cos_view.max(MIN_COS_VIEW))
 }
 
-/// At the normal, GGX of a small alpha is a transformed cosine exactly: `tan theta_light = 2 alpha tan theta`.
+/// At the normal, GGX of a small alpha is a transformed cosine exactly:
+/// `tan theta_light = 2 alpha tan theta`.
 fn start_at_normal(alpha: f64) -> Lobe {
     Lobe { texel: [1.0, 0.0, 0.0, 2.0 / (1.0 + alpha)], alpha }
 }

@@ -1,9 +1,9 @@
 //! The fit of a table-free [`Formula`] to a fitted table.
 //!
-//! The table's entries are smooth, so that polynomials of a low order come near them, if they are off where it does not
-//! matter. What matters, the loss of the table's own fit tells: about its smallest value it grows by the square of the four
-//! entries' errors in a metric of their own, the curvature, which changes by orders of magnitude over the table and in
-//! which some sums of entries count for nothing.
+//! The table's entries are smooth, so that polynomials of a low order come near them, if they are off where
+//! it does not matter. What matters, the loss of the table's own fit tells: about its smallest value it grows
+//! by the square of the four entries' errors in a metric of their own, the curvature, which changes by orders
+//! of magnitude over the table and in which some sums of entries count for nothing.
 
 use arealight::{LightTable, MIN_ALPHA};
 use arealight_oracle::formula::Formula;
@@ -24,14 +24,16 @@ pub use text::{glsl, rust};
 /// The smallest table a formula is fitted to, in nodes a side.
 const SMALLEST_SIZE: u32 = 8;
 
-/// About how many nodes a side are fitted. A cubic has ten coefficients: more nodes change nothing but the time.
+/// About how many nodes a side are fitted. A cubic has ten coefficients: more nodes change nothing but the
+/// time.
 const NODES: u32 = 22;
 
-/// What is added to the albedo of Schlick's weight when its lobe's errors are weighed. Otherwise views near the normal, where
-/// that albedo is 1e-9, would leave the cubic free to make no lobe at all there.
+/// What is added to the albedo of Schlick's weight when its lobe's errors are weighed. Otherwise views near
+/// the normal, where that albedo is 1e-9, would leave the cubic free to make no lobe at all there.
 const SCHLICK_OFFSET: f64 = 0.03;
 
-/// Fits a formula to a table of a BRDF. Its coefficients have six digits, as they are printed by [`rust`] and [`glsl`].
+/// Fits a formula to a table of a BRDF. Its coefficients have six digits, as they are printed by [`rust`] and
+/// [`glsl`].
 ///
 /// # Errors
 /// [`FitError`] if the table has less than 8 nodes a side, or the BRDF is not one that it can be of.
@@ -89,8 +91,8 @@ fn nodes(brdf: &dyn Brdf, table: &LightTable) -> Vec<Node> {
         .collect()
 }
 
-/// Fits the four entries of a lobe, all in one least squares since the curvature ties them together. `albedo` is what a
-/// node's lobe is multiplied by.
+/// Fits the four entries of a lobe, all in one least squares since the curvature ties them together. `albedo`
+/// is what a node's lobe is multiplied by.
 fn fit_lobe(
     brdf: &dyn Brdf,
     texels: &[[f32; 4]],
@@ -127,7 +129,8 @@ fn fit_lobe(
     Ok(std::array::from_fn(|i| std::array::from_fn(|k| six_digits(coefficients[4 * i + k]))))
 }
 
-/// Fits what the albedo of the narrowest lobes lacks towards the horizon, by the ratio of the view's cosine and alpha.
+/// Fits what the albedo of the narrowest lobes lacks towards the horizon, by the ratio of the view's cosine
+/// and alpha.
 fn fit_dip(brdf: &dyn Brdf) -> [f64; 4] {
     const ALPHA: f64 = MIN_ALPHA * 100.0;
     const SAMPLES: i32 = 121;
@@ -183,9 +186,9 @@ struct Sample {
     weight: f64,
 }
 
-/// Fits the coefficients above and below by Sanathanan and Koerner's method: a linear least squares of the errors times
-/// the denominator, divided by the denominator of the step before. Answers the best step whose denominator stays well
-/// above 0, rounded.
+/// Fits the coefficients above and below by Sanathanan and Koerner's method: a linear least squares of the
+/// errors times the denominator, divided by the denominator of the step before. Answers the best step whose
+/// denominator stays well above 0, rounded.
 fn fit_rational(samples: &[Sample]) -> (Vec<f64>, Vec<f64>) {
     const STEPS: usize = 40;
     const SMALLEST_DENOMINATOR: f64 = 0.05;

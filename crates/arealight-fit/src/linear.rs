@@ -20,7 +20,8 @@ pub fn cholesky<const N: usize>(matrix: &[[f64; N]; N], smallest_pivot: f64) -> 
     Some(lower)
 }
 
-/// A linear least squares problem: the unknowns that make the sum of the squared residuals of all rows smallest.
+/// A linear least squares problem: the unknowns that make the sum of the squared residuals of all rows
+/// smallest.
 pub struct LeastSquares {
     unknowns: usize,
     /// Of `unknowns` factors and the right-hand side each.
@@ -33,8 +34,8 @@ impl LeastSquares {
         Self { unknowns, rows: Vec::new() }
     }
 
-    /// Adds the row `sum of factor * unknown = target`. Factors that are not given are 0, and there are no more of
-    /// them than unknowns.
+    /// Adds the row `sum of factor * unknown = target`. Factors that are not given are 0, and there are no
+    /// more of them than unknowns.
     pub fn add(&mut self, factors: impl Iterator<Item = f64>, target: f64) {
         let start = self.rows.len();
         self.rows.extend(factors.take(self.unknowns));

@@ -81,8 +81,8 @@ impl Lobe {
         (density, gradient)
     }
 
-    /// The part of the lobe's energy above the surface, and its derivatives by the four entries; `normal` is the
-    /// surface's, in the mirror frame. The twin of [`arealight::table::share_above_surface`].
+    /// The part of the lobe's energy above the surface, and its derivatives by the four entries; `normal` is
+    /// the surface's, in the mirror frame. The twin of [`arealight::table::share_above_surface`].
     ///
     /// In cosine space the surface's normal is `n = M^T normal`, and the share `(1 + n.z / |n|) / 2`.
     pub fn share_above(&self, normal: DVec3) -> (f64, [f64; 4]) {

@@ -42,9 +42,9 @@ pub struct Texel<'a> {
 }
 
 impl Texel<'_> {
-    /// Lays nodes over the sphere: half of them drawn from the BRDF, half from `guess`, weighted by the balance
-    /// heuristic, so that both a peak that the guess misses and energy that the guess puts where the BRDF
-    /// has none are seen. Directions of no usable value are left out.
+    /// Lays nodes over the sphere: half of them drawn from the BRDF, half from `guess`, weighted by the
+    /// balance heuristic, so that both a peak that the guess misses and energy that the guess puts where the
+    /// BRDF has none are seen. Directions of no usable value are left out.
     pub fn nodes(&self, guess: &Lobe) -> Nodes {
         let view = view_direction(self.cos_view);
         let to_surface = mirror_frame(self.cos_view);

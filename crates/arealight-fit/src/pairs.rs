@@ -10,19 +10,20 @@ use crate::lobe::Lobe;
 use crate::nodes::Texel;
 use crate::solve::{Quadrature, accumulate, minimise};
 
-/// The numbers of a pair: the four entries of either lobe, and the second one's share of the energy at a reflectance of 1 and at
-/// [`DIELECTRIC_F0`].
+/// The numbers of a pair: the four entries of either lobe, and the second one's share of the energy at a
+/// reflectance of 1 and at [`DIELECTRIC_F0`].
 const PARAMETERS: usize = 10;
 
-/// How strongly a texel is held at its guess, as [`crate::solve`]'s: ten times as much, since two lobes leave more to decide.
+/// How strongly a texel is held at its guess, as [`crate::solve`]'s: ten times as much, since two lobes leave
+/// more to decide.
 const ANCHOR: f64 = 1e-2;
 
-/// What the dielectric's squares count beside those of a reflectance of 1. Its lobe is held against others of the same energy, but has a
-/// tenth of it or less: with 1 metals would pay for what nobody sees.
+/// What the dielectric's squares count beside those of a reflectance of 1. Its lobe is held against others of
+/// the same energy, but has a tenth of it or less: with 1 metals would pay for what nobody sees.
 const DIELECTRIC_WEIGHT: f64 = 0.1;
 
-/// At the first node the first lobe is begun half as wide as one lobe, the second twice as wide, and with this share. Any start like it leads
-/// to the same lobes, but for columns that would end in another minimum.
+/// At the first node the first lobe is begun half as wide as one lobe, the second twice as wide, and with
+/// this share. Any start like it leads to the same lobes, but for columns that would end in another minimum.
 const SPREAD: f64 = 2.0;
 const FIRST_SHARE: f64 = 0.3;
 
@@ -59,7 +60,8 @@ pub fn fit_pairs(
     })
 }
 
-/// Fits the pair of one texel from a pair near it: the matrix texels of both lobes, and the second one's shares.
+/// Fits the pair of one texel from a pair near it: the matrix texels of both lobes, and the second one's
+/// shares.
 ///
 /// # Errors
 /// As [`fit_pairs`].
@@ -133,8 +135,8 @@ impl Pair {
     }
 }
 
-/// The least squares of a pair: those of one lobe ([`crate::solve::Problem`]) at both reflectances, of the sum of both lobes. Clipped at the
-/// surface's horizon too, each is scaled to keep its energy.
+/// The least squares of a pair: those of one lobe ([`crate::solve::Problem`]) at both reflectances, of the
+/// sum of both lobes. Clipped at the surface's horizon too, each is scaled to keep its energy.
 struct PairProblem {
     quadrature: Quadrature,
     /// Of each probe, at either reflectance.

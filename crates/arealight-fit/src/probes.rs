@@ -54,9 +54,10 @@ struct Layout {
 }
 
 impl Layout {
-    /// Of eight probes three lie about the mirror direction, two anywhere above the surface and two across its
-    /// horizon on the far side, from half a lobe's width to large lights. One is laid out in the guess's
-    /// cosine space, because lobes are much narrower across the plane of incidence than alpha at grazing views.
+    /// Of eight probes three lie about the mirror direction, two anywhere above the surface and two across
+    /// its horizon on the far side, from half a lobe's width to large lights. One is laid out in the guess's
+    /// cosine space, because lobes are much narrower across the plane of incidence than alpha at grazing
+    /// views.
     fn probe(&self, random: &mut Random, i: usize) -> Probe {
         let is_in_lobe = i % 8 == 2;
         let smallest = if is_in_lobe { 0.1 } else { 0.5 * self.alpha.min(0.2) };

@@ -19,9 +19,10 @@ const SMALLEST_GAIN: f64 = 1e-6;
 /// what they do not, so that the table is smooth; too little to move what they do.
 const ANCHOR: f64 = 1e-3;
 
-/// The least squares of one texel: the sum over probes of (integral of the lobe - integral aimed at)², once with
-/// the lobe clipped by its own horizon only, once by the surface's as well and scaled to keep its energy. Both
-/// ways are used for shading, and a table that is fitted for one of them alone does badly in the other.
+/// The least squares of one texel: the sum over probes of (integral of the lobe - integral aimed at)², once
+/// with the lobe clipped by its own horizon only, once by the surface's as well and scaled to keep its
+/// energy. Both ways are used for shading, and a table that is fitted for one of them alone does badly in the
+/// other.
 pub struct Problem {
     quadrature: Quadrature,
     /// Those of the lobe aimed at, a probe.
@@ -58,8 +59,9 @@ impl Quadrature {
         Ok(Self { nodes, above, normal, rows })
     }
 
-    /// The integrals of the lobe `f * (shares[0] + shares[1] * schlick)`, a probe: of the lobe, and of its part above the surface scaled to
-    /// the same energy. A BRDF that reflects nothing below the surface has one and the same for both.
+    /// The integrals of the lobe `f * (shares[0] + shares[1] * schlick)`, a probe: of the lobe, and of its
+    /// part above the surface scaled to the same energy. A BRDF that reflects nothing below the surface has
+    /// one and the same for both.
     pub fn targets(&self, [of_lobe, of_schlick]: [f64; 2]) -> Vec<[f64; 2]> {
         let value = |node: &Node| (of_lobe * node.value + of_schlick * node.schlick) as f32;
         let target: Vec<f32> = self.nodes.iter().map(value).collect();
@@ -156,8 +158,8 @@ impl Problem {
         misfit + distance
     }
 
-    /// Half the loss's second derivatives by the entries of the texel about a lobe, in the manner of Gauss and Newton,
-    /// with what holds it at the guess.
+    /// Half the loss's second derivatives by the entries of the texel about a lobe, in the manner of Gauss
+    /// and Newton, with what holds it at the guess.
     pub fn curvature(&self, lobe: &Lobe) -> [[f64; 4]; 4] {
         self.normal_equations(lobe, [true; 4]).0
     }
@@ -211,8 +213,9 @@ pub fn accumulate<const N: usize>(
     }
 }
 
-/// Minimises a loss of N parameters by Gauss-Newton steps, damped as Levenberg and Marquardt do; one is taken only if the loss falls.
-/// `equations` gives `JᵀJ` and `Jᵀr`, `moved` what a step, which is to be taken away, leads to.
+/// Minimises a loss of N parameters by Gauss-Newton steps, damped as Levenberg and Marquardt do; one is taken
+/// only if the loss falls. `equations` gives `JᵀJ` and `Jᵀr`, `moved` what a step, which is to be taken away,
+/// leads to.
 pub fn minimise<T: Copy, const N: usize>(
     start: T,
     loss: impl Fn(&T) -> f64,

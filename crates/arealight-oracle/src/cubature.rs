@@ -77,7 +77,8 @@ impl Region {
         Self { triangles: pairs.map(triangle).collect() }
     }
 
-    /// Adds the region of a planar polygon, as [`Region::polygon`] makes it. Polygons that share an edge count it once.
+    /// Adds the region of a planar polygon, as [`Region::polygon`] makes it. Polygons that share an edge
+    /// count it once.
     pub fn extend(&mut self, vertices: &[DVec3]) {
         self.triangles.extend(Self::polygon(vertices).triangles);
     }
@@ -107,8 +108,8 @@ impl Region {
         Self { triangles }
     }
 
-    /// The same region with every triangle cut along the plane `normal · p = 0`: a ridge of the integrand that
-    /// lies there then runs along edges, and a few long triangles follow it instead of many small ones.
+    /// The same region with every triangle cut along the plane `normal · p = 0`: a ridge of the integrand
+    /// that lies there then runs along edges, and a few long triangles follow it instead of many small ones.
     #[must_use]
     pub fn cut(&self, normal: DVec3) -> Self {
         let [mut above, below] = [normal, -normal].map(|side| self.clipped(side));

@@ -1,25 +1,28 @@
-//! The clamped cosine integrated over a flat ellipse, in closed form: the *form factor* of a disk light, and of
-//! what a linear transform makes of one.
+//! The clamped cosine integrated over a flat ellipse, in closed form: the *form factor* of a disk light, and
+//! of what a linear transform makes of one.
 //!
-//! The twin of `shaders/include/arealight/form_factor/ellipse.glsl` and `elliptic_arc.glsl`, step by step; where float64 allows,
-//! the same in fewer words. [`contour_form_factor`] is the same integral by another way.
+//! The twin of `shaders/include/arealight/form_factor/ellipse.glsl` and `elliptic_arc.glsl`, step by step;
+//! where float64 allows, the same in fewer words. [`contour_form_factor`] is the same integral by another
+//! way.
 //!
 //! # Accuracy
 //! [`form_factor`]: 1e-14 where the point is not closer to the rim than a thousandth of the ellipse's size, 1e-9 in
-//! contact at a millionth, relative to the ellipse as given; for far ellipses 1e-12 of what one that faces the origin sends. [`contour_form_factor`] 1e-12, where its subdivision
-//! suffices (rims down to 1e-6 of the size away).
+//! contact at a millionth, relative to the ellipse as given; for far ellipses 1e-12 of what one that faces
+//! the origin sends. [`contour_form_factor`] 1e-12, where its subdivision suffices (rims down to 1e-6 of the
+//! size away).
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// The longer axis over the distance below which what crosses the horizon is summed over its area. There the contour's
-/// terms would lose four digits; the rules' error is below 1e-13.
+/// The longer axis over the distance below which what crosses the horizon is summed over its area. There the
+/// contour's terms would lose four digits; the rules' error is below 1e-13.
 const SMALL: f64 = 1.0 / 64.0;
 
-/// The points `center + cos(t) axis_u + sin(t) axis_v`, as seen from the origin, in a space whose z axis is the normal.
+/// The points `center + cos(t) axis_u + sin(t) axis_v`, as seen from the origin, in a space whose z axis is
+/// the normal.
 ///
-/// The axes are any two conjugate ones. The front is where t runs counter-clockwise, so `axis_u x axis_v` points to where
-/// it shines.
+/// The axes are any two conjugate ones. The front is where t runs counter-clockwise, so `axis_u x axis_v`
+/// points to where it shines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipse {
     /// The center, from the shading point.
@@ -98,8 +101,8 @@ impl Ellipse {
     }
 }
 
-/// The largest root l of x^2 / (a^2 + l) + y^2 / (b^2 + l) + h^2 / l = 1: Viete's formula for the root of the largest
-/// size, and where that is negative the quadratic equation of the others.
+/// The largest root l of x^2 / (a^2 + l) + y^2 / (b^2 + l) + h^2 / l = 1: Viete's formula for the root of the
+/// largest size, and where that is negative the quadratic equation of the others.
 fn confocal_root(ellipse: &Principal) -> f64 {
     let DVec3 { x, y, z } = ellipse.center.abs();
     let (a, b) = (ellipse.major, ellipse.minor);
@@ -167,7 +170,8 @@ fn cone(ellipse: &Principal, root: f64) -> Cone {
 }
 
 impl Cone {
-    /// The integral of p x dp / |p|^2 over the outline from `middle - half` to `middle + half`, in the cone's frame.
+    /// The integral of p x dp / |p|^2 over the outline from `middle - half` to `middle + half`, in the cone's
+    /// frame.
     fn arc(&self, middle: [f64; 2], half: [f64; 2]) -> DVec3 {
         let ([cs, ss], [ch, sh], &Self { a, b, c, .. }) = (middle, half, self);
         let (p, q, e) = (c * c + a * a, c * c + b * b, (a - b) * (a + b));
@@ -195,7 +199,8 @@ impl Cone {
         DVec3::new(-2.0 * b * c * cs * sh / sum * excess, a * c * lean, a * b * turn / pq)
     }
 
-    /// The form factor of the part above the horizon of a unit normal in the cone's frame, where the cone crosses it.
+    /// The form factor of the part above the horizon of a unit normal in the cone's frame, where the cone
+    /// crosses it.
     fn above_horizon(&self, normal: DVec3) -> f64 {
         let Self { a, b, c, .. } = *self;
         let steepness = (a * normal.x).hypot(b * normal.y).max(f64::MIN_POSITIVE);
@@ -209,8 +214,8 @@ impl Cone {
     }
 }
 
-/// The form factor of the part above the horizon of a small ellipse that crosses it, by Gauss rules over the disk to which
-/// its axes map it: all terms have one sign, where those of the contour would cancel.
+/// The form factor of the part above the horizon of a small ellipse that crosses it, by Gauss rules over the
+/// disk to which its axes map it: all terms have one sign, where those of the contour would cancel.
 fn small_segment(ellipse: &Ellipse, principal: &Principal, rise: f64) -> f64 {
     // On the disk, the height's direction and the one across it
     let [u, v] = [ellipse.axis_u.z / rise, ellipse.axis_v.z / rise];
@@ -233,14 +238,15 @@ fn small_segment(ellipse: &Ellipse, principal: &Principal, rise: f64) -> f64 {
     principal.center.z * principal.major * principal.minor * rise * sum / PI
 }
 
-/// The integral of the direction over pi, over the directions that the whole ellipse covers: of whatever side is seen.
+/// The integral of the direction over pi, over the directions that the whole ellipse covers: of whatever side
+/// is seen.
 pub fn vector_form_factor(ellipse: &Ellipse) -> DVec3 {
     let principal = ellipse.principal();
     principal.frame * vector(&principal, confocal_root(&principal))
 }
 
-/// The signed integral of the clamped cosine `max(0, cos) / pi` over an ellipse, in [-1, 1]: positive where its front
-/// faces the origin. What lies below z = 0 is clipped. An ellipse that is not finite gives 0.
+/// The signed integral of the clamped cosine `max(0, cos) / pi` over an ellipse, in [-1, 1]: positive where
+/// its front faces the origin. What lies below z = 0 is clipped. An ellipse that is not finite gives 0.
 pub fn form_factor(ellipse: &Ellipse) -> f64 {
     let rise = ellipse.axis_u.z.hypot(ellipse.axis_v.z);
     let finite = ellipse.center.is_finite() && ellipse.axis_u.is_finite() && ellipse.axis_v.is_finite();
@@ -262,8 +268,8 @@ pub fn form_factor(ellipse: &Ellipse) -> f64 {
     if value.is_finite() { sign * value.clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// As [`form_factor`], by adaptive quadrature of Lambert's contour integral over the outline above the horizon, and the
-/// angle that closes it there.
+/// As [`form_factor`], by adaptive quadrature of Lambert's contour integral over the outline above the
+/// horizon, and the angle that closes it there.
 pub fn contour_form_factor(ellipse: &Ellipse) -> f64 {
     let rise = ellipse.axis_u.z.hypot(ellipse.axis_v.z);
     if ellipse.center.z <= -rise {
@@ -287,8 +293,8 @@ pub fn contour_form_factor(ellipse: &Ellipse) -> f64 {
     -sum / TAU
 }
 
-/// The integral of a smooth function from `low` to `high`, halving intervals until an eight-point and two eight-point
-/// Gauss rules agree to `tolerance` or to 1e-13 of the value.
+/// The integral of a smooth function from `low` to `high`, halving intervals until an eight-point and two
+/// eight-point Gauss rules agree to `tolerance` or to 1e-13 of the value.
 pub(crate) fn adaptive(f: &impl Fn(f64) -> f64, low: f64, high: f64, tolerance: f64) -> f64 {
     const PIECES: usize = 8;
     let edge = |i: usize| low + (high - low) * i as f64 / PIECES as f64;

@@ -1,9 +1,10 @@
 //! A BRDF without a table: polynomials for the matrices, rational functions for the albedos.
 //!
-//! In the mirror frame the entries are smooth enough for a cubic in alpha and the view's cosine. The coefficients are
-//! those of a weighted linear least squares on a fitted table, where each texel's four entries are weighted by the
-//! curvature of the fit's own loss about it: what the integrals hardly depend on is free to be wrong. That makes the
-//! difference: with equal weights a cubic errs five times as much as the table, with these 1.3 times.
+//! In the mirror frame the entries are smooth enough for a cubic in alpha and the view's cosine. The
+//! coefficients are those of a weighted linear least squares on a fitted table, where each texel's four
+//! entries are weighted by the curvature of the fit's own loss about it: what the integrals hardly depend on
+//! is free to be wrong. That makes the difference: with equal weights a cubic errs five times as much as the
+//! table, with these 1.3 times.
 //!
 //! Mean error of [`Formula::GGX`] over the fit's report: 5.5e-4 at F0 = 0.02, 6.6e-4 at 0.04, 2.85e-3 at
 //! 1. The albedo is within 0.014 of the truth, that of Schlick's weight within 0.05 (2e-3 on average).
@@ -13,8 +14,9 @@ use arealight::table::{TableSample, clamped_cosine, clamped_roughness, inverse_f
 /// The coefficients of a BRDF's lobes and albedos. `arealight-fit` makes them, [`Formula::GGX`] is built in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Formula {
-    /// `q00`, `q02 / alpha`, `q20` and `q22` of the lobe without Fresnel term, see [`arealight::table`]: a row for each
-    /// monomial `1, y, y², y³, x, xy, xy², x², x²y, x³` of `x = alpha` and the view's cosine `y`.
+    /// `q00`, `q02 / alpha`, `q20` and `q22` of the lobe without Fresnel term, see [`arealight::table`]: a
+    /// row for each monomial `1, y, y², y³, x, xy, xy², x², x²y, x³` of `x = alpha` and the view's cosine
+    /// `y`.
     pub lobe: [[f64; 4]; 10],
     /// The same of the lobe of Schlick's weight.
     pub schlick_lobe: [[f64; 4]; 10],
@@ -25,15 +27,15 @@ pub struct Formula {
     pub albedo: [f64; 10],
     /// ... `1, y, y², x, xy, x²` of the same x and y.
     pub albedo_denominator: [f64; 6],
-    /// The albedo of Schlick's weight over `(1 - y)⁴`: `1, y, y², x, xy, x²` of `x = roughness` and the view's cosine y,
-    /// above ...
+    /// The albedo of Schlick's weight over `(1 - y)⁴`: `1, y, y², x, xy, x²` of `x = roughness` and the
+    /// view's cosine y, above ...
     pub schlick: [f64; 6],
     /// ... the same monomials.
     pub schlick_denominator: [f64; 6],
 }
 
-/// The smallest cosine of a view that a formula is asked for, 0.06 degrees above the horizon: exactly on it a lobe
-/// degenerates.
+/// The smallest cosine of a view that a formula is asked for, 0.06 degrees above the horizon: exactly on it a
+/// lobe degenerates.
 pub const MIN_COS_VIEW: f64 = 1e-3;
 
 /// Looks GGX's lobes up by [`Formula::GGX`]. The twin of `arealight_formula_sample`.
@@ -44,7 +46,8 @@ pub fn ggx_formula(roughness: f64, cos_view: f64) -> TableSample {
 impl Formula {
     /// Looks the lobes up: what [`arealight::LightTable::lookup`] answers, with the same ranges.
     ///
-    /// Entries and albedos of a view below [`MIN_COS_VIEW`] are those at it; the mirror frame is the view's own.
+    /// Entries and albedos of a view below [`MIN_COS_VIEW`] are those at it; the mirror frame is the view's
+    /// own.
     pub fn lookup(&self, roughness: f64, cos_view: f64) -> TableSample {
         let (roughness, cos_view) = (clamped_roughness(roughness), clamped_cosine(cos_view));
         let (alpha, cosine) = (roughness * roughness, cos_view.max(MIN_COS_VIEW));
@@ -64,8 +67,8 @@ impl Formula {
         }
     }
 
-    /// The albedo is a smooth function less a dip where the cosine of the view is about alpha, which depends on their
-    /// ratio alone when both are small.
+    /// The albedo is a smooth function less a dip where the cosine of the view is about alpha, which depends
+    /// on their ratio alone when both are small.
     fn albedo(&self, alpha: f64, cos_view: f64) -> f64 {
         let below = quadratic(&self.albedo_denominator, alpha, cos_view);
         (cubic(&self.albedo, alpha, cos_view) / below - self.albedo_dip(alpha, cos_view)).clamp(0.0, 1.0)

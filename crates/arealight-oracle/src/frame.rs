@@ -6,7 +6,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// the view after its normal part is subtracted would be rounding error.
 const PARALLEL: f64 = 1e-28;
 
-/// Below this squared sine between a tangent and the normal the tangent has no direction: what float32 leaves of it is rounding.
+/// Below this squared sine between a tangent and the normal the tangent has no direction: what float32 leaves
+/// of it is rounding.
 const AXIS_PARALLEL: f64 = 1e-10;
 
 /// An orthonormal, right-handed frame in which z is the normal and the view lies in the xz plane, x ≥ 0.
@@ -53,8 +54,8 @@ impl SurfaceFrame {
         self.axes * vector
     }
 
-    /// The direction of `tangent` in the surface's plane, unit, in the frame's x and y. One along the normal, or zero, counts as the
-    /// first axis that is far from the normal, whatever the view.
+    /// The direction of `tangent` in the surface's plane, unit, in the frame's x and y. One along the normal,
+    /// or zero, counts as the first axis that is far from the normal, whatever the view.
     pub fn axis(&self, tangent: DVec3) -> DVec2 {
         let normal = self.axes.z_axis;
         let project = |v: DVec3| v - normal * normal.dot(v);

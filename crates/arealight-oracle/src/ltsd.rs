@@ -57,7 +57,8 @@ impl Original {
 /// A matrix that cannot be inverted makes no distribution.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "matrix: its determinant is {determinant}; a linearly transformed distribution needs an invertible, finite one"
+    "matrix: its determinant is {determinant}; a linearly transformed distribution needs an invertible, \
+    finite one"
 )]
 pub struct SingularMatrix {
     /// The determinant found.

@@ -4,7 +4,8 @@ use crate::thin_film::ThinFilm;
 use glam::{DVec3, Vec3};
 
 /// A metallic-roughness material with constant values, as glTF has it (with `KHR_materials_ior`,
-/// `KHR_materials_specular`, `KHR_materials_clearcoat`, `KHR_materials_sheen` and `KHR_materials_iridescence`). Textures belong to the scene that samples them.
+/// `KHR_materials_specular`, `KHR_materials_clearcoat`, `KHR_materials_sheen` and
+/// `KHR_materials_iridescence`). Textures belong to the scene that samples them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Linear Rec. 709 colour in [0, 1]: the Lambert albedo of a dielectric, F0 of a metal.
@@ -15,19 +16,22 @@ pub struct Material {
     pub roughness: f32,
     /// Reflectance of the dielectric at normal incidence, a channel, in [0, 1].
     pub dielectric_f0: Vec3,
-    /// Reflectance of the dielectric at grazing incidence (the weight of `KHR_materials_specular`), in [0, 1].
+    /// Reflectance of the dielectric at grazing incidence (the weight of `KHR_materials_specular`), in [0,
+    /// 1].
     pub dielectric_f90: f32,
     /// Weight of a clear coat in [0, 1]; 0 for none ([`Effects::COAT`](arealight::Effects::COAT)).
     pub coat: f32,
     /// Perceptual roughness of the coat, in [0, 1].
     pub coat_roughness: f32,
-    /// Linear Rec. 709 colour of sheen in [0, 1]; black for none ([`Effects::SHEEN`](arealight::Effects::SHEEN)).
+    /// Linear Rec. 709 colour of sheen in [0, 1]; black for none
+    /// ([`Effects::SHEEN`](arealight::Effects::SHEEN)).
     pub sheen_color: Vec3,
     /// Perceptual roughness of the sheen, in [0, 1].
     pub sheen_roughness: f32,
     /// A thin film on the surface, below sheen and the coat.
     pub film: Option<ThinFilm>,
-    /// How much of a thin dielectric's diffuse light goes through it, in [0, 1]; 0 for none ([`Effects::TRANSMISSION`](arealight::Effects::TRANSMISSION)).
+    /// How much of a thin dielectric's diffuse light goes through it, in [0, 1]; 0 for none
+    /// ([`Effects::TRANSMISSION`](arealight::Effects::TRANSMISSION)).
     pub transmission: f32,
     /// Linear Rec. 709 colour of that light in [0, 1].
     pub transmission_color: Vec3,
@@ -53,7 +57,8 @@ impl Default for Material {
     }
 }
 
-/// What the lobes need to know of a surface: a diffuse lobe and a GGX lobe, added or coupled, and a coat above both.
+/// What the lobes need to know of a surface: a diffuse lobe and a GGX lobe, added or coupled, and a coat
+/// above both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Lambert albedo in [0, 1]; the lobe is `albedo / pi`.
@@ -73,8 +78,8 @@ pub struct Surface {
     /// What lies above both lobes and below the coat.
     pub sheen: Option<Sheen>,
     /// Whether light that the GGX lobe's facets reflect more than once is added
-    /// ([`Effects::MULTIPLE_SCATTERING`](arealight::Effects::MULTIPLE_SCATTERING)); else it is lost. [`crate::microsurface`] has the truth, which
-    /// [`crate::shading::truth`] leaves out.
+    /// ([`Effects::MULTIPLE_SCATTERING`](arealight::Effects::MULTIPLE_SCATTERING)); else it is lost.
+    /// [`crate::microsurface`] has the truth, which [`crate::shading::truth`] leaves out.
     pub multiple_scattering: bool,
     /// A film that replaces the Fresnel term of the GGX lobe, and of the interface.
     pub film: Option<ThinFilm>,
@@ -85,8 +90,8 @@ pub struct Surface {
 /// A GGX distribution of two alphas, of which this is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropy {
-    /// Any length and any angle to the surface, onto which it is projected; zero and one along the normal count as some direction of
-    /// the surface.
+    /// Any length and any angle to the surface, onto which it is projected; zero and one along the normal
+    /// count as some direction of the surface.
     pub tangent: DVec3,
     /// GGX alpha along it, not below [`arealight::MIN_ALPHA`].
     pub alpha: f64,
@@ -121,7 +126,8 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// What the GGX lobe's facets reflect of light that comes in at this cosine: Schlick's term, or the film's.
+    /// What the GGX lobe's facets reflect of light that comes in at this cosine: Schlick's term, or the
+    /// film's.
     pub fn fresnel(&self, cosine: f64) -> DVec3 {
         match &self.film {
             None => self.f0 + (DVec3::splat(self.f90) - self.f0) * (1.0 - cosine).powi(5),
@@ -143,8 +149,8 @@ impl Surface {
     }
 }
 
-/// Sheen, as `KHR_materials_sheen` has it: the Charlie lobe ([`crate::sheen`]), added to what its albedo at the view leaves of the lobes
-/// below.
+/// Sheen, as `KHR_materials_sheen` has it: the Charlie lobe ([`crate::sheen`]), added to what its albedo at
+/// the view leaves of the lobes below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sheen {
     /// In [0, 1], a channel.
@@ -160,7 +166,8 @@ impl Sheen {
     }
 }
 
-/// The interface that light crosses on its way to a Lambert lobe, which gets what Schlick's Fresnel term leaves.
+/// The interface that light crosses on its way to a Lambert lobe, which gets what Schlick's Fresnel term
+/// leaves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interface {
     /// Reflectance at normal incidence, in [0, 1].
@@ -168,13 +175,14 @@ pub struct Interface {
     /// Reflectance at grazing incidence, in [0, 1].
     pub f90: f64,
     /// Whether the lobe gets what the albedo of the GGX lobe leaves at the view, as in OpenPBR
-    /// ([`Effects::COUPLED_BY_ALBEDO`](arealight::Effects::COUPLED_BY_ALBEDO)); else what the Fresnel term of the half vector leaves, as in
-    /// glTF.
+    /// ([`Effects::COUPLED_BY_ALBEDO`](arealight::Effects::COUPLED_BY_ALBEDO)); else what the Fresnel term of
+    /// the half vector leaves, as in glTF.
     pub by_albedo: bool,
 }
 
-/// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel term. It reflects the part
-/// [`Coat::share`] of the light, which depends on the view alone; what is below gets the rest. Or as OpenPBR has it, by its albedo.
+/// A clear coat, as `KHR_materials_clearcoat` has it: a GGX lobe about a normal of its own, without a Fresnel
+/// term. It reflects the part [`Coat::share`] of the light, which depends on the view alone; what is below
+/// gets the rest. Or as OpenPBR has it, by its albedo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Coat {
     /// How much of the surface it covers, in (0, 1].
@@ -183,8 +191,8 @@ pub struct Coat {
     pub alpha: f64,
     /// Its normal, of any length above zero; `None` where it is the surface's.
     pub normal: Option<DVec3>,
-    /// Whether it has Schlick's Fresnel term of the half vector, and what is below gets what its albedo at the view leaves
-    /// ([`Effects::COAT_BY_ALBEDO`](arealight::Effects::COAT_BY_ALBEDO)).
+    /// Whether it has Schlick's Fresnel term of the half vector, and what is below gets what its albedo at
+    /// the view leaves ([`Effects::COAT_BY_ALBEDO`](arealight::Effects::COAT_BY_ALBEDO)).
     pub by_albedo: bool,
 }
 
@@ -192,8 +200,9 @@ impl Coat {
     /// Reflectance at normal incidence: that of an index of refraction of 1.5.
     pub const F0: f64 = 0.04;
 
-    /// The part of the light that it reflects instead of what is below, in [0, weight]: Schlick's term of the view.
-    /// `cos_view` is the cosine between the coat's normal and the direction to the viewer; its sign does not count.
+    /// The part of the light that it reflects instead of what is below, in [0, weight]: Schlick's term of the
+    /// view. `cos_view` is the cosine between the coat's normal and the direction to the viewer; its sign
+    /// does not count.
     pub fn share(&self, cos_view: f64) -> f64 {
         self.weight * (Self::F0 + (1.0 - Self::F0) * (1.0 - cos_view.abs()).powi(5))
     }
@@ -202,8 +211,9 @@ impl Coat {
 impl Material {
     /// The surface of this material: what `arealight_surface_from_metalness` does in GLSL.
     ///
-    /// The Lambert albedo is `base_color (1 - metalness)`, less what is let through ([`Material::other_side`]); the lobes are added without Fresnel coupling, as
-    /// in many real-time engines. The coat has the surface's normal.
+    /// The Lambert albedo is `base_color (1 - metalness)`, less what is let through
+    /// ([`Material::other_side`]); the lobes are added without Fresnel coupling, as in many real-time
+    /// engines. The coat has the surface's normal.
     pub fn surface(&self) -> Surface {
         let metalness = f64::from(self.metalness);
         let base = self.base_color.as_dvec3();
@@ -232,7 +242,8 @@ impl Material {
         }
     }
 
-    /// Its other side, for light that is let through: what a surface of the opposite normal, seen from the mirror image of the view, reflects.
+    /// Its other side, for light that is let through: what a surface of the opposite normal, seen from the
+    /// mirror image of the view, reflects.
     pub fn other_side(&self) -> Surface {
         let part = f64::from(self.transmission) * (1.0 - f64::from(self.metalness));
         let Surface { interface, .. } = self.coupled_surface();

@@ -1,6 +1,7 @@
 //! Random walks on a GGX microsurface: what its facets reflect once, and what they reflect more than once.
 //!
-//! Source: Heitz, Hanika, d'Eon and Dachsbacher 2016, *Multiple-Scattering Microfacet BSDFs with the Smith Model*.
+//! Source: Heitz, Hanika, d'Eon and Dachsbacher 2016, *Multiple-Scattering Microfacet BSDFs with the Smith
+//! Model*.
 
 use crate::ggx::Ggx;
 use glam::DVec3;
@@ -31,9 +32,10 @@ pub struct Walk {
 }
 
 impl Microsurface {
-    /// A walk from the viewer: `view` is a unit vector of the surface frame, above the surface; `random` gives numbers in [0, 1). The mean of
-    /// `weight` times a light's radiance towards the surface from `direction` is the radiance that the surface sends to the viewer. `None` where
-    /// the walk did not come out again.
+    /// A walk from the viewer: `view` is a unit vector of the surface frame, above the surface; `random`
+    /// gives numbers in [0, 1). The mean of `weight` times a light's radiance towards the surface from
+    /// `direction` is the radiance that the surface sends to the viewer. `None` where the walk did not come
+    /// out again.
     pub fn walk(&self, view: DVec3, mut random: impl FnMut() -> f64) -> Option<Walk> {
         // Heights are uniform in [-1, 1]: what a walk finds does not depend on their distribution
         let mut height = 1.0;
@@ -54,7 +56,8 @@ impl Microsurface {
         None
     }
 
-    /// The height at which a ray of this direction from a height meets a facet next; `None` where it leaves the surface.
+    /// The height at which a ray of this direction from a height meets a facet next; `None` where it leaves
+    /// the surface.
     fn next_height(&self, direction: DVec3, height: f64, u: f64) -> Option<f64> {
         if direction.z > 0.999_999 {
             return None;

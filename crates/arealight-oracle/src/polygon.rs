@@ -25,8 +25,9 @@ const SMALL: f64 = 1.0 / 64.0;
 /// The signed integral of the clamped cosine `max(0, cos) / pi` over a planar polygon, in [-1, 1].
 ///
 /// `vertices` are relative to the shading point, in the surface frame (z is the normal); any number, convex
-/// or concave. What lies below z = 0 is clipped. Fewer than three or non-finite vertices give 0. On the polygon
-/// itself the integral jumps: where the origin lies on it, the result is some value between both sides'.
+/// or concave. What lies below z = 0 is clipped. Fewer than three or non-finite vertices give 0. On the
+/// polygon itself the integral jumps: where the origin lies on it, the result is some value between both
+/// sides'.
 pub fn form_factor(vertices: &[DVec3]) -> f64 {
     transformed_form_factor(&DMat3::IDENTITY, vertices)
 }
@@ -65,8 +66,9 @@ pub fn above_horizon(vertices: &[DVec3]) -> Vec<DVec3> {
     clip(vertices, 0.0)
 }
 
-/// The *vector form factor* of a polygon in cosine space, clipped at its horizon: the integral of the direction over
-/// its solid angle, over pi. Its z component is [`form_factor`]; its direction is that from which most light comes.
+/// The *vector form factor* of a polygon in cosine space, clipped at its horizon: the integral of the
+/// direction over its solid angle, over pi. Its z component is [`form_factor`]; its direction is that from
+/// which most light comes.
 ///
 /// Small polygons lose digits: 1e-16 over the square of their angle.
 pub fn vector_form_factor(vertices: &[DVec3]) -> DVec3 {

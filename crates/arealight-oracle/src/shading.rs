@@ -85,11 +85,11 @@ pub struct Truth {
     pub evaluations: usize,
 }
 
-/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term, below sheen and a coat where
-/// the surface has them, times what the light shows.
+/// Outgoing radiance by adaptive cubature of the true BRDF: Lambert plus GGX with Schlick's Fresnel term,
+/// below sheen and a coat where the surface has them, times what the light shows.
 ///
-/// An image is cut where it bends, at its texels' centres, as long as a two-hundredth of the evaluations reach for that: up to
-/// 141 by 141 texels with the default settings. A larger one converges more slowly.
+/// An image is cut where it bends, at its texels' centres, as long as a two-hundredth of the evaluations
+/// reach for that: up to 141 by 141 texels with the default settings. A larger one converges more slowly.
 ///
 /// `normal` and `view`, the direction to the viewer, have any length above zero; a view below the surface
 /// counts as grazing.
@@ -136,8 +136,8 @@ fn uncoated_truth(
     }
 }
 
-/// What a surface reflects of a region of its frame that shines as `shown` says, by direction; of a region that counts negatively
-/// with the other sign.
+/// What a surface reflects of a region of its frame that shines as `shown` says, by direction; of a region
+/// that counts negatively with the other sign.
 fn reflected(
     surface: &Surface,
     frame: &SurfaceFrame,
@@ -182,8 +182,8 @@ fn reflected(
     }
 }
 
-/// A texel is two triangles of 22 evaluations each, or more where a horizon or the lobe's ridge cuts it; as many again are
-/// for refinement.
+/// A texel is two triangles of 22 evaluations each, or more where a horizon or the lobe's ridge cuts it; as
+/// many again are for refinement.
 const EVALUATIONS_PER_TEXEL: usize = 200;
 
 /// Whether the front of a polygon is on the origin's side of its plane.
@@ -308,8 +308,8 @@ pub fn ltc(
 }
 
 /// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
-/// `arealight_radiance`. Of `quality` it takes the horizon, how the Fresnel term enters, and where the lobes come from; it integrates
-/// exactly.
+/// `arealight_radiance`. Of `quality` it takes the horizon, how the Fresnel term enters, and where the lobes
+/// come from; it integrates exactly.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn ltc_on(
@@ -367,8 +367,8 @@ pub fn ltc_on(
     light.radiance * layered(quality, table, surface, &frame, [diffuse, glossy], (lobe, of_coat))
 }
 
-/// What is left of what the diffuse lobe and the specular ones reflect, with what sheen and the coat do, `lobe` being as for [`glossy_part`], and
-/// `of_coat` what a coat reflects.
+/// What is left of what the diffuse lobe and the specular ones reflect, with what sheen and the coat do,
+/// `lobe` being as for [`glossy_part`], and `of_coat` what a coat reflects.
 fn layered(
     quality: Quality,
     table: &LightTable,
@@ -413,7 +413,8 @@ fn surface_sample(
     }
 }
 
-/// What the specular lobe reflects of a polygon of unit radiance by [`SpecularLobes::HalfVectors`], a channel.
+/// What the specular lobe reflects of a polygon of unit radiance by [`SpecularLobes::HalfVectors`], a
+/// channel.
 fn half_vector_part(
     quality: Quality,
     table: &LightTable,
@@ -431,8 +432,8 @@ fn half_vector_part(
     scale * HalfVectors::of_surface(surface, frame, &sample).reflected(vertices, two_sided)
 }
 
-/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a channel, of which a part
-/// lies above the surface.
+/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a
+/// channel, of which a part lies above the surface.
 fn glossy_part(
     quality: Quality,
     table: &LightTable,

@@ -1,4 +1,5 @@
-//! Sheen: the Charlie BRDF of `KHR_materials_sheen`, and the transformed cosine by formulas that stands for it.
+//! Sheen: the Charlie BRDF of `KHR_materials_sheen`, and the transformed cosine by formulas that stands for
+//! it.
 //!
 //! Sources: Estevez and Kulla 2017, *Production Friendly Microfacet Sheen BRDF*; the text of the extension.
 
@@ -26,8 +27,8 @@ impl Charlie {
         self.roughness * self.roughness
     }
 
-    /// `f cos theta_light`, 1/sr, of unit directions of the surface frame. Zero where the light is below the surface; the view is above
-    /// it.
+    /// `f cos theta_light`, 1/sr, of unit directions of the surface frame. Zero where the light is below the
+    /// surface; the view is above it.
     pub fn evaluate(self, view: DVec3, light: DVec3) -> f64 {
         if light.z <= 0.0 || view.z <= 0.0 {
             return 0.0;
@@ -53,8 +54,8 @@ impl Charlie {
         }
     }
 
-    /// The integral of [`Charlie::evaluate`] over the hemisphere, by a product of midpoint rules: to 1e-4. For narrow lobes and
-    /// grazing views it is above 1.
+    /// The integral of [`Charlie::evaluate`] over the hemisphere, by a product of midpoint rules: to 1e-4.
+    /// For narrow lobes and grazing views it is above 1.
     pub fn albedo(self, cos_view: f64) -> f64 {
         const HEIGHTS: u32 = 400;
         const AZIMUTHS: u32 = 200;
@@ -86,8 +87,8 @@ pub struct SheenLobe {
 /// What the second of two lobes has of Charlie's albedo, and takes away.
 pub const HOLE_SHARE: f64 = 0.25;
 
-/// `(q00 - 1) / sin²`, `q02 / sin`, `q20 / sin` and `q22`: a row for each monomial `1, y, y², y³, x, xy, xy², x², x²y, x³` of
-/// `x = MIN_ROUGHNESS / roughness` and the view's cosine `y`.
+/// `(q00 - 1) / sin²`, `q02 / sin`, `q20 / sin` and `q22`: a row for each monomial
+/// `1, y, y², y³, x, xy, xy², x², x²y, x³` of `x = MIN_ROUGHNESS / roughness` and the view's cosine `y`.
 const LOBE: [[f64; 4]; 10] = [
     [-0.0267666, 0.293183, 0.0270966, 1.45411],
     [0.0837258, -1.53275, -0.521527, -1.00096],

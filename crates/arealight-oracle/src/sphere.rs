@@ -1,8 +1,8 @@
 //! The clamped cosine integrated over a sphere, and the disk that looks the same as one.
 //!
-//! The twin of `shaders/include/arealight/sphere.glsl`. Sources: the closed form of a spherical source that crosses the
-//! horizon is Snyder's (1996), rearranged so that nothing cancels; a sphere's silhouette is a disk, which a linear
-//! transform makes an ellipse.
+//! The twin of `shaders/include/arealight/sphere.glsl`. Sources: the closed form of a spherical source that
+//! crosses the horizon is Snyder's (1996), rearranged so that nothing cancels; a sphere's silhouette is a
+//! disk, which a linear transform makes an ellipse.
 
 use crate::ellipse::{self, Ellipse};
 use glam::{DMat3, DVec3};
@@ -23,7 +23,8 @@ impl Sphere {
         self.center.length() <= self.radius
     }
 
-    /// The disk inside the sphere that covers the same directions, its front to the origin; `None` from inside.
+    /// The disk inside the sphere that covers the same directions, its front to the origin; `None` from
+    /// inside.
     pub fn silhouette(&self) -> Option<Ellipse> {
         let distance = self.center.length();
         if self.is_inside() {
@@ -36,7 +37,8 @@ impl Sphere {
     }
 }
 
-/// The integral of the clamped cosine `max(0, cos) / pi` over a sphere, in [0, 1]; from inside 0, as it shines outwards.
+/// The integral of the clamped cosine `max(0, cos) / pi` over a sphere, in [0, 1]; from inside 0, as it
+/// shines outwards.
 ///
 /// Relative error 1e-14 where the sphere's center is above the horizon.
 pub fn form_factor(sphere: &Sphere) -> f64 {
@@ -65,8 +67,8 @@ pub fn form_factor(sphere: &Sphere) -> f64 {
     (sine * sine * z * q.atan2(-cosine * z) + segment + q * cosine * z * z / across) / PI
 }
 
-/// The integral of a linearly transformed cosine over a sphere, in [0, 1]; from inside 0. `inverse` takes directions
-/// of the surface frame into cosine space. Only the horizon of cosine space is clipped.
+/// The integral of a linearly transformed cosine over a sphere, in [0, 1]; from inside 0. `inverse` takes
+/// directions of the surface frame into cosine space. Only the horizon of cosine space is clipped.
 pub fn transformed_form_factor(inverse: &DMat3, sphere: &Sphere) -> f64 {
     // A transform that mirrors shows the silhouette's back
     sphere.silhouette().map_or(0.0, |disk| ellipse::form_factor(&disk.transformed(inverse)).abs())

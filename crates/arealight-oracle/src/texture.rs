@@ -1,7 +1,7 @@
 //! What a textured light shows, in float64: bilinear lookup, resampling, and pictures to test with.
 //!
-//! Texture coordinates run from (0, 0), the outer corner of the first texel of the top row, to (1, 1). Between the
-//! texels' centres values are interpolated; beyond the outermost centres the edge is extended.
+//! Texture coordinates run from (0, 0), the outer corner of the first texel of the top row, to (1, 1).
+//! Between the texels' centres values are interpolated; beyond the outermost centres the edge is extended.
 
 mod blur;
 mod pictures;
@@ -25,7 +25,8 @@ pub struct Texture {
 pub enum BadTexture {
     /// There are none, or not width times height of them.
     #[error(
-        "texels: {count} given for {width} x {height}; give one row after the other, at least one texel in all"
+        "texels: {count} given for {width} x {height}; give one row after the other, at least one texel in \
+        all"
     )]
     Count {
         /// Texels given.
@@ -117,8 +118,9 @@ impl Texture {
         self.texels.iter().sum::<DVec3>() / self.texels.len() as f64
     }
 
-    /// The image with other numbers of texels, as the prefilter makes it: each is a mean over the source, weighted by a
-    /// tent about its centre, whose radius is a texel of the coarser of both. The source is extended beyond its edge.
+    /// The image with other numbers of texels, as the prefilter makes it: each is a mean over the source,
+    /// weighted by a tent about its centre, whose radius is a texel of the coarser of both. The source is
+    /// extended beyond its edge.
     ///
     /// Equal numbers copy; larger ones are interpolated.
     #[must_use]

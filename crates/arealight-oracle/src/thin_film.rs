@@ -1,12 +1,13 @@
 //! Thin films, in float64: what they reflect, and Schlick's term that stands for it.
 //!
-//! Source: Belcour and Barla 2017, *A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence*, as
-//! `KHR_materials_iridescence` has it.
+//! Source: Belcour and Barla 2017, *A Practical Extension to Microfacet Theory for the Modeling of Varying
+//! Iridescence*, as `KHR_materials_iridescence` has it.
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// A film of even thickness on a surface, as `KHR_materials_iridescence` has it: it replaces the Fresnel term of what it lies on.
+/// A film of even thickness on a surface, as `KHR_materials_iridescence` has it: it replaces the Fresnel term
+/// of what it lies on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThinFilm {
     /// How much of the surface it covers, in [0, 1].
@@ -17,8 +18,8 @@ pub struct ThinFilm {
     pub thickness: f64,
 }
 
-/// The Gaussians of the colour matching functions in the frequency of interference: amplitude, place in radians a micrometre of path, and variance.
-/// X has a second one.
+/// The Gaussians of the colour matching functions in the frequency of interference: amplitude, place in
+/// radians a micrometre of path, and variance. X has a second one.
 const AMPLITUDE: DVec3 = DVec3::new(0.846_590_0, 1.000_221_9, 1.001_122_5);
 const PLACE: DVec3 = DVec3::new(1.6810, 1.7953, 2.2084);
 const VARIANCE: DVec3 = DVec3::new(4.3278e-3, 9.3046e-3, 6.6121e-3);
@@ -36,8 +37,8 @@ fn schlick(f0: f64, cosine: f64) -> f64 {
 }
 
 impl ThinFilm {
-    /// What a film reflects on a base with these reflectances at normal incidence, where light comes in at this cosine. Not below 0; a channel may
-    /// exceed 1 a little, as colours outside of Rec. 709 do.
+    /// What a film reflects on a base with these reflectances at normal incidence, where light comes in at
+    /// this cosine. Not below 0; a channel may exceed 1 a little, as colours outside of Rec. 709 do.
     pub fn fresnel(&self, f0: DVec3, cosine: f64) -> DVec3 {
         let ior = self.ior;
         let within = 1.0 - (1.0 - cosine * cosine) / (ior * ior);
@@ -71,9 +72,9 @@ impl ThinFilm {
         bare.lerp(self.fresnel(f0, cosine), self.cover())
     }
 
-    /// Schlick's reflectances at normal and at grazing incidence that stand for the film at a view: the float64 twin of
-    /// `arealight_thin_film_schlick`. `cos_view` is the cosine between the surface's normal and the direction to the viewer, `roughness`
-    /// perceptual.
+    /// Schlick's reflectances at normal and at grazing incidence that stand for the film at a view: the
+    /// float64 twin of `arealight_thin_film_schlick`. `cos_view` is the cosine between the surface's normal
+    /// and the direction to the viewer, `roughness` perceptual.
     pub fn as_schlick(&self, f0: DVec3, f90: f64, cos_view: f64, roughness: f64) -> (DVec3, f64) {
         let cosines = facet_cosines(cos_view, roughness);
         let mean = cosines.iter().map(|cosine| self.fresnel(f0, *cosine)).sum::<DVec3>() / 3.0;
@@ -98,8 +99,8 @@ fn interference(path: f64, shift: DVec3) -> DVec3 {
     REC_709 * xyz
 }
 
-/// Three cosines of incidence on the facets of a GGX surface that count alike: their mean at this view, and a deviation times the root of 1.5 to
-/// either side.
+/// Three cosines of incidence on the facets of a GGX surface that count alike: their mean at this view, and a
+/// deviation times the root of 1.5 to either side.
 fn facet_cosines(cos_view: f64, roughness: f64) -> [f64; 3] {
     let powers = DVec3::new(1.0, roughness, roughness * roughness);
     let polynomial = |[a, b, c]: [DVec3; 3]| {
@@ -109,8 +110,8 @@ fn facet_cosines(cos_view: f64, roughness: f64) -> [f64; 3] {
     [-1.5_f64.sqrt(), 0.0, 1.5_f64.sqrt()].map(|step| (mean + step * deviation).clamp(0.0, 1.0))
 }
 
-/// Least squares of the mean and the deviation of the cosine over the normals that a view sees, weighed by masking, at 18 roughnesses and 28 views:
-/// to .05 and .04, .009 on average.
+/// Least squares of the mean and the deviation of the cosine over the normals that a view sees, weighed by
+/// masking, at 18 roughnesses and 28 views: to .05 and .04, .009 on average.
 const MEAN: [DVec3; 3] = [
     DVec3::new(0.1884, 1.8039, -1.3492),
     DVec3::new(-1.5012, -0.3352, 1.1703),
@@ -165,7 +166,8 @@ mod tests {
     /// Directions that an albedo is the mean of.
     const SAMPLES: u32 = 1024;
 
-    /// The mean error of the albedo by a stand-in, over draws of roughness, view and film on a dielectric or a metal.
+    /// The mean error of the albedo by a stand-in, over draws of roughness, view and film on a dielectric or
+    /// a metal.
     fn albedo_error(is_metal: bool, stand_in: impl Fn(&ThinFilm, DVec3, f64, f64) -> (DVec3, f64)) -> f64 {
         let mut random = Stream::from_seed(7);
         let mut sum = 0.0;

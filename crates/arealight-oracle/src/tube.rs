@@ -1,7 +1,7 @@
 //! The clamped cosine integrated over a tube: a cylinder without or with caps, or a capsule.
 //!
-//! The twin of `shaders/include/arealight/tube.glsl`, by other means: the silhouette is drawn as a polygon of many
-//! vertices, whose error is extrapolated away; [`Tube::is_hit`] has rays for a check.
+//! The twin of `shaders/include/arealight/tube.glsl`, by other means: the silhouette is drawn as a polygon of
+//! many vertices, whose error is extrapolated away; [`Tube::is_hit`] has rays for a check.
 //!
 //! # Accuracy
 //! 1e-9 where the point is not nearer to the tube than a tenth of its radius; 1e-6 at a thousandth.
@@ -152,13 +152,14 @@ impl Tube {
     }
 }
 
-/// The integral of the clamped cosine `max(0, cos) / pi` over a tube, in [0, 1]; from inside 0, as it shines outwards.
+/// The integral of the clamped cosine `max(0, cos) / pi` over a tube, in [0, 1]; from inside 0, as it shines
+/// outwards.
 pub fn form_factor(tube: &Tube) -> f64 {
     transformed_form_factor(&DMat3::IDENTITY, tube)
 }
 
-/// The integral of a linearly transformed cosine over a tube, in [0, 1]. `inverse` takes directions of the surface frame
-/// into cosine space, of which only the horizon is clipped.
+/// The integral of a linearly transformed cosine over a tube, in [0, 1]. `inverse` takes directions of the
+/// surface frame into cosine space, of which only the horizon is clipped.
 pub fn transformed_form_factor(inverse: &DMat3, tube: &Tube) -> f64 {
     const SEGMENTS: usize = 100;
     match tube.silhouette() {
@@ -166,7 +167,8 @@ pub fn transformed_form_factor(inverse: &DMat3, tube: &Tube) -> f64 {
         Silhouette::Disk(disk) => ellipse::form_factor(&disk.transformed(inverse)).abs(),
         Silhouette::Rims(_) => {
             let at = |count| polygon::transformed_form_factor(inverse, &tube.outline(count)).abs();
-            // What an inscribed polygon lacks shrinks by four when its segments are halved, and what is left by sixteen
+            // What an inscribed polygon lacks shrinks by four when its segments are halved, and what is left
+            // by sixteen
             let [coarse, middle, fine] = [at(SEGMENTS), at(2 * SEGMENTS), at(4 * SEGMENTS)];
             let [first, second] = [middle + (middle - coarse) / 3.0, fine + (fine - middle) / 3.0];
             second + (second - first) / 15.0

@@ -7,16 +7,19 @@ use glam::DVec3;
 /// A triangle that blocks light from both sides.
 pub type Blocker = [DVec3; 3];
 
-/// The convex parts of a convex, flat polygon that are visible from the origin past `blockers`, in the polygon's order. They don't overlap. None
-/// where all is hidden, or where the origin lies in the polygon's plane.
+/// The convex parts of a convex, flat polygon that are visible from the origin past `blockers`, in the
+/// polygon's order. They don't overlap. None where all is hidden, or where the origin lies in the polygon's
+/// plane.
 ///
-/// A blocker hides what lies behind it as seen from the origin; the part of it behind the polygon's plane hides nothing, and neither does one
-/// that is seen edge-on. Error: that of float64, 1e-15 of the distances; parts smaller than that may remain where blockers touch.
+/// A blocker hides what lies behind it as seen from the origin; the part of it behind the polygon's plane
+/// hides nothing, and neither does one that is seen edge-on. Error: that of float64, 1e-15 of the distances;
+/// parts smaller than that may remain where blockers touch.
 pub fn visible_parts(polygon: &[DVec3], blockers: &[Blocker]) -> Vec<Vec<DVec3>> {
     let Some(plane) = Plane::of_light(polygon) else { return Vec::new() };
     let mut visible = vec![polygon.to_vec()];
     for blocker in blockers {
-        // What is on the origin's side of the light's plane casts a shadow: a cone of planes through the origin
+        // What is on the origin's side of the light's plane casts a shadow: a cone of planes through the
+        // origin
         let before = clip(blocker, |vertex| plane.normal.dot(*vertex) - plane.distance);
         let cone = cone_through(&before);
         if cone.is_empty() {
@@ -47,7 +50,8 @@ impl Plane {
     }
 }
 
-/// The planes through the origin and the edges of a convex polygon, their normals to the inside; none where the origin lies in its plane.
+/// The planes through the origin and the edges of a convex polygon, their normals to the inside; none where
+/// the origin lies in its plane.
 fn cone_through(polygon: &[DVec3]) -> Vec<DVec3> {
     let middle: DVec3 = polygon.iter().sum();
     let mut cone = Vec::with_capacity(polygon.len());
@@ -158,7 +162,8 @@ mod tests {
                 visible += usize::from(!is_hidden(point, &blockers));
             }
             let rays = visible as f64 / (ROOT * ROOT) as f64;
-            // Each edge of a shadow crosses up to 2 x 200 cells of 40,000, of which half may be off either way
+            // Each edge of a shadow crosses up to 2 x 200 cells of 40,000, of which half may be off either
+            // way
             assert!((share - rays).abs() < 2e-3 * (blockers.len() as f64).sqrt(), "{index}: {share}, {rays}");
             differ += usize::from(rays > 0.02 && rays < 0.98);
         }
@@ -168,7 +173,8 @@ mod tests {
     #[test]
     fn parts_that_nothing_hides_add_up_to_the_light() {
         let quad = quad();
-        // A blocker that covers the light hides all, one behind or beside nothing; two halves hide what one does
+        // A blocker that covers the light hides all, one behind or beside nothing; two halves hide what one
+        // does
         let big = [DVec3::new(-9.0, -9.0, 1.0), DVec3::new(9.0, -9.0, 1.0), DVec3::new(0.0, 9.0, 1.0)];
         assert!(visible_parts(&quad, &[big]).is_empty());
         let behind = big.map(|vertex| vertex * 5.0);

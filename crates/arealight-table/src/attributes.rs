@@ -15,7 +15,8 @@ pub const VERSION: i32 = 4;
 pub const AXES: &str =
     "x: roughness = x / (size - 1), alpha = roughness^2; y: sqrt(1 - cos theta_view) = y / (size - 1)";
 /// The attribute `arealight.frame`.
-pub const FRAME: &str = "inverse matrix; rows in cosine space; columns (cos t, 0, sin t), (0, 1, 0), (-sin t, 0, cos t) \
+pub const FRAME: &str = "inverse matrix; rows in cosine space; columns (cos t, 0, sin t), (0, 1, 0), (-sin \
+t, 0, cos t) \
     in the surface frame, for a view (sin t, 0, cos t)";
 /// The attribute `arealight.normalisation`.
 pub const NORMALISATION: &str = "R G B A = q00 q02 q20 q22 of [q00 0 q02; 0 1 0; alpha*q20 0 alpha*q22]; \
@@ -73,8 +74,8 @@ pub struct Attributes {
 }
 
 impl Attributes {
-    /// Reads the attributes, in the order in which they matter. `oldest` is the first version that the file's format had,
-    /// `get` finds an attribute by its name.
+    /// Reads the attributes, in the order in which they matter. `oldest` is the first version that the file's
+    /// format had, `get` finds an attribute by its name.
     pub fn read(oldest: i32, get: impl Fn(&str) -> Option<Value>) -> Result<Self, ReadError> {
         let find = |attribute| get(attribute).ok_or(ReadError::MissingAttribute { attribute });
         let text = |attribute| match find(attribute)? {
@@ -168,11 +169,13 @@ pub fn matrix_count(table: &LightTable) -> u32 {
     1 + u32::from(table.schlick_matrix().is_some()) + if table.pairs().is_some() { 2 } else { 0 }
 }
 
-/// The hash of a table's texels, `sha256:` and 64 hexadecimal digits: two tables shade alike if it is the same.
+/// The hash of a table's texels, `sha256:` and 64 hexadecimal digits: two tables shade alike if it is the
+/// same.
 ///
-/// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if there
-/// is one, then the matrices of pairs and the second lobe's shares if there are any, texel by texel as `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the
-/// table says of itself beside that does not count.
+/// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if
+/// there is one, then the matrices of pairs and the second lobe's shares if there are any, texel by texel as
+/// `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the table says
+/// of itself beside that does not count.
 pub fn hash(table: &LightTable) -> String {
     let schlick_matrix = table.schlick_matrix();
     let mut hasher = Sha256::new();
@@ -204,7 +207,8 @@ pub fn hash(table: &LightTable) -> String {
     text
 }
 
-/// Text of a file that may be anybody's: it must not steer the terminal, nor repeat a book that someone stored there.
+/// Text of a file that may be anybody's: it must not steer the terminal, nor repeat a book that someone
+/// stored there.
 pub fn printable(text: &str) -> String {
     const LONGEST: usize = 200;
     let mut printable: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();

@@ -8,9 +8,9 @@ use crate::Precision;
 
 /// A table of another number of nodes, interpolated bilinearly, as shading does. Its description says so.
 ///
-/// A new node that coincides with an old one keeps its numbers (64 nodes hold those of 22, 10, 8, 4 and 2); the others lie
-/// on chords between the old ones. A table that is fitted with the number of nodes asked for is better, at 16 nodes by 1 %
-/// of its error.
+/// A new node that coincides with an old one keeps its numbers (64 nodes hold those of 22, 10, 8, 4 and 2);
+/// the others lie on chords between the old ones. A table that is fitted with the number of nodes asked for
+/// is better, at 16 nodes by 1 % of its error.
 ///
 /// # Errors
 /// [`TableError::Size`] if `size` is no table's; [`TableError::Singular`] if lobes of opposite tilt cancel.
@@ -58,7 +58,8 @@ fn mapped(
 }
 
 fn resampled_layer<const N: usize>(texels: &[[f32; N]], old: u32, new: u32) -> Vec<[f32; N]> {
-    // The old node below a new one, and the way to the next, by integers so that nodes that coincide do so exactly
+    // The old node below a new one, and the way to the next, by integers so that nodes that coincide do so
+    // exactly
     let place = |i: u32| {
         let position = u64::from(i) * u64::from(old - 1);
         let node = (position / u64::from(new - 1)).min(u64::from(old - 2));

@@ -1,7 +1,7 @@
 //! Tables as DDS textures.
 //!
-//! The header is a fixed list of words. DDS has no attributes: ours follow the texels, where other readers do not look, in
-//! the form that KTX2 has, and two of the header's reserved words hold a mark and their length.
+//! The header is a fixed list of words. DDS has no attributes: ours follow the texels, where other readers do
+//! not look, in the form that KTX2 has, and two of the header's reserved words hold a mark and their length.
 
 use crate::texture::{
     MAX_KEY_VALUE_BYTES, Texture, byte_length, check_size, encode_key_values, encode_texels, field, length,

@@ -23,7 +23,8 @@ pub enum ReadError {
     },
     /// An attribute is missing: the file is some other image.
     #[error(
-        "attribute `{attribute}` is missing; a light table has it (is this another image? Tables in the convention of \
+        "attribute `{attribute}` is missing; a light table has it (is this another image? Tables in the \
+        convention of \
          Heitz et al. 2016 are two images: convert them by `arealight table convert`)"
     )]
     MissingAttribute {
@@ -81,7 +82,8 @@ pub enum ReadError {
     },
     /// A layer is not square, too large, too small, or of another size than the first.
     #[error(
-        "layer `{layer}`: {width} x {height} texels; tables are square, 2 to {MAX_SIZE} a side, all layers alike"
+        "layer `{layer}`: {width} x {height} texels; tables are square, 2 to {MAX_SIZE} a side, all layers \
+        alike"
     )]
     Size {
         /// The layer.
@@ -111,7 +113,8 @@ pub enum ReadError {
     },
     /// The texels are not those that the file was written with.
     #[error(
-        "attribute `arealight.hash` is `{expected}`, but the texels have {found}: the file is damaged, or was edited"
+        "attribute `arealight.hash` is `{expected}`, but the texels have {found}: the file is damaged, or \
+        was edited"
     )]
     Hash {
         /// The texels' hash.

@@ -37,7 +37,8 @@ impl std::fmt::Display for Format {
 /// The numbers that texels are stored in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Precision {
-    /// 16-bit floats: their rounding costs less than the fit's error by far, see the project's page on the fit.
+    /// 16-bit floats: their rounding costs less than the fit's error by far, see the project's page on the
+    /// fit.
     #[default]
     Half,
     /// 32-bit floats.
@@ -71,8 +72,8 @@ pub enum Target {
 }
 
 impl Target {
-    /// What a path's extension stands for: `exr`, `ktx2`, `dds`, `h` or `glsl`. Without a precision, EXR is written in
-    /// 32-bit floats, and everything else in 16-bit ones.
+    /// What a path's extension stands for: `exr`, `ktx2`, `dds`, `h` or `glsl`. Without a precision, EXR is
+    /// written in 32-bit floats, and everything else in 16-bit ones.
     ///
     /// # Errors
     /// [`WriteError::Extension`] for another one, [`WriteError::Precision`] where the format has no choice.

@@ -1,7 +1,8 @@
 //! Tables as KTX2 textures.
 //!
-//! The `ktx2` crate's own reader of whole files is passed by: its version 0.5.0 panics on some data format descriptors (a
-//! block dimension of 256, a block of 12 bytes). The format of the texels is in the header as well.
+//! The `ktx2` crate's own reader of whole files is passed by: its version 0.5.0 panics on some data format
+//! descriptors (a block dimension of 256, a block of 12 bytes). The format of the texels is in the header as
+//! well.
 
 use arealight::table::LAYERS;
 use ktx2::dfd::{Basic, Block};

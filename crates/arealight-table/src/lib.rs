@@ -43,14 +43,15 @@
 //! | `arealight.fit_error` | string | how far the table is from its BRDF, in words; may be missing |
 //!
 //! Engines take the same table as KTX2 or DDS, a 2D array of six layers in 16 or 32-bit floats
-//! ([`arealight::LightTable::texels`]) with these attributes as key/value data and `arealight.matrices`, 1 or 2, and 2 more with pairs; in DDS they
-//! follow the texels. C and GLSL take it as source text. In all of these, the magnitudes' third channel says how much of
-//! GGX's grazing dip was added, 1 or 0, so that the shader needs no attribute. [`read_published`] reads tables in the convention of Heitz
-//! et al. 2016. A file's format is told by its content.
+//! ([`arealight::LightTable::texels`]) with these attributes as key/value data and `arealight.matrices`, 1 or
+//! 2, and 2 more with pairs; in DDS they follow the texels. C and GLSL take it as source text. In all of
+//! these, the magnitudes' third channel says how much of GGX's grazing dip was added, 1 or 0, so that the
+//! shader needs no attribute. [`read_published`] reads tables in the convention of Heitz et al. 2016. A
+//! file's format is told by its content.
 //!
 //! A file whose axes, frame or normalisation differ would be read without complaint and shade wrongly, so
-//! they are compared word by word; so is the hash. Files are treated as hostile: headers are checked before anything
-//! is allocated for texels, and every refusal says what was found, where, and what was expected.
+//! they are compared word by word; so is the hash. Files are treated as hostile: headers are checked before
+//! anything is allocated for texels, and every refusal says what was found, where, and what was expected.
 
 #![forbid(unsafe_code)]
 
@@ -82,8 +83,8 @@ pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 96 
 
 static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
 
-/// The table for GGX that is built in: 64 nodes a side, two matrices, made by `arealight fit -o fitted.exr` and
-/// `arealight table convert fitted.exr tables/ggx.exr --measure`.
+/// The table for GGX that is built in: 64 nodes a side, two matrices, made by `arealight fit -o fitted.exr`
+/// and `arealight table convert fitted.exr tables/ggx.exr --measure`.
 ///
 /// # Panics
 /// Never: a test reads the embedded file.

@@ -6,9 +6,9 @@
 //! M^-1  =   | 0  1  0 |   first image (x, y, z, w);   second image (integral f cos, Schlick's part, 0, -)
 //!           | y  0  w |
 //! ```
-//! with alpha = roughness², at least 1e-5, and M⁻¹ in the surface frame. (The last channel, a sphere's form factor behind
-//! the horizon, is not used: polygons are clipped.) Tables of older code with an angle for y, or with M⁻¹ transposed,
-//! cannot be told from these.
+//! with alpha = roughness², at least 1e-5, and M⁻¹ in the surface frame. (The last channel, a sphere's form
+//! factor behind the horizon, is not used: polygons are clipped.) Tables of older code with an angle for y,
+//! or with M⁻¹ transposed, cannot be told from these.
 
 use arealight::table::mirror_frame;
 use arealight::{LightTable, TableDescription, TableError};
@@ -35,7 +35,8 @@ pub struct Published {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Adjusted {
-    /// A magnitude a little outside of 0 <= Schlick's part <= albedo <= 1, by noise or rounding, was brought in.
+    /// A magnitude a little outside of 0 <= Schlick's part <= albedo <= 1, by noise or rounding, was brought
+    /// in.
     Magnitude {
         /// The texel's column (roughness).
         x: u32,
@@ -46,8 +47,8 @@ pub enum Adjusted {
         /// Those of the table.
         used: [f32; 2],
     },
-    /// A matrix of the first column has entries too small for 16-bit floats and became singular. In its place stands the
-    /// second column's, in the mirror frame, where the two differ little.
+    /// A matrix of the first column has entries too small for 16-bit floats and became singular. In its place
+    /// stands the second column's, in the mirror frame, where the two differ little.
     Matrix {
         /// The texel's row (view angle).
         y: u32,
@@ -81,8 +82,8 @@ pub enum PublishedError {
     Table(#[from] TableError),
 }
 
-/// Reads a table in the convention of Heitz et al. 2016 from its two images: DDS (as from their code), KTX2 or OpenEXR,
-/// four channels of 16 or 32-bit floats. `brdf` is what was fitted, which the images do not say.
+/// Reads a table in the convention of Heitz et al. 2016 from its two images: DDS (as from their code), KTX2
+/// or OpenEXR, four channels of 16 or 32-bit floats. `brdf` is what was fitted, which the images do not say.
 ///
 /// # Errors
 /// [`PublishedError`] says which image is wrong, where and why.

@@ -6,8 +6,8 @@ use crate::{Precision, TableFile, hash};
 use arealight::table::LAYERS;
 use half::f16;
 
-/// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts; drivers
-/// keep large ones in memory, where a texture would be faster.
+/// The most nodes a side of a table in GLSL: 64 make 20480 words. A SPIR-V constant may have 65532 parts;
+/// drivers keep large ones in memory, where a texture would be faster.
 pub const MAX_GLSL_SIZE: u32 = 64;
 
 /// A table as a C header: one array in the layout of the GPU image.
@@ -20,10 +20,12 @@ pub fn c_header(file: &TableFile, precision: Precision) -> String {
     let mut text = format!(
         "#ifndef AREALIGHT_TABLE_H\n#define AREALIGHT_TABLE_H\n\n/*\n\
          {}\
-         \n  AREALIGHT_TABLE_LAYERS layers of AREALIGHT_TABLE_SIZE rows of AREALIGHT_TABLE_SIZE texels of 4 channels,\n  \
+         \n  AREALIGHT_TABLE_LAYERS layers of AREALIGHT_TABLE_SIZE rows of AREALIGHT_TABLE_SIZE texels of 4 \
+         channels,\n  \
          {note}, tightly packed: upload it to a 2D array image as it is.\n*/\n\n\
          {include}#define AREALIGHT_TABLE_SIZE {size}\n#define AREALIGHT_TABLE_LAYERS {LAYERS}\n\n\
-         static const {element} arealight_table[AREALIGHT_TABLE_LAYERS * AREALIGHT_TABLE_SIZE * AREALIGHT_TABLE_SIZE * 4] = {{\n",
+         static const {element} arealight_table[AREALIGHT_TABLE_LAYERS * AREALIGHT_TABLE_SIZE * \
+         AREALIGHT_TABLE_SIZE * 4] = {{\n",
         convention(file, "  "),
     );
     for texel in file.table.texels() {
@@ -70,7 +72,8 @@ pub fn glsl(file: &TableFile) -> String {
     let mut text = format!(
         "#ifndef AREALIGHT_TABLE_CONSTANT_GLSL\n#define AREALIGHT_TABLE_CONSTANT_GLSL\n\n\
          // The bridge to the table, for a shader without a table texture: include this after\n\
-         // arealight/lobes/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a side is for a texture.\n//\n\
+         // arealight/lobes/table.glsl. {} bytes of constants; a table of more than {MAX_GLSL_SIZE} nodes a
+         // side is for a texture.\n//\n\
          {}\n\
          const uint AREALIGHT_TABLE_WORDS[{count}] = uint[{count}](\n",
         count * 4,
@@ -93,7 +96,8 @@ pub fn glsl(file: &TableFile) -> String {
          if (layer == 1 || layer == 5) {{\n        \
          return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[start + node]), {dip}, 0.0);\n    }}\n    \
          int word = start + 2 * node;\n    \
-         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[word]), unpackHalf2x16(AREALIGHT_TABLE_WORDS[word + 1]));\n}}\n\n\
+         return vec4(unpackHalf2x16(AREALIGHT_TABLE_WORDS[word]), unpackHalf2x16(AREALIGHT_TABLE_WORDS[word \
+         + 1]));\n}}\n\n\
          #endif\n",
         starts.join(", ")
     );
@@ -119,10 +123,10 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         "    |       q00  0        q02 |   | cos t  0  sin t |".to_owned(),
         "    |         0  1          0 | * |     0  1      0 |      for a view (sin t, 0, cos t)".to_owned(),
         "    | alpha q20  0  alpha q22 |   | -sin t 0  cos t |      in the surface frame".to_owned(),
-        "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, dip, 0)."
-            .to_owned(),
+        "Layer 1, magnitude: (integral of f cos, integral of f cos (1 - cos theta_vh)^5, dip, 0).".to_owned(),
         if table.description().ggx_dip {
-            "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what was \
+            "    The dip is 1: take arealight_ggx_grazing_dip (arealight/lobes/table.glsl) away from what \
+            was \
              interpolated."
                 .to_owned()
         } else {
@@ -133,7 +137,9 @@ fn convention(file: &TableFile, prefix: &str) -> String {
         } else {
             "Layer 2: layer 0 again; this table has one matrix for all reflectances.".to_owned()
         },
-        "Layers 3 and 4: the matrices of two lobes for one; layer 5: the second one's share at reflectances of 1 and 0.02.".to_owned(),
+        "Layers 3 and 4: the matrices of two lobes for one; layer 5: the second one's share at reflectances \
+        of 1 and 0.02."
+            .to_owned(),
     ];
     if let Some(error) = &file.fit_error {
         lines.insert(4, format!("Error: {}", safe(error)));

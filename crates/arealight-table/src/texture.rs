@@ -101,7 +101,8 @@ pub fn encode_texels(file: &TableFile, precision: Precision) -> Vec<u8> {
     }
 }
 
-/// A table's attributes and `others` as key/value data of KTX2: sorted by key, each of them padded to four bytes.
+/// A table's attributes and `others` as key/value data of KTX2: sorted by key, each of them padded to four
+/// bytes.
 pub fn encode_key_values(file: &TableFile, others: &[(&'static str, &str)]) -> Vec<u8> {
     let mut entries = texts(file);
     entries.push((name::VERSION, VERSION.to_string()));

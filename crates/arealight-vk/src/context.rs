@@ -68,18 +68,20 @@ impl std::fmt::Debug for Context {
 }
 
 impl Context {
-    /// Checks the device, which has a queue with compute, and takes its function table. No optional feature is needed. All handles stay the
-    /// host's: nothing of them is destroyed, waited for or submitted to.
+    /// Checks the device, which has a queue with compute, and takes its function table. No optional feature
+    /// is needed. All handles stay the host's: nothing of them is destroyed, waited for or submitted to.
     ///
     /// A host that uses another version of ash, or none, makes the function tables from its raw handles with
     /// `ash::Instance::load_with` and `ash::Device::load_with`, re-exported here as [`crate::ash`].
     ///
     /// # Safety
-    /// - The handles are valid, the physical device of the instance and the device of the physical device; all are for Vulkan 1.1 or later.
+    /// - The handles are valid, the physical device of the instance and the device of the physical device;
+    ///   all are for Vulkan 1.1 or later.
     /// - The device outlives the context and everything made from it.
     ///
     /// # Errors
-    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1; [`Error::Vulkan`] where a call fails.
+    /// [`Error::MissingFeature`] where the device is older than Vulkan 1.1; [`Error::Vulkan`] where a call
+    /// fails.
     pub unsafe fn new(
         instance: &ash::Instance,
         physical_device: vk::PhysicalDevice,
@@ -111,24 +113,25 @@ impl Context {
     /// Makes pipelines with a cache of the host's.
     ///
     /// # Safety
-    /// The cache is the device's, and outlives what is made of the context. Nothing else uses it while a pipeline is made (it is externally
-    /// synchronised).
+    /// The cache is the device's, and outlives what is made of the context. Nothing else uses it while a
+    /// pipeline is made (it is externally synchronised).
     #[must_use = "the context is returned"]
     pub unsafe fn with_pipeline_cache(mut self, cache: vk::PipelineCache) -> Self {
         self.pipeline_cache = cache;
         self
     }
 
-    /// Hands modules to the driver as they are, without [`prune`](crate::prune()): for a debugger of shaders, or to compare. On Mesa
-    /// a pipeline then takes from 8 to 150 times as long to make. Sets have every binding then, seven storage buffers among them.
+    /// Hands modules to the driver as they are, without [`prune`](crate::prune()): for a debugger of shaders,
+    /// or to compare. On Mesa a pipeline then takes from 8 to 150 times as long to make. Sets have every
+    /// binding then, seven storage buffers among them.
     #[must_use = "the context is returned"]
     pub fn with_whole_modules(mut self) -> Self {
         self.whole_modules = true;
         self
     }
 
-    /// Has what is made from the context named (`arealight shade`) and what is recorded labelled, for debuggers and the
-    /// validation layer.
+    /// Has what is made from the context named (`arealight shade`) and what is recorded labelled, for
+    /// debuggers and the validation layer.
     ///
     /// # Safety
     /// The instance is the device's, and was made with `VK_EXT_debug_utils`.
@@ -138,8 +141,8 @@ impl Context {
         self
     }
 
-    /// Has shade passes take their resources when they are recorded, by [`ShadePass::record_pushed`](crate::ShadePass::record_pushed), in the place of
-    /// descriptor sets.
+    /// Has shade passes take their resources when they are recorded, by
+    /// [`ShadePass::record_pushed`](crate::ShadePass::record_pushed), in the place of descriptor sets.
     ///
     /// # Safety
     /// The instance is the device's, and the device was made with `VK_KHR_push_descriptor`.
@@ -150,9 +153,11 @@ impl Context {
         self
     }
 
-    /// Has the buffers of lights, their vertices and shapes in the sets of shade passes be dynamic ones (`STORAGE_BUFFER_DYNAMIC`), whose offsets each frame
-    /// says: [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are written with the range of a frame. Shadow passes
-    /// have plain buffers, and a set for each part of a ring.
+    /// Has the buffers of lights, their vertices and shapes in the sets of shade passes be dynamic ones
+    /// (`STORAGE_BUFFER_DYNAMIC`), whose offsets each frame says:
+    /// [`ShadeFrame::light_offsets`](crate::ShadeFrame::light_offsets), for rings of buffers. Sets are
+    /// written with the range of a frame. Shadow passes have plain buffers, and a set for each part of a
+    /// ring.
     #[must_use = "the context is returned"]
     pub fn with_light_offsets(mut self) -> Self {
         self.descriptors = Descriptors::LightOffsets;

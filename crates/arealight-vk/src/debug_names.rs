@@ -1,4 +1,5 @@
-//! Names and labels by which a debugger shows our objects and commands, where the host has `VK_EXT_debug_utils`.
+//! Names and labels by which a debugger shows our objects and commands, where the host has
+//! `VK_EXT_debug_utils`.
 
 use ash::ext::debug_utils::Device;
 use ash::vk;

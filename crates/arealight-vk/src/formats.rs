@@ -5,8 +5,8 @@ use arealight::Effects;
 use arealight::plan::{GBufferLayout, RadianceFormat, ShadeOptions};
 use ash::vk::Format;
 
-/// The formats of the images that a host binds to the shade pass, which their views do not tell: check them once, where
-/// the images are made.
+/// The formats of the images that a host binds to the shade pass, which their views do not tell: check them
+/// once, where the images are made.
 ///
 /// ```
 /// use arealight::plan::ShadeOptions;
@@ -31,22 +31,25 @@ use ash::vk::Format;
 pub struct ShadeFormats {
     /// Of [`crate::ShadeResources::position`]: float32 positions, or depth, by [`ShadeOptions::from_depth`].
     pub position: Format,
-    /// Of [`crate::ShadeResources::normal`]: signed, with four channels, or as [`ShadeOptions::g_buffer`] has it.
+    /// Of [`crate::ShadeResources::normal`]: signed, with four channels, or as [`ShadeOptions::g_buffer`] has
+    /// it.
     pub normal: Format,
     /// Of [`crate::ShadeResources::base_color`]: with four channels.
     pub base_color: Format,
     /// Of [`crate::ShadeResources::specular`], where [`ShadeOptions::reads_specular`].
     pub specular: Format,
-    /// Of [`crate::ShadeResources::coat`], where [`ShadeOptions::reads_coat`]: two channels, or with [`Effects::COAT_NORMAL`] four,
-    /// signed.
+    /// Of [`crate::ShadeResources::coat`], where [`ShadeOptions::reads_coat`]: two channels, or with
+    /// [`Effects::COAT_NORMAL`] four, signed.
     pub coat: Format,
     /// Of [`crate::ShadeResources::sheen`], where [`ShadeOptions::reads_sheen`]: with four channels.
     pub sheen: Format,
-    /// Of [`crate::ShadeResources::anisotropy`], where [`ShadeOptions::reads_anisotropy`]: signed or float, with four channels.
+    /// Of [`crate::ShadeResources::anisotropy`], where [`ShadeOptions::reads_anisotropy`]: signed or float,
+    /// with four channels.
     pub anisotropy: Format,
     /// Of [`crate::ShadeResources::film`], where [`ShadeOptions::reads_film`]: float, with four channels.
     pub film: Format,
-    /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by [`ShadeOptions::format`].
+    /// Of [`crate::ShadeResources::radiance`] and [`crate::ShadeResources::glossy`], by
+    /// [`ShadeOptions::format`].
     pub radiance: Format,
 }
 

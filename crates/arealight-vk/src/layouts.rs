@@ -1,4 +1,5 @@
-//! What the pipelines of a kernel have in common: the layout of its descriptor sets, and how those are written.
+//! What the pipelines of a kernel have in common: the layout of its descriptor sets, and how those are
+//! written.
 
 use crate::context::{Context, Descriptors};
 use crate::error::{Error, VulkanCall};
@@ -7,8 +8,8 @@ use arealight::kernels::{Binding, BindingKind, Kernel, LIGHT_VERTICES, LIGHTS, S
 use ash::vk;
 use std::sync::Arc;
 
-/// The sampler of every binding of [`BindingKind::FilteredImage`], which is immutable in our layouts: trilinear, clamped to the edge. For hosts that
-/// make layouts of our kernels themselves.
+/// The sampler of every binding of [`BindingKind::FilteredImage`], which is immutable in our layouts:
+/// trilinear, clamped to the edge. For hosts that make layouts of our kernels themselves.
 pub fn filtered_image_sampler() -> vk::SamplerCreateInfo<'static> {
     vk::SamplerCreateInfo::default()
         .mag_filter(vk::Filter::LINEAR)
@@ -44,8 +45,8 @@ impl Layouts {
         unsafe { Self::with(context, kernel, kernel.bindings, (Descriptors::Sets, None)) }
     }
 
-    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, with how set 0 gets at resources, and with the layout of
-    /// a second set, which is the host's.
+    /// As [`Layouts::new`], with no more of the kernel's first bindings than its pipelines use, with how set
+    /// 0 gets at resources, and with the layout of a second set, which is the host's.
     ///
     /// # Safety
     /// As [`Layouts::new`]; the layout is valid until they are dropped.
@@ -193,7 +194,8 @@ impl Layouts {
         unsafe { self.write_set_without(set, resources, &[]) }
     }
 
-    /// As [`Layouts::write_set`], where something stands in the place of the bindings `absent`, for frames that do not read them.
+    /// As [`Layouts::write_set`], where something stands in the place of the bindings `absent`, for frames
+    /// that do not read them.
     ///
     /// # Safety
     /// As [`ComputePass::write_set`].
@@ -289,7 +291,8 @@ impl Layouts {
     /// Pushes what set 0 holds, and binds the host's set.
     ///
     /// # Safety
-    /// `command_buffer` is recording, and the resources are valid until its commands have run; they passed [`Layouts::check_resources`].
+    /// `command_buffer` is recording, and the resources are valid until its commands have run; they passed
+    /// [`Layouts::check_resources`].
     pub(crate) unsafe fn push(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -315,7 +318,9 @@ impl Layouts {
         match self.descriptors {
             Descriptors::Pushed(_) => Err(Error::InvalidArgument {
                 field: "set",
-                message: "is given, but passes of a context with push descriptors take resources: ShadePass::record_pushed".into(),
+                message: "is given, but passes of a context with push descriptors take resources: \
+                ShadePass::record_pushed"
+                    .into(),
             }),
             Descriptors::Sets | Descriptors::LightOffsets => Ok(()),
         }
@@ -354,7 +359,8 @@ impl Layouts {
         self.context.written_sets.check_present(set, needed)
     }
 
-    /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they serve.
+    /// What [`ComputePass::record`] refuses of `kernel`, which is the layouts' own or another that they
+    /// serve.
     pub(crate) fn check(&self, kernel: &Kernel, constants: &[u8], groups: [u32; 3]) -> Result<(), Error> {
         if constants.len() != kernel.push_constant_size as usize {
             return Err(Error::InvalidArgument {

@@ -5,8 +5,8 @@
 //! descriptor sets and the memory, and finds Vulkan: [`ash`] is re-exported without its loader.
 //!
 //! # Start here
-//! The repository's `docs/embed-rust.md` goes through each step, and `examples/rust` is a whole engine. Vulkan 1.1 without any optional
-//! feature or extension is enough.
+//! The repository's `docs/embed-rust.md` goes through each step, and `examples/rust` is a whole engine.
+//! Vulkan 1.1 without any optional feature or extension is enough.
 //!
 //! | step | by |
 //! |---|---|
@@ -20,8 +20,8 @@
 //!
 //! The features: `gpu-allocator` lets the recorder take memory by that crate.
 //!
-//! Every `unsafe` function says what it trusts you with: that handles belong together, that they outlive what is made of them, and that
-//! commands are being recorded.
+//! Every `unsafe` function says what it trusts you with: that handles belong together, that they outlive what
+//! is made of them, and that commands are being recorded.
 //!
 //! ```no_run
 //! use arealight_vk::{ash, ash::vk, Context, ShadeFrame, ShadePass, ShadeResources, StencilTest};

@@ -24,8 +24,8 @@ pub(crate) const USAGE: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
 
 /// The one layout of the image, from [`LightTextures::record_clear`] on.
 ///
-/// A layout is that of all layers a descriptor sees, not of those that a shader reads: were a layer put into another
-/// while it is filtered, no frame could shade with the others meanwhile.
+/// A layout is that of all layers a descriptor sees, not of those that a shader reads: were a layer put into
+/// another while it is filtered, no frame could shade with the others meanwhile.
 const LAYOUT: vk::ImageLayout = vk::ImageLayout::GENERAL;
 
 /// What becomes of a layer.
@@ -53,22 +53,24 @@ struct BlurConstants {
     first_layer: u32,
 }
 
-/// The array image of the lights' textures with its pyramid, and the passes that fill it. The host gives it memory and
-/// descriptor sets:
+/// The array image of the lights' textures with its pyramid, and the passes that fill it. The host gives it
+/// memory and descriptor sets:
 ///
-/// 1. [`LightTextures::new`], 2. allocate for [`LightTextures::memory_requirements`], 3. [`LightTextures::bind_memory`],
-/// 4. allocate a set for each level but the first ([`LightTextures::level_set_layout`]), once, and one for each image
-///    ([`LightTextures::source_set_layout`]),
+/// 1. [`LightTextures::new`], 2. allocate for [`LightTextures::memory_requirements`], 3.
+///    [`LightTextures::bind_memory`],
+/// 4. allocate a set for each level but the first ([`LightTextures::level_set_layout`]), once, and one for
+///    each image ([`LightTextures::source_set_layout`]),
 /// 5. [`LightTextures::write_level_sets`], 6. [`LightTextures::record_clear`].
 ///
-/// From then on [`LightTextures::resource`] can be shaded with, and [`LightTextures::record_update`] replaces layers.
+/// From then on [`LightTextures::resource`] can be shaded with, and [`LightTextures::record_update`] replaces
+/// layers.
 ///
 /// # Frames in flight
-/// An update writes the layers that it names and nothing else, and no layout ever changes. On one queue all is ordered:
-/// the update waits for what was submitted before, and what comes later waits for it. Between queues (of one family) the
-/// host orders by semaphore: an update of a layer after every frame that shades with the layer, and before the next that
-/// does. Frames that shade with other layers may run meanwhile, so that a video which alternates between two layers
-/// never waits.
+/// An update writes the layers that it names and nothing else, and no layout ever changes. On one queue all
+/// is ordered: the update waits for what was submitted before, and what comes later waits for it. Between
+/// queues (of one family) the host orders by semaphore: an update of a layer after every frame that shades
+/// with the layer, and before the next that does. Frames that shade with other layers may run meanwhile, so
+/// that a video which alternates between two layers never waits.
 ///
 /// Dropping it destroys the image, its views and the passes; the memory stays the host's.
 #[derive(Debug)]
@@ -89,11 +91,13 @@ impl LightTextures {
     /// Makes the image of `layers` layers, without memory, and the passes.
     ///
     /// # Safety
-    /// The textures are dropped only when no recorded use of them is pending, and before the device is destroyed.
+    /// The textures are dropped only when no recorded use of them is pending, and before the device is
+    /// destroyed.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where there is no layer, or the layers are larger or more than the device has;
-    /// [`Error::MissingFeature`] where it cannot filter or store to their format; [`Error::Vulkan`] where a call fails.
+    /// [`Error::InvalidArgument`] where there is no layer, or the layers are larger or more than the device
+    /// has; [`Error::MissingFeature`] where it cannot filter or store to their format; [`Error::Vulkan`]
+    /// where a call fails.
     pub unsafe fn new(context: &Context, size: PyramidSize, layers: u32) -> Result<Self, Error> {
         check_size(context, size, layers)?;
         let pass = |kernel, constant| {
@@ -162,8 +166,8 @@ impl LightTextures {
     /// Called once, with an allocator of the same device.
     ///
     /// # Errors
-    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call fails
-    /// (then the memory was given back, and the textures are only good for dropping).
+    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call
+    /// fails (then the memory was given back, and the textures are only good for dropping).
     #[cfg(feature = "gpu-allocator")]
     pub unsafe fn allocate(
         &mut self,
@@ -202,8 +206,8 @@ impl LightTextures {
         self.size
     }
 
-    /// Checks that the layer of every textured light is there, before lights are packed and uploaded: the pass does not know what
-    /// will be bound.
+    /// Checks that the layer of every textured light is there, before lights are packed and uploaded: the
+    /// pass does not know what will be bound.
     ///
     /// # Errors
     /// [`Error::Light`] names the first light whose layer is not.
@@ -216,13 +220,14 @@ impl LightTextures {
         self.layers
     }
 
-    /// The image: [`PyramidSize::levels`] levels of [`PyramidSize::extent`] texels in `R16G16B16A16_SFLOAT`, in layout
-    /// `GENERAL` once it was cleared. It can be copied from, but not written to.
+    /// The image: [`PyramidSize::levels`] levels of [`PyramidSize::extent`] texels in `R16G16B16A16_SFLOAT`,
+    /// in layout `GENERAL` once it was cleared. It can be copied from, but not written to.
     pub fn image(&self) -> vk::Image {
         self.image
     }
 
-    /// The textures as a pass takes them. A null view before [`LightTextures::bind_memory`], which `write_set` refuses.
+    /// The textures as a pass takes them. A null view before [`LightTextures::bind_memory`], which
+    /// `write_set` refuses.
     pub fn resource(&self) -> Resource {
         Resource::FilteredImage { view: self.view, layout: LAYOUT }
     }
@@ -252,15 +257,17 @@ impl LightTextures {
         self.load[0].pool_sizes(sources)
     }
 
-    /// Points a set at an image to load: a [`Resource::SampledImage`] with a 2D view, whose first level is read.
+    /// Points a set at an image to load: a [`Resource::SampledImage`] with a 2D view, whose first level is
+    /// read.
     ///
     /// # Safety
     /// - `set` was allocated with [`LightTextures::source_set_layout`] and no pending command buffer uses it.
-    /// - The image's format is sampled as numbers, not as integers. It is valid, and stays so while recorded work that
-    ///   uses the set is pending.
+    /// - The image's format is sampled as numbers, not as integers. It is valid, and stays so while recorded
+    ///   work that uses the set is pending.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where the resource is null or no sampled image, or the textures have no memory.
+    /// [`Error::InvalidArgument`] where the resource is null or no sampled image, or the textures have no
+    /// memory.
     pub unsafe fn write_source_set(&self, set: vk::DescriptorSet, source: Resource) -> Result<(), Error> {
         // SAFETY: the same contract; the level is ours.
         unsafe { self.load[0].write_set(set, &[source, Resource::StorageImage { view: self.level_view(0) }]) }
@@ -269,10 +276,12 @@ impl LightTextures {
     /// Points the sets of the levels from 1 on, in turn, at each level and the one before. Once is enough.
     ///
     /// # Safety
-    /// Each of `sets` was allocated with [`LightTextures::level_set_layout`] and no pending command buffer uses it.
+    /// Each of `sets` was allocated with [`LightTextures::level_set_layout`] and no pending command buffer
+    /// uses it.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where there are not [`LightTextures::level_sets`], or the textures have no memory.
+    /// [`Error::InvalidArgument`] where there are not [`LightTextures::level_sets`], or the textures have no
+    /// memory.
     pub unsafe fn write_level_sets(&self, sets: &[vk::DescriptorSet]) -> Result<(), Error> {
         self.check_level_sets(sets)?;
         for (level, &set) in (1..).zip(sets) {
@@ -288,7 +297,8 @@ impl LightTextures {
         self.level_views.get(level).copied().unwrap_or_default()
     }
 
-    /// Records that every layer becomes black, and the image's layout what it stays. Needed once, before anything else.
+    /// Records that every layer becomes black, and the image's layout what it stays. Needed once, before
+    /// anything else.
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.
@@ -323,9 +333,9 @@ impl LightTextures {
         }
     }
 
-    /// Records that layers are loaded and filtered, with the barriers between and around: afterwards they are visible
-    /// to shaders. The cost is that of the layers given; others are left alone. The layers are filtered side by side,
-    /// level by level, and those with consecutive numbers in one dispatch.
+    /// Records that layers are loaded and filtered, with the barriers between and around: afterwards they are
+    /// visible to shaders. The cost is that of the layers given; others are left alone. The layers are
+    /// filtered side by side, level by level, and those with consecutive numbers in one dispatch.
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute, and
@@ -337,8 +347,8 @@ impl LightTextures {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] where a layer is not there or is given twice, or sets are missing;
-    /// [`Error::TexturePart`] for a source that cannot be loaded; [`Error::Destroyed`] (in debug builds) where a set points
-    /// at light textures that are gone. Then nothing is recorded.
+    /// [`Error::TexturePart`] for a source that cannot be loaded; [`Error::Destroyed`] (in debug builds)
+    /// where a set points at light textures that are gone. Then nothing is recorded.
     pub unsafe fn record_update(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -453,8 +463,8 @@ impl Drop for LightTextures {
         for view in self.level_views.iter().chain([&self.view]) {
             self.context.written_sets.destroy(*view);
         }
-        // SAFETY: by the contract of LightTextures::new no recorded use is pending and the device is alive; a null view
-        // is ignored.
+        // SAFETY: by the contract of LightTextures::new no recorded use is pending and the device is alive; a
+        // null view is ignored.
         unsafe {
             let device = &self.context.device;
             for view in self.level_views.drain(..) {
@@ -477,7 +487,8 @@ fn check_size(context: &Context, size: PyramidSize, layers: u32) -> Result<(), E
     let ([width, height], [widest, highest]) = (size.extent(0), limits.extent);
     if width > widest || height > highest {
         let message = format!(
-            "{width} x {height} texels, but the device's largest image has {widest} x {highest}; take a smaller size"
+            "{width} x {height} texels, but the device's largest image has {widest} x {highest}; take a \
+            smaller size"
         );
         return Err(Error::InvalidArgument { field: "size", message });
     }

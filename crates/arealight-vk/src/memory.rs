@@ -4,7 +4,8 @@ use crate::error::Error;
 use ash::vk;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
 
-/// Allocates for an image's `requirements`, and binds it by `bind`. Where that fails, the memory is given back.
+/// Allocates for an image's `requirements`, and binds it by `bind`. Where that fails, the memory is given
+/// back.
 pub(crate) fn allocate(
     allocator: &mut Allocator,
     name: &str,

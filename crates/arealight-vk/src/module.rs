@@ -9,12 +9,14 @@ use std::collections::{HashMap, HashSet};
 
 const MAGIC: u32 = 0x0723_0203;
 
-/// The limits of any module: its version, 1.0 to 1.6, and how many ids it has (the SPIR-V specification, 2.17).
+/// The limits of any module: its version, 1.0 to 1.6, and how many ids it has (the SPIR-V specification,
+/// 2.17).
 const VERSIONS: std::ops::RangeInclusive<u32> = 0x0001_0000..=0x0001_0600;
 const MOST_IDS: u32 = 4_194_303;
 
-/// Refuses what is no whole module of SPIR-V with the kernel's entry point, workgroup and bindings of set 0, and ids that are not defined. Types and
-/// control flow are not looked at: a module that passes may still be invalid, which a validator says.
+/// Refuses what is no whole module of SPIR-V with the kernel's entry point, workgroup and bindings of set 0,
+/// and ids that are not defined. Types and control flow are not looked at: a module that passes may still be
+/// invalid, which a validator says.
 pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> {
     let fault = |message: String| Error::InvalidArgument { field: "module", message };
     // The header, and the lengths of instructions

@@ -98,7 +98,8 @@ impl Default for Resource {
     }
 }
 
-/// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline, and its layouts with the last that has them.
+/// A kernel, specialised, ready to be recorded. Dropping it destroys its pipeline, and its layouts with the
+/// last that has them.
 #[derive(Debug)]
 pub struct ComputePass {
     layouts: Arc<Layouts>,
@@ -115,8 +116,8 @@ impl ComputePass {
     /// destroyed.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::MissingFeature`] where
-    /// the kernel binds more than the device can, [`Error::Vulkan`] where a call fails.
+    /// [`Error::InvalidArgument`] for a constant that the kernel does not have, [`Error::MissingFeature`]
+    /// where the kernel binds more than the device can, [`Error::Vulkan`] where a call fails.
     pub unsafe fn new(
         context: &Context,
         kernel: &'static Kernel,
@@ -129,10 +130,12 @@ impl ComputePass {
     /// As [`ComputePass::new`], with a SPIR-V module in the place of the kernel's own.
     ///
     /// # Safety
-    /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry point.
+    /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry
+    /// point.
     ///
     /// # Errors
-    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
+    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry
+    /// point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         kernel: &'static Kernel,
@@ -144,7 +147,8 @@ impl ComputePass {
         unsafe { Self::of(&Layouts::new(context, kernel)?, kernel, module, specialization) }
     }
 
-    /// As [`ComputePass::with_module`], with layouts that others have too, of a module that [`check_module`] found good.
+    /// As [`ComputePass::with_module`], with layouts that others have too, of a module that [`check_module`]
+    /// found good.
     ///
     /// # Safety
     /// As [`ComputePass::with_module`]. The layouts are those of a kernel with every binding of this one.
@@ -206,8 +210,8 @@ impl ComputePass {
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] where `constants` is not of the kernel's size or `groups` is beyond the
-    /// device's limit, [`Error::Destroyed`] (in debug builds) where the set points at an image of the recorder's that
-    /// is gone; then nothing is recorded.
+    /// device's limit, [`Error::Destroyed`] (in debug builds) where the set points at an image of the
+    /// recorder's that is gone; then nothing is recorded.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -241,7 +245,8 @@ impl ComputePass {
         }
     }
 
-    /// As [`ComputePass::record_checked`], of the workgroups in `rows` alone: of y from the first on to before the last. Descriptor sets are bound already.
+    /// As [`ComputePass::record_checked`], of the workgroups in `rows` alone: of y from the first on to
+    /// before the last. Descriptor sets are bound already.
     ///
     /// # Safety
     /// As [`ComputePass::record`]; rows are among those of `groups`.
@@ -258,7 +263,8 @@ impl ComputePass {
             let device = &self.layouts.context().device;
             device.cmd_dispatch_base(command_buffer, 0, rows.start, 0, groups[0], count, groups[2]);
             if rows.start > 0 {
-                // Lavapipe's indirect dispatches begin where the last direct one did: one of nothing begins at 0
+                // Lavapipe's indirect dispatches begin where the last direct one did: one of nothing begins
+                // at 0
                 device.cmd_dispatch(command_buffer, 0, 0, 0);
             }
         }
@@ -267,8 +273,8 @@ impl ComputePass {
     /// As [`ComputePass::record_rows`], with the groups that are found in a buffer when the commands run.
     ///
     /// # Safety
-    /// As [`ComputePass::record`]; `buffer` has the usage `INDIRECT_BUFFER`, and holds at `offset`, a multiple of 4, a
-    /// `VkDispatchIndirectCommand` that the device can dispatch.
+    /// As [`ComputePass::record`]; `buffer` has the usage `INDIRECT_BUFFER`, and holds at `offset`, a
+    /// multiple of 4, a `VkDispatchIndirectCommand` that the device can dispatch.
     pub(crate) unsafe fn record_indirect(
         &self,
         command_buffer: vk::CommandBuffer,

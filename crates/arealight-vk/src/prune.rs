@@ -1,8 +1,8 @@
 //! Leaves out of a SPIR-V module what its specialisation constants rule out.
 //!
-//! Drivers find that out as well, but some do so late: Mesa copies every function to where it is called, with all of its branches,
-//! before it looks at a condition. What a scene does not need then costs nothing to shade, and much to compile
-//! (docs/decisions/0009-pruned-modules.md).
+//! Drivers find that out as well, but some do so late: Mesa copies every function to where it is called, with
+//! all of its branches, before it looks at a condition. What a scene does not need then costs nothing to
+//! shade, and much to compile (docs/decisions/0009-pruned-modules.md).
 
 use constants::{Known, Value, specialization_id};
 use flow::{Callees, Flow};
@@ -18,14 +18,17 @@ mod pointers;
 
 pub use freeze::freeze;
 
-/// The module without the branches that are never taken where specialisation constants have these values (pairs of id and value; the
-/// others have their defaults), without the functions that then nobody calls, and without the bindings that then nothing uses. It has the
-/// same constants and entry points, is specialised in the same way, and computes the same to the bit.
+/// The module without the branches that are never taken where specialisation constants have these values
+/// (pairs of id and value; the others have their defaults), without the functions that then nobody calls, and
+/// without the bindings that then nothing uses. It has the same constants and entry points, is specialised in
+/// the same way, and computes the same to the bit.
 ///
-/// What isn't understood is left as it is: a `switch`, what is computed of other than integers of 32 bits and truth values;
-/// and whole modules that have debug information beyond the core's (`NonSemantic.Shader.DebugInfo.100`), or cannot be read.
+/// What isn't understood is left as it is: a `switch`, what is computed of other than integers of 32 bits and
+/// truth values; and whole modules that have debug information beyond the core's
+/// (`NonSemantic.Shader.DebugInfo.100`), or cannot be read.
 ///
-/// [`ComputePass`](crate::ComputePass) does this by itself. It is for hosts that make pipelines of our kernels themselves.
+/// [`ComputePass`](crate::ComputePass) does this by itself. It is for hosts that make pipelines of our
+/// kernels themselves.
 pub fn prune(module: &[u32], specialization: &[(u32, u32)]) -> Vec<u32> {
     pruned(module, specialization).unwrap_or_else(|| module.to_vec())
 }
@@ -64,7 +67,8 @@ fn pruned(words: &[u32], specialization: &[(u32, u32)]) -> Option<Vec<u32>> {
     Some(module.assemble())
 }
 
-/// Drops the images and buffers that no instruction of a function uses. (Entry points of SPIR-V 1.3 do not name them.)
+/// Drops the images and buffers that no instruction of a function uses. (Entry points of SPIR-V 1.3 do not
+/// name them.)
 fn drop_unused_bindings(module: &mut Module) {
     let instructions = module.functions.iter().flat_map(Function::all_inst_iter);
     let used: HashSet<Word> = instructions
@@ -117,7 +121,8 @@ fn call(instruction: &Instruction) -> Option<(Word, impl Iterator<Item = Word>)>
     Some((callee, instruction.operands[1..].iter().filter_map(Operand::id_ref_any)))
 }
 
-/// The places of the functions that entry points reach, such that each comes after all that call it. (SPIR-V for Vulkan has no recursion.)
+/// The places of the functions that entry points reach, such that each comes after all that call it. (SPIR-V
+/// for Vulkan has no recursion.)
 fn callers_first(module: &Module) -> Vec<usize> {
     let places: HashMap<Word, usize> = module
         .functions
@@ -155,7 +160,8 @@ fn callers_first(module: &Module) -> Vec<usize> {
 
 /// Who is called, and what with.
 struct Calls {
-    /// For each function that is called, what all calls so far give for its parameters, where that is known and the same.
+    /// For each function that is called, what all calls so far give for its parameters, where that is known
+    /// and the same.
     given: HashMap<Word, Vec<Option<Value>>>,
     callees: Callees,
 }

@@ -25,41 +25,48 @@ use std::ops::Range;
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShadeFrame {
-    /// How many pixels are shaded, from the corner x = y = 0 of the radiance images on, or from `offset`. The images may be larger. The G-buffer's images
-    /// have a texel for each pixel, or [`ShadeOptions::texels_per_pixel`] to a side.
+    /// How many pixels are shaded, from the corner x = y = 0 of the radiance images on, or from `offset`. The
+    /// images may be larger. The G-buffer's images have a texel for each pixel, or
+    /// [`ShadeOptions::texels_per_pixel`] to a side.
     pub size: [u32; 2],
-    /// With [`ShadeOptions::rectangle`], the first pixel that is shaded; else zero. In the G-buffer it has the same place, times
-    /// [`ShadeOptions::texels_per_pixel`].
+    /// With [`ShadeOptions::rectangle`], the first pixel that is shaded; else zero. In the G-buffer it has
+    /// the same place, times [`ShadeOptions::texels_per_pixel`].
     pub offset: [u32; 2],
-    /// The viewport that drew the G-buffer. Its height is negative where y is up in clip space,
-    /// as in hosts that come from Direct3D, Metal or WebGPU. None: just the texels of `size` and `offset`, y down, depth from 0 to 1.
-    /// Only positions from depth, and a shadow's history, depend on it.
+    /// The viewport that drew the G-buffer. Its height is negative where y is up in clip space, as in hosts
+    /// that come from Direct3D, Metal or WebGPU. None: just the texels of `size` and `offset`, y down, depth
+    /// from 0 to 1. Only positions from depth, and a shadow's history, depend on it.
     pub viewport: Option<Viewport>,
-    /// The camera's position relative to the origin that lights and positions are packed with; with [`ShadeOptions::orthographic`] the
-    /// direction to it, of any length but zero. With shadow rays the length is that at which a perspective camera would stand that sees as much: what
-    /// counts as one plane depends on it.
+    /// The camera's position relative to the origin that lights and positions are packed with; with
+    /// [`ShadeOptions::orthographic`] the direction to it, of any length but zero. With shadow rays the
+    /// length is that at which a perspective camera would stand that sees as much: what counts as one plane
+    /// depends on it.
     pub camera: Vec3,
-    /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix that drew the depth, jitter
-    /// included. Needed with [`ShadeOptions::from_depth`], else ignored.
+    /// The inverse of (projection × view), from clip space to positions relative to the origin: of the matrix
+    /// that drew the depth, jitter included. Needed with [`ShadeOptions::from_depth`], else ignored.
     pub position_from_clip: Option<Mat4>,
-    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers; with [`ShadeOptions::light_counts`] the most that
-    /// there may be.
+    /// [`PackedLights::summary`](arealight::PackedLights::summary) of the lights in the set's buffers; with
+    /// [`ShadeOptions::light_counts`] the most that there may be.
     pub lights: LightSummary,
-    /// With tiles, [`ShadeResources::tile_lists`] of the set: dispatches are read from it. Passes without tiles do not use it.
+    /// With tiles, [`ShadeResources::tile_lists`] of the set: dispatches are read from it. Passes without
+    /// tiles do not use it.
     pub tile_lists: Option<Resource>,
-    /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each frame. Else ignored.
+    /// With [`ShadeOptions::shadow_rays`], of the random numbers that rays are drawn with: one more in each
+    /// frame. Else ignored.
     pub seed: u32,
-    /// The rows of pixels that this record shades, from the first to before the second, of those that `size` says; None: all. Both are multiples of
-    /// 8, or the second is the last row's end. A frame of more work than a driver's watchdog allows is recorded and submitted by
-    /// [`ShadeFrame::parts`]. The picture is the same to the bit.
+    /// The rows of pixels that this record shades, from the first to before the second, of those that `size`
+    /// says; None: all. Both are multiples of 8, or the second is the last row's end. A frame of more work
+    /// than a driver's watchdog allows is recorded and submitted by [`ShadeFrame::parts`]. The picture is the
+    /// same to the bit.
     pub rows: Option<[u32; 2]>,
     /// With [`ShadeOptions::stencil`], which pixels are shaded. Else ignored.
     pub stencil: StencilTest,
-    /// With [`Context::with_light_offsets`], where the frame's lights, vertices and shapes begin, in bytes after what the set was written with. Else zero.
+    /// With [`Context::with_light_offsets`], where the frame's lights, vertices and shapes begin, in bytes
+    /// after what the set was written with. Else zero.
     pub light_offsets: [u32; 3],
 }
 
-/// Pixels are shaded whose stencil is equal to the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`. By default all are.
+/// Pixels are shaded whose stencil is equal to the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`.
+/// By default all are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StencilTest {
     /// The bits that are compared.
@@ -69,9 +76,10 @@ pub struct StencilTest {
 }
 
 impl ShadeFrame {
-    /// The frame in parts of whole rows of workgroups, none with more than `most` pairs of a pixel and a light, but for one that is a single row
-    /// of workgroups (8 rows of pixels), which is the least. What a light costs a pixel is in docs/gpu.md; 2^24 pairs take less than
-    /// two seconds on a device that does ten million a second. Tiles leave out pairs that are counted here.
+    /// The frame in parts of whole rows of workgroups, none with more than `most` pairs of a pixel and a
+    /// light, but for one that is a single row of workgroups (8 rows of pixels), which is the least. What a
+    /// light costs a pixel is in docs/gpu.md; 2^24 pairs take less than two seconds on a device that does ten
+    /// million a second. Tiles leave out pairs that are counted here.
     pub fn parts(&self, most: u64) -> impl Iterator<Item = Self> + use<> {
         let frame = *self;
         let [first, end] = frame.rows.unwrap_or([0, frame.size[1]]);
@@ -93,8 +101,9 @@ const GROUP_SIDE: u32 = arealight::tiles::SIDE;
 /// A frame's pipeline has what its lights and the surfaces need, and nothing else.
 /// It is made when the first such frame is recorded, or ahead by [`ShadePass::prepare`], and kept.
 ///
-/// With tiles ([`ShadePass::with_tiles`]) a dispatch first lists the lights that contribute to each tile of 8 × 8 pixels, and tiles of quads
-/// alone run less code than others. The picture is the same but for lights that are left out, by [`TileOptions`].
+/// With tiles ([`ShadePass::with_tiles`]) a dispatch first lists the lights that contribute to each tile of 8
+/// × 8 pixels, and tiles of quads alone run less code than others. The picture is the same but for lights
+/// that are left out, by [`TileOptions`].
 #[derive(Debug)]
 pub struct ShadePass {
     pipelines: Pipelines,
@@ -106,7 +115,8 @@ impl ShadePass {
     /// Makes what all pipelines of the pass have in common.
     ///
     /// # Safety
-    /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device goes.
+    /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device
+    /// goes.
     ///
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
@@ -115,8 +125,9 @@ impl ShadePass {
         unsafe { Self::of_module(context, options, SHADE.words(), None) }
     }
 
-    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::lobe_horizons`] and `tile_lists` are needed then.
-    /// `table_size` is how many nodes a side the table has that will be bound, [`arealight::LightTable::size`].
+    /// As [`ShadePass::new`], with tiles (docs/tiles.md): [`ShadeResources::lobe_horizons`] and `tile_lists`
+    /// are needed then. `table_size` is how many nodes a side the table has that will be bound,
+    /// [`arealight::LightTable::size`].
     ///
     /// # Safety
     /// As [`ShadePass::new`].
@@ -141,14 +152,15 @@ impl ShadePass {
         }
     }
 
-    /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of its own
-    /// (docs/embed-glsl.md): [`ShadeOptions::g_buffer`] does not count then.
+    /// As [`ShadePass::new`], of a module that the host compiled from the kernel's sources, for a G-buffer of
+    /// its own (docs/embed-glsl.md): [`ShadeOptions::g_buffer`] does not count then.
     ///
     /// # Safety
     /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
     ///
     /// # Errors
-    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
+    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point
+    /// and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
@@ -159,8 +171,9 @@ impl ShadePass {
         unsafe { Self::of_module(context, options, module, None) }
     }
 
-    /// As [`ShadePass::with_module`], of a module that asks the host what part of each light arrives (docs/shadows.md): what it reads is in
-    /// descriptor set 1, of this layout, which [`ShadePass::record_with_set`] binds.
+    /// As [`ShadePass::with_module`], of a module that asks the host what part of each light arrives
+    /// (docs/shadows.md): what it reads is in descriptor set 1, of this layout, which
+    /// [`ShadePass::record_with_set`] binds.
     ///
     /// # Safety
     /// As [`ShadePass::with_module`]; `host_set` is a layout of the device, valid as long as the pass.
@@ -230,9 +243,10 @@ impl ShadePass {
         self.pipelines.layouts().pool_sizes(sets)
     }
 
-    /// How the pass uses each resource. The lists of tiles are not among them: they are written and read within the pass, with barriers of
-    /// its own, from `TRANSFER` to `DRAW_INDIRECT` and `COMPUTE_SHADER`. Before the buffer is used by another frame the host waits
-    /// for those stages, as for any buffer that is written again.
+    /// How the pass uses each resource. The lists of tiles are not among them: they are written and read
+    /// within the pass, with barriers of its own, from `TRANSFER` to `DRAW_INDIRECT` and `COMPUTE_SHADER`.
+    /// Before the buffer is used by another frame the host waits for those stages, as for any buffer that is
+    /// written again.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
         let mut accesses = accesses_of(&SHADE);
         let is_used = |name| match name {
@@ -248,7 +262,8 @@ impl ShadePass {
         accesses
     }
 
-    /// In which stages, and how, the pass uses any of its resources: what one barrier for all of them is made of.
+    /// In which stages, and how, the pass uses any of its resources: what one barrier for all of them is made
+    /// of.
     pub fn stages_and_access(&self) -> (vk::PipelineStageFlags, vk::AccessFlags) {
         let all = self.accesses();
         (
@@ -260,7 +275,8 @@ impl ShadePass {
     /// Points a descriptor set at the resources of a run.
     ///
     /// # Safety
-    /// As [`crate::ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
+    /// As [`crate::ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded
+    /// work.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
@@ -270,8 +286,8 @@ impl ShadePass {
         unsafe { self.pipelines.layouts().write_set_without(set, &resources, &absent) }
     }
 
-    /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That takes a moment,
-    /// which [`ShadePass::record`] would take otherwise.
+    /// Makes the pipelines for frames whose lights need what this one's do, where they are not made yet. That
+    /// takes a moment, which [`ShadePass::record`] would take otherwise.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] as [`ShadePass::record`]; [`Error::Vulkan`] where a call fails.
@@ -287,13 +303,14 @@ impl ShadePass {
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with compute.
-    /// - `set` was written by [`ShadePass::write_set`], with images that hold the frame's pixels and buffers that hold
-    ///   the lights that `frame.lights` is of; with tiles, with `frame.tile_lists`, a buffer of
+    /// - `set` was written by [`ShadePass::write_set`], with images that hold the frame's pixels and buffers
+    ///   that hold the lights that `frame.lights` is of; with tiles, with `frame.tile_lists`, a buffer of
     ///   [`ShadePass::tile_memory`] for that size, which no pending commands use without a barrier between.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource that its lights need and the set was
-    /// written without; [`Error::Vulkan`] where a pipeline cannot be made. Then nothing is recorded.
+    /// [`Error::InvalidArgument`] names the field of `frame` that is wrong, or (in debug builds) the resource
+    /// that its lights need and the set was written without; [`Error::Vulkan`] where a pipeline cannot be
+    /// made. Then nothing is recorded.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -304,10 +321,12 @@ impl ShadePass {
         unsafe { self.record_with(command_buffer, &Bound::Set(set), None, frame) }
     }
 
-    /// As [`ShadePass::record`], of a pass made by [`ShadePass::with_module_and_set`]: `host_set` is bound as set 1.
+    /// As [`ShadePass::record`], of a pass made by [`ShadePass::with_module_and_set`]: `host_set` is bound as
+    /// set 1.
     ///
     /// # Safety
-    /// As [`ShadePass::record`]; `host_set` was allocated with the layout that the pass was made with, and written.
+    /// As [`ShadePass::record`]; `host_set` was allocated with the layout that the pass was made with, and
+    /// written.
     ///
     /// # Errors
     /// As [`ShadePass::record`].
@@ -322,8 +341,9 @@ impl ShadePass {
         unsafe { self.record_with(command_buffer, &Bound::Set(set), Some(host_set), frame) }
     }
 
-    /// As [`ShadePass::record`], of a context [with push descriptors](Context::with_push_descriptors): the resources are pushed, and no set is needed. `host_set`
-    /// is bound as set 1, where the pass was made by [`ShadePass::with_module_and_set`].
+    /// As [`ShadePass::record`], of a context [with push descriptors](Context::with_push_descriptors): the
+    /// resources are pushed, and no set is needed. `host_set` is bound as set 1, where the pass was made by
+    /// [`ShadePass::with_module_and_set`].
     ///
     /// # Safety
     /// As [`ShadePass::record`] and [`ShadePass::write_set`]: the resources outlive the recorded work.
@@ -473,7 +493,8 @@ fn check_options(options: ShadeOptions) -> Result<(), Error> {
     if options.shadow_rays > 0 && options.output != Output::Overwrite {
         return wrong(
             "output",
-            "adds, but with shadow rays the unshadowed radiance has an image of its own: ShadowOptions::output adds",
+            "adds, but with shadow rays the unshadowed radiance has an image of its own: \
+            ShadowOptions::output adds",
         );
     }
     if options.shadow_rays > 0 && options.separate_lobes {

@@ -1,4 +1,5 @@
-//! Shadows: rays for the lights and lobes that the shade pass picked, and what their mean makes of its radiance.
+//! Shadows: rays for the lights and lobes that the shade pass picked, and what their mean makes of its
+//! radiance.
 
 use crate::context::{Context, Descriptors};
 use crate::error::Error;
@@ -30,16 +31,18 @@ pub struct ShadowOptions {
 /// The host's resources of a shadow pass beyond those of its shade pass.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowResources {
-    /// An image of [`ShadowPass::SHADOW_FORMAT`] and the frame's size, with the usage `STORAGE`. The pass alone writes it.
+    /// An image of [`ShadowPass::SHADOW_FORMAT`] and the frame's size, with the usage `STORAGE`. The pass
+    /// alone writes it.
     pub shadow: Resource,
-    /// Where radiance goes, in the format of [`ShadeOptions::format`]. With none it replaces the unshadowed one in
-    /// [`ShadeResources::radiance`].
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]. With none it replaces the unshadowed
+    /// one in [`ShadeResources::radiance`].
     pub radiance: Option<Resource>,
-    /// With [`ShadowOptions::history`], a buffer of [`plan::shadow_history_size`] bytes with the usages `STORAGE_BUFFER` and `TRANSFER_DST`, which
-    /// holds zeros before the first frame and after each cut. The pass alone writes it; it is the same one for all frames of a view.
+    /// With [`ShadowOptions::history`], a buffer of [`plan::shadow_history_size`] bytes with the usages
+    /// `STORAGE_BUFFER` and `TRANSFER_DST`, which holds zeros before the first frame and after each cut. The
+    /// pass alone writes it; it is the same one for all frames of a view.
     pub history: Option<Resource>,
-    /// With [`ShadowHistory::MotionVectors`], an image: for each pixel where its point was in the frame before less where it is, in parts of
-    /// the image's width and height.
+    /// With [`ShadowHistory::MotionVectors`], an image: for each pixel where its point was in the frame
+    /// before less where it is, in parts of the image's width and height.
     pub motion: Option<Resource>,
     /// What blocks rays; none with a module that asks the host ([`ShadowPass::with_module`]).
     pub blockers: Option<BlockerResources>,
@@ -59,13 +62,13 @@ pub enum ShadowStage {
 /// What differs from frame to frame.
 #[derive(Debug, Clone, Copy)]
 pub struct ShadowFrame<'a> {
-    /// That of the shade pass. With [`ShadowOptions::history`] it has [`ShadeFrame::position_from_clip`], also where positions come from an image,
-    /// and [`ShadeFrame::seed`] counts frames.
+    /// That of the shade pass. With [`ShadowOptions::history`] it has [`ShadeFrame::position_from_clip`],
+    /// also where positions come from an image, and [`ShadeFrame::seed`] counts frames.
     pub shade: &'a ShadeFrame,
     /// Bound as set 1 for a module of the host's.
     pub host_set: Option<vk::DescriptorSet>,
-    /// What is added to positions relative to this frame's origin for positions relative to that of the frame before. Read only with
-    /// [`ShadowOptions::history`].
+    /// What is added to positions relative to this frame's origin for positions relative to that of the frame
+    /// before. Read only with [`ShadowOptions::history`].
     pub origin_shift: Vec3,
 }
 
@@ -78,9 +81,10 @@ pub struct BlockerResources {
     pub triangles: Resource,
 }
 
-/// Shadow rays after a [`crate::ShadePass`] with [`ShadeOptions::shadow_rays`]: two dispatches, or three with a history. Each ray is drawn from the lobe that it was picked
-/// for, over the light that it was picked for, so that the part of the rays that arrive is, on average, the part of the radiance that does; where
-/// all or none arrive there is no noise.
+/// Shadow rays after a [`crate::ShadePass`] with [`ShadeOptions::shadow_rays`]: two dispatches, or three with
+/// a history. Each ray is drawn from the lobe that it was picked for, over the light that it was picked for,
+/// so that the part of the rays that arrive is, on average, the part of the radiance that does; where all or
+/// none arrive there is no noise.
 ///
 /// Of textured lights every texel counts alike; ends of open and flat tubes are no part of their outline.
 #[derive(Debug)]
@@ -102,8 +106,9 @@ impl ShadowPass {
     /// As [`crate::ShadePass::new`].
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] where `options` have no shadow rays, or more than a pixel may have; [`Error::MissingFeature`] where the device has
-    /// too few storage buffers for a stage; [`Error::Vulkan`] where a call fails.
+    /// [`Error::InvalidArgument`] where `options` have no shadow rays, or more than a pixel may have;
+    /// [`Error::MissingFeature`] where the device has too few storage buffers for a stage; [`Error::Vulkan`]
+    /// where a call fails.
     pub unsafe fn new(
         context: &Context,
         options: ShadeOptions,
@@ -117,14 +122,17 @@ impl ShadowPass {
         }
     }
 
-    /// As [`ShadowPass::new`], of a module that the host compiled from the kernel `shadow_rays.comp` with its own answer to what blocks a ray
-    /// (docs/shadows.md): a shadow map, an acceleration structure. What that reads is in descriptor set 1, of this layout.
+    /// As [`ShadowPass::new`], of a module that the host compiled from the kernel `shadow_rays.comp` with its
+    /// own answer to what blocks a ray (docs/shadows.md): a shadow map, an acceleration structure. What that
+    /// reads is in descriptor set 1, of this layout.
     ///
     /// # Safety
-    /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of the device, valid as long as the pass.
+    /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of
+    /// the device, valid as long as the pass.
     ///
     /// # Errors
-    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point and bindings.
+    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point
+    /// and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
@@ -178,8 +186,9 @@ impl ShadowPass {
         self.rays.layouts().pool_sizes(sets)
     }
 
-    /// How the pass uses each resource. What the shade pass before it wrote (`radiance_image` and `shadow_picks` there; here
-    /// `unshadowed_image` and `shadow_picks`) is made visible by a barrier of the host's. Between its own two dispatches the pass has one of its own.
+    /// How the pass uses each resource. What the shade pass before it wrote (`radiance_image` and
+    /// `shadow_picks` there; here `unshadowed_image` and `shadow_picks`) is made visible by a barrier of the
+    /// host's. Between its own two dispatches the pass has one of its own.
     pub fn accesses(&self) -> Vec<ResourceAccess> {
         let mut accesses = accesses_of(&SHADOW_RAYS);
         let filter = accesses_of(&SHADOW_FILTER).into_iter();
@@ -194,7 +203,8 @@ impl ShadowPass {
     /// Points a descriptor set at the resources of a run: `shade` are those of the shade pass before it.
     ///
     /// # Safety
-    /// As [`crate::ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded work.
+    /// As [`crate::ComputePass::write_set`]: the set is not in use, and the resources outlive the recorded
+    /// work.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] names the resource that is missing, null or of the wrong kind.
@@ -254,7 +264,8 @@ impl ShadowPass {
         unsafe { self.rays.layouts().write_set(set, &all) }
     }
 
-    /// Makes the pipelines for a frame of these lights, which [`ShadowPass::record`] would otherwise do when the first such frame is recorded.
+    /// Makes the pipelines for a frame of these lights, which [`ShadowPass::record`] would otherwise do when
+    /// the first such frame is recorded.
     ///
     /// # Errors
     /// [`Error::Vulkan`] where a call fails.
@@ -283,15 +294,17 @@ impl ShadowPass {
         self.shadows.history != ShadowHistory::Off
     }
 
-    /// Records the pass, for the frame that the shade pass recorded. With a history, `resources` are those that `set` was written with: its
-    /// buffer is updated too.
+    /// Records the pass, for the frame that the shade pass recorded. With a history, `resources` are those
+    /// that `set` was written with: its buffer is updated too.
     ///
     /// # Safety
-    /// As [`crate::ShadePass::record`]; `set` was written by [`ShadowPass::write_set`] with `resources`, and [`ShadowFrame::host_set`] allocated
-    /// with the layout that the pass was made with. With a history, the frame before of this view was recorded earlier on the same queue.
+    /// As [`crate::ShadePass::record`]; `set` was written by [`ShadowPass::write_set`] with `resources`, and
+    /// [`ShadowFrame::host_set`] allocated with the layout that the pass was made with. With a history, the
+    /// frame before of this view was recorded earlier on the same queue.
     ///
     /// # Errors
-    /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] names the field of `frame` that is missing, not to be, or wrong.
+    /// As [`crate::ShadePass::record`]; [`Error::InvalidArgument`] names the field of `frame` that is
+    /// missing, not to be, or wrong.
     pub unsafe fn record(
         &self,
         command_buffer: vk::CommandBuffer,
@@ -323,8 +336,8 @@ impl ShadowPass {
         }
     }
 
-    /// One dispatch of [`ShadowPass::record`], for a host that has commands of its own between them, such as timestamps. What the one before
-    /// wrote is made visible to it by a barrier of the host's.
+    /// One dispatch of [`ShadowPass::record`], for a host that has commands of its own between them, such as
+    /// timestamps. What the one before wrote is made visible to it by a barrier of the host's.
     ///
     /// # Safety
     /// As [`ShadowPass::record`].
@@ -354,7 +367,8 @@ impl ShadowPass {
         self.rays.layouts().check_host_set(frame.host_set)?;
         let view = view_of(self.options, frame.shade)?;
         if frame.shade.rows.is_some() {
-            let message = "are a part of the frame, but shadows are of all of it: record its parts by the shade pass alone";
+            let message = "are a part of the frame, but shadows are of all of it: record its parts by the \
+            shade pass alone";
             return Err(Error::InvalidArgument { field: "rows", message: message.into() });
         }
         let head = self.history_head(resources, frame, &view)?;

@@ -40,7 +40,8 @@ impl TableFormat {
 
 /// The table's image and view. The host gives it memory:
 ///
-/// 1. [`TableImage::new`], 2. allocate for [`TableImage::memory_requirements`], 3. [`TableImage::bind_memory`],
+/// 1. [`TableImage::new`], 2. allocate for [`TableImage::memory_requirements`], 3.
+///    [`TableImage::bind_memory`],
 /// 4. fill a staging buffer with [`TableImage::bytes`], 5. [`TableImage::record_upload`].
 ///
 /// Dropping it destroys image and view; the memory stays the host's.
@@ -82,7 +83,8 @@ impl TableImage {
         Ok(Self { context: context.clone(), image, view: vk::ImageView::null(), format, size: table.size() })
     }
 
-    /// The texels of the table that it was made for, in its format: what the staging buffer of [`TableImage::record_upload`] holds.
+    /// The texels of the table that it was made for, in its format: what the staging buffer of
+    /// [`TableImage::record_upload`] holds.
     pub fn bytes(&self, table: &LightTable) -> Vec<u8> {
         self.format.bytes(table)
     }
@@ -128,8 +130,8 @@ impl TableImage {
     /// Called once, with an allocator of the same device.
     ///
     /// # Errors
-    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call fails
-    /// (then the memory was given back, and the table image is only good for dropping).
+    /// [`Error::Vulkan`] with `ERROR_OUT_OF_DEVICE_MEMORY` where the allocator has none, or where a call
+    /// fails (then the memory was given back, and the table image is only good for dropping).
     #[cfg(feature = "gpu-allocator")]
     pub unsafe fn allocate(
         &mut self,

@@ -125,7 +125,8 @@ impl Tiles {
         plan::classify_specialization(options, frame.lights, self.options)
     }
 
-    /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the barriers between. `bind` binds what they read.
+    /// Records a dispatch that classifies tiles, and an indirect one for each class of them, with the
+    /// barriers between. `bind` binds what they read.
     ///
     /// # Safety
     /// As [`crate::ShadePass::record`].
@@ -147,7 +148,8 @@ impl Tiles {
         let context = self.classify.layouts().context();
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let (read, write) = (vk::AccessFlags::SHADER_READ, vk::AccessFlags::SHADER_WRITE);
-        // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the classify kernel writes.
+        // SAFETY: the same contract; the buffer holds a record per class, whose indirect dispatch the
+        // classify kernel writes.
         unsafe {
             self.record_no_tiles(command_buffer, frame);
             bind();

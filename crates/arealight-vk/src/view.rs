@@ -6,7 +6,8 @@ use arealight::plan::ShadeOptions;
 use ash::vk;
 use glam::{DMat4, DVec3, Mat4};
 
-/// The rectangle of a G-buffer's texels that clip space was drawn to, as `vkCmdSetViewport` got it: `VkViewport`.
+/// The rectangle of a G-buffer's texels that clip space was drawn to, as `vkCmdSetViewport` got it:
+/// `VkViewport`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Viewport {
     /// Where x = -1 in clip space is, in texels.
@@ -101,7 +102,8 @@ impl Viewport {
 /// From the clip space of the frame's pixels and stored depth to that of the viewport that drew them.
 fn clip_of_viewport(options: ShadeOptions, frame: &ShadeFrame, viewport: &Viewport) -> DMat4 {
     let texels = f64::from(options.texels_per_pixel);
-    // Clip space is `scale` times that of the pixels, plus `shift`: both are linear in the place of a texel's centre
+    // Clip space is `scale` times that of the pixels, plus `shift`: both are linear in the place of a texel's
+    // centre
     let axis = |axis: usize, start: f32, extent: f32| {
         let (size, offset) = (f64::from(frame.size[axis]), f64::from(frame.offset[axis]));
         let (start, extent) = (f64::from(start), f64::from(extent));

@@ -1,6 +1,6 @@
-//! What descriptor sets were written with: a set that points at nothing where a frame reads is an error that names it, and in debug builds
-//! one that points at a destroyed image of ours. In release builds a set takes one entry in a map, without memory of its own unless
-//! something is absent.
+//! What descriptor sets were written with: a set that points at nothing where a frame reads is an error that
+//! names it, and in debug builds one that points at a destroyed image of ours. In release builds a set takes
+//! one entry in a map, without memory of its own unless something is absent.
 
 use crate::error::Error;
 use crate::pass::Resource;
@@ -61,8 +61,8 @@ impl WrittenSets {
         self.lock().keep(set, Written { views, destroyed: None, absent: absent.to_vec() });
     }
 
-    /// Notes that a view of ours is destroyed. The driver may give its handle to another then, so that the sets are
-    /// marked, not the handle.
+    /// Notes that a view of ours is destroyed. The driver may give its handle to another then, so that the
+    /// sets are marked, not the handle.
     pub(crate) fn destroy(&self, view: vk::ImageView) {
         if !cfg!(debug_assertions) {
             return;

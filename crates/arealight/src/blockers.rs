@@ -1,19 +1,21 @@
 //! What blocks light, as shadow rays on the GPU meet it: triangles, and a hierarchy of boxes around them.
 //!
-//! For hosts that have no acceleration structure of their own to answer a shadow ray with. The kernels' `blockers.glsl` traverses it.
+//! For hosts that have no acceleration structure of their own to answer a shadow ray with. The kernels'
+//! `blockers.glsl` traverses it.
 
 use crate::gpu::GpuBvhNode;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Triangles that block light from both sides, in a binary hierarchy of boxes. The root is node 0; nodes lie in the order in which a ray comes
-/// to them, so that it goes on with the next one, or past all in a box that it misses ([`GpuBvhNode::first`]).
+/// Triangles that block light from both sides, in a binary hierarchy of boxes. The root is node 0; nodes lie
+/// in the order in which a ray comes to them, so that it goes on with the next one, or past all in a box that
+/// it misses ([`GpuBvhNode::first`]).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blockers {
     /// Never empty: without triangles it is one node of zeros, which a traversal passes by.
     pub nodes: Vec<GpuBvhNode>,
-    /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero. Empty without triangles; a descriptor wants a
-    /// buffer all the same, of any content.
+    /// In the order of the leaves, relative to the origin that the vertices were given in; w is zero. Empty
+    /// without triangles; a descriptor wants a buffer all the same, of any content.
     pub triangles: Vec<[[f32; 4]; 3]>,
     /// For each of them its index in the list that was given.
     pub order: Vec<u32>,
@@ -21,7 +23,8 @@ pub struct Blockers {
     pub max_depth: u32,
 }
 
-/// The deepest hierarchy, in nodes from the root to a leaf: a ray that ends in a leaf has been through so many boxes.
+/// The deepest hierarchy, in nodes from the root to a leaf: a ray that ends in a leaf has been through so
+/// many boxes.
 pub const MAX_DEPTH: u32 = 32;
 
 /// The most triangles: 3 GiB of records, near what devices bind.
@@ -53,12 +56,14 @@ pub enum BlockerError {
 }
 
 impl Blockers {
-    /// Builds the hierarchy of `triangles`, whose vertices are relative to the lights' origin ([`crate::PackedLights::new`]), in its unit of
-    /// length. Their vertex order says nothing. Those without area block nothing.
+    /// Builds the hierarchy of `triangles`, whose vertices are relative to the lights' origin
+    /// ([`crate::PackedLights::new`]), in its unit of length. Their vertex order says nothing. Those without
+    /// area block nothing.
     ///
-    /// From the top: each node is split where the surface area heuristic is least, among 15 places along each axis (Wald 2007). Where
-    /// that would become too deep, because triangles grow exponentially or are all the same, nodes are halved: time is `n log n`
-    /// whatever the triangles are, a microsecond or two for each.
+    /// From the top: each node is split where the surface area heuristic is least, among 15 places along each
+    /// axis (Wald 2007). Where that would become too deep, because triangles grow exponentially or are all
+    /// the same, nodes are halved: time is `n log n` whatever the triangles are, a microsecond or two for
+    /// each.
     ///
     /// # Errors
     /// [`BlockerError`] names the vertex, or says how many triangles there are.
@@ -376,7 +381,8 @@ mod tests {
 
     #[test]
     fn the_heuristic_parts_what_lies_apart() {
-        // Two rows of triangles, far from each other: the first split is between them, however they are listed
+        // Two rows of triangles, far from each other: the first split is between them, however they are
+        // listed
         let boxes: Vec<Box3> = (0..64)
             .map(|i| {
                 let corner = Vec3::new((i / 2) as f32 * 0.1, if i % 2 == 0 { 0.0 } else { 50.0 }, 0.0);

@@ -1,11 +1,12 @@
-//! What lights and surfaces need. The set becomes one specialisation constant, and the code of every effect that is not in it is
-//! removed.
+//! What lights and surfaces need. The set becomes one specialisation constant, and the code of every effect
+//! that is not in it is removed.
 
 bitflags::bitflags! {
     /// A set of effects: the lobes, light properties and surface inputs that a shade pass must handle.
     ///
-    /// The bits are those of `shaders/kernels/effects.glsl`; a test compares the two. What lights need is known when they are packed
-    /// ([`LightSummary::effects`](crate::LightSummary::effects)); what surfaces need ([`Effects::SURFACES`]) the host says.
+    /// The bits are those of `shaders/kernels/effects.glsl`; a test compares the two. What lights need is
+    /// known when they are packed ([`LightSummary::effects`](crate::LightSummary::effects)); what surfaces
+    /// need ([`Effects::SURFACES`]) the host says.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
     pub struct Effects: u32 {
         /// The Lambert lobe: some surface has a metalness below one and a base colour that is not black.
@@ -28,39 +29,45 @@ bitflags::bitflags! {
         const SPHERE = 1 << 9;
         /// Some light is a cylinder or a capsule ([`LightShape::Tube`](crate::LightShape::Tube)).
         const TUBE = 1 << 10;
-        /// Some light has several faces ([`LightShape::is_mesh`](crate::LightShape::is_mesh)). Such a light needs
-        /// [`Effects::POLYGON`], too.
+        /// Some light has several faces ([`LightShape::is_mesh`](crate::LightShape::is_mesh)). Such a light
+        /// needs [`Effects::POLYGON`], too.
         const MESH = 1 << 11;
         /// Some disk or ellipse is textured ([`Light::texture`](crate::Light::texture)). Such a light needs
         /// [`Effects::ELLIPSE`], too.
         const TEXTURED_ELLIPSE = 1 << 12;
         /// Some surface has a clear coat, so the G-buffer's image of coats is read.
         const COAT = 1 << 13;
-        /// Some coat has a normal of its own, other than its surface's. Such a surface needs [`Effects::COAT`], too.
+        /// Some coat has a normal of its own, other than its surface's. Such a surface needs
+        /// [`Effects::COAT`], too.
         const COAT_NORMAL = 1 << 14;
-        /// The diffuse lobe gets what the Fresnel term above it leaves, as in glTF; else it is added to the specular lobe, as in many
-        /// engines, and dielectrics reflect 4 to 24 % too much.
+        /// The diffuse lobe gets what the Fresnel term above it leaves, as in glTF; else it is added to the
+        /// specular lobe, as in many engines, and dielectrics reflect 4 to 24 % too much.
         const COUPLED = 1 << 15;
         /// It gets what the specular lobe's albedo leaves, as in OpenPBR. With [`Effects::COUPLED`].
         const COUPLED_BY_ALBEDO = 1 << 16;
-        /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR; else what a Fresnel term of the view does, as in glTF.
-        /// With [`Effects::COAT`].
+        /// What is below a coat gets what the coat's albedo leaves, as in OpenPBR; else what a Fresnel term
+        /// of the view does, as in glTF. With [`Effects::COAT`].
         const COAT_BY_ALBEDO = 1 << 17;
-        /// Some diffuse lobe is rough, EON instead of Lambert's, so the G-buffer's image of anisotropy is read.
+        /// Some diffuse lobe is rough, EON instead of Lambert's, so the G-buffer's image of anisotropy is
+        /// read.
         const DIFFUSE_ROUGHNESS = 1 << 18;
         /// Some surface has sheen, so the G-buffer's image of sheen is read.
         const SHEEN = 1 << 19;
-        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it, so the G-buffer's image of anisotropy is read.
+        /// Some surface's GGX lobe has two roughnesses, along a tangent and across it, so the G-buffer's
+        /// image of anisotropy is read.
         const ANISOTROPY = 1 << 20;
-        /// What the facets of specular lobes reflect more than once is added, as in OpenPBR; else it is lost, as in glTF, and rough metals are up to
-        /// 60 % too dark. Metals have a diffuse lobe then.
+        /// What the facets of specular lobes reflect more than once is added, as in OpenPBR; else it is lost,
+        /// as in glTF, and rough metals are up to 60 % too dark. Metals have a diffuse lobe then.
         const MULTIPLE_SCATTERING = 1 << 21;
-        /// Some thin surface lets light through. A pass with this shades what the G-buffer holds from behind, for a pass of its own: its base colour is the part of
-        /// the light that is let through, and its normals are those of the front ([`Effects::passes`]).
+        /// Some thin surface lets light through. A pass with this shades what the G-buffer holds from behind,
+        /// for a pass of its own: its base colour is the part of the light that is let through, and its
+        /// normals are those of the front ([`Effects::passes`]).
         const TRANSMISSION = 1 << 22;
-        /// Some surface has a thin film that its reflectances lack, so the G-buffer's image of films is read. Without it a host may put films into the
-        /// reflectances, for what a few evaluations a pixel cost; with it lobes over half vectors ([`SpecularLobes::HalfVectors`](crate::SpecularLobes::HalfVectors))
-        /// show each light at its own facets' angle.
+        /// Some surface has a thin film that its reflectances lack, so the G-buffer's image of films is read.
+        /// Without it a host may put films into the reflectances, for what a few evaluations a pixel cost;
+        /// with it lobes over half vectors
+        /// ([`SpecularLobes::HalfVectors`](crate::SpecularLobes::HalfVectors)) show each light at its own
+        /// facets' angle.
         const THIN_FILM = 1 << 23;
     }
 }
@@ -75,8 +82,9 @@ impl Effects {
     /// With any of these the light textures are read.
     pub const IMAGES: Self = Self::TEXTURED.union(Self::TEXTURED_ELLIPSE);
 
-    /// How layers of surfaces share light, the material model, and from which side it comes: choices of the host's that change the picture. Of
-    /// every other effect the code alone changes nothing where no surface or light needs it.
+    /// How layers of surfaces share light, the material model, and from which side it comes: choices of the
+    /// host's that change the picture. Of every other effect the code alone changes nothing where no surface
+    /// or light needs it.
     pub const MODEL: Self = Self::COUPLED
         .union(Self::COUPLED_BY_ALBEDO)
         .union(Self::COAT_BY_ALBEDO)
@@ -95,8 +103,9 @@ impl Effects {
         .union(Self::ANISOTROPY)
         .union(Self::THIN_FILM);
 
-    /// What each pass over surfaces with these effects has, its radiance added to that of the one before: what is reflected, and with
-    /// [`Effects::TRANSMISSION`] what is let through, by an ideally diffusing sheet below the same interface.
+    /// What each pass over surfaces with these effects has, its radiance added to that of the one before:
+    /// what is reflected, and with [`Effects::TRANSMISSION`] what is let through, by an ideally diffusing
+    /// sheet below the same interface.
     pub fn passes(self) -> impl Iterator<Item = Self> {
         let below_interface = Self::COUPLED | Self::SPECULAR_INPUT | Self::THIN_FILM | Self::TRANSMISSION;
         let lets_through = self.contains(Self::TRANSMISSION);

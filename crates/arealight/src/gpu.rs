@@ -14,13 +14,15 @@ pub struct GpuLight {
     pub center: [f32; 3],
     /// Radius of a sphere about the center that holds every vertex.
     pub radius: f32,
-    /// Unit normal of the front; zero for a light without area, which gives no light. Of a mesh that of its mean.
+    /// Unit normal of the front; zero for a light without area, which gives no light. Of a mesh that of its
+    /// mean.
     pub normal: [f32; 3],
     /// Area divided by the radius squared; of a mesh that of its area vector.
     pub area: f32,
     /// How many rows the outline has, or the faces of a mesh.
     pub vertex_count: u32,
-    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`] and [`GpuLight::QUAD`], where they are so.
+    /// [`GpuLight::TWO_SIDED`], [`GpuLight::FLAT`], [`GpuLight::MESH`] and [`GpuLight::QUAD`], where they are
+    /// so.
     pub flags: u32,
     /// Layer of the light textures, or [`GpuLight::NO_TEXTURE`].
     pub texture_layer: u32,
@@ -35,7 +37,8 @@ impl GpuLight {
     pub const FLAT: u32 = 2;
     /// It has several faces ([`LightShape::is_mesh`](crate::LightShape::is_mesh)).
     pub const MESH: u32 = 4;
-    /// It is convex and has at most four vertices ([`LightShape::is_convex_quad`](crate::LightShape::is_convex_quad)).
+    /// It is convex and has at most four vertices
+    /// ([`LightShape::is_convex_quad`](crate::LightShape::is_convex_quad)).
     pub const QUAD: u32 = 8;
     /// No texture.
     pub const NO_TEXTURE: u32 = u32::MAX;
@@ -56,7 +59,8 @@ pub struct GpuShape {
     pub radius: f32,
     /// A half axis of a disk; of a tube, from the center to one end. Else zero.
     pub axis_u: [f32; 3],
-    /// Of a tube [`crate::TubeEnds`]; of a disk the layer of its texture, or [`GpuLight::NO_TEXTURE`]; else zero.
+    /// Of a tube [`crate::TubeEnds`]; of a disk the layer of its texture, or [`GpuLight::NO_TEXTURE`]; else
+    /// zero.
     pub detail: u32,
     /// The other half axis of a disk, else zero.
     pub axis_v: [f32; 3],
@@ -73,7 +77,8 @@ impl GpuShape {
     pub const SPHERE: u32 = 1;
     /// A kind: [`LightShape::Tube`](crate::LightShape::Tube).
     pub const TUBE: u32 = 2;
-    /// No record's kind; as a specialisation constant, each shape is what its record says: for lists of several kinds.
+    /// No record's kind; as a specialisation constant, each shape is what its record says: for lists of
+    /// several kinds.
     pub const ANY: u32 = 3;
 }
 
@@ -90,7 +95,8 @@ pub struct ShadeConstants {
     pub light_count: u32,
     /// How many shapes are shaded.
     pub shape_count: u32,
-    /// How many of the first polygon lights are convex quads without a texture, see [`crate::LightSummary::quad_count`].
+    /// How many of the first polygon lights are convex quads without a texture, see
+    /// [`crate::LightSummary::quad_count`].
     pub quad_count: u32,
     /// Of the random numbers that lights are picked for shadow rays with; not read without those.
     pub seed: u32,
@@ -102,13 +108,16 @@ pub struct ShadeConstants {
     pub horizon_cells: u32,
     /// As [`crate::plan::TileOptions::cull_threshold`]. Not read without tiles.
     pub cull_threshold: f32,
-    /// Where the image's rectangle begins that is shaded; not read without [`crate::plan::ShadeOptions::rectangle`].
+    /// Where the image's rectangle begins that is shaded; not read without
+    /// [`crate::plan::ShadeOptions::rectangle`].
     pub offset: [u32; 2],
-    /// Of the stencil test: the compare mask, and the reference from bit 8 on. Not read without [`crate::plan::ShadeOptions::stencil`].
+    /// Of the stencil test: the compare mask, and the reference from bit 8 on. Not read without
+    /// [`crate::plan::ShadeOptions::stencil`].
     pub stencil: u32,
 }
 
-/// How many lights a frame has, where the GPU says so: [`crate::plan::ShadeOptions::light_counts`]. `LightCounts` in `shaders/kernels/light_counts.glsl`.
+/// How many lights a frame has, where the GPU says so: [`crate::plan::ShadeOptions::light_counts`].
+/// `LightCounts` in `shaders/kernels/light_counts.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Pod, Zeroable)]
 pub struct LightCounts {
@@ -116,8 +125,8 @@ pub struct LightCounts {
     pub light_count: u32,
     /// How many of the shapes.
     pub shape_count: u32,
-    /// How many of the first polygon lights are convex quads without a texture; no other light may be before them. Not read where the frame's lights are all
-    /// such quads.
+    /// How many of the first polygon lights are convex quads without a texture; no other light may be before
+    /// them. Not read where the frame's lights are all such quads.
     pub quad_count: u32,
 }
 
@@ -135,14 +144,15 @@ pub struct ShadowConstants {
     pub size: [u32; 2],
 }
 
-/// A node of a binary hierarchy of boxes, [`crate::Blockers::nodes`]: `ArealightGpuBvhNode` in `shaders/kernels/bvh.glsl`.
+/// A node of a binary hierarchy of boxes, [`crate::Blockers::nodes`]: `ArealightGpuBvhNode` in
+/// `shaders/kernels/bvh.glsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct GpuBvhNode {
     /// The box's smallest corner, relative to the origin.
     pub min: [f32; 3],
-    /// Index of the first of a leaf's triangles; or of the node after all those in an inner node, of whose two children the first is the next node. A
-    /// root of zeros holds nothing.
+    /// Index of the first of a leaf's triangles; or of the node after all those in an inner node, of whose
+    /// two children the first is the next node. A root of zeros holds nothing.
     pub first: u32,
     /// The box's largest corner.
     pub max: [f32; 3],
@@ -167,8 +177,8 @@ impl GpuBvhNode {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TextureLoadConstants {
-    /// Where the middle of the layer's first texel is in the image: in texels from the middle of texel 0, rounded
-    /// down. Where the image repeats, within its first repeat.
+    /// Where the middle of the layer's first texel is in the image: in texels from the middle of texel 0,
+    /// rounded down. Where the image repeats, within its first repeat.
     pub first_texel: [i32; 2],
     /// What was rounded off, 0 to 1.
     pub first_offset: [f32; 2],
@@ -192,7 +202,8 @@ impl TextureLoadConstants {
     /// v is mirrored at every repeat.
     pub const MIRROR_V: u32 = 16;
 
-    /// What the kernel does beyond copying, to load with these: bits of [`crate::kernels::constant::LOAD_STEPS`].
+    /// What the kernel does beyond copying, to load with these: bits of
+    /// [`crate::kernels::constant::LOAD_STEPS`].
     pub fn steps(&self) -> u32 {
         let copies = self.first_offset == [0.0; 2] && self.stride == [1.0; 2];
         let decodes = self.flags & Self::SRGB != 0;

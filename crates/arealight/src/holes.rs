@@ -1,8 +1,8 @@
 //! Polygons with holes: several outlines of one light.
 //!
-//! A hole is joined to the outline by a bridge, an edge there and the same edge back, which makes one outline of both. What
-//! the two edges of a bridge add to a sum over edges cancels but for rounding, wherever it is cut: so all that takes any
-//! outline takes this one, and the light is one record with one radiance.
+//! A hole is joined to the outline by a bridge, an edge there and the same edge back, which makes one outline
+//! of both. What the two edges of a bridge add to a sum over edges cancels but for rounding, wherever it is
+//! cut: so all that takes any outline takes this one, and the light is one record with one radiance.
 
 use crate::light::LightFault;
 use crate::light_shape::FLAT;
@@ -10,9 +10,10 @@ use crate::{Light, LightShape};
 use glam::{DVec2, DVec3};
 
 impl Light {
-    /// Cuts holes into a polygon, each an outline of its own, in either direction. The light's vertices become one outline
-    /// that goes around all of them; its area and center are those of what is left, and its image stays where it is. A light has as many vertices more as the holes
-    /// have, and two for each hole.
+    /// Cuts holes into a polygon, each an outline of its own, in either direction. The light's vertices
+    /// become one outline that goes around all of them; its area and center are those of what is left, and
+    /// its image stays where it is. A light has as many vertices more as the holes have, and two for each
+    /// hole.
     ///
     /// ```
     /// # use arealight::{Light, LightShape};
@@ -26,7 +27,8 @@ impl Light {
     /// ```
     ///
     /// # Errors
-    /// What [`Light::validate`] refuses, and what is wrong with a hole, which is named; then the light is as it was.
+    /// What [`Light::validate`] refuses, and what is wrong with a hole, which is named; then the light is as
+    /// it was.
     pub fn cut_holes(&mut self, holes: &[Vec<DVec3>]) -> Result<(), LightFault> {
         self.validate()?;
         if holes.is_empty() {
@@ -147,7 +149,8 @@ fn check_places(outline: &[Vertex], holes: &[(usize, Vec<Vertex>)]) -> Result<()
     Ok(())
 }
 
-/// The vertex of an outline that a bridge from `start` goes to: the nearest that it reaches without meeting an edge.
+/// The vertex of an outline that a bridge from `start` goes to: the nearest that it reaches without meeting
+/// an edge.
 fn bridge(outline: &[Vertex], start: Vertex, obstacles: &[[DVec2; 2]]) -> Option<usize> {
     let mut candidates: Vec<usize> = (0..outline.len()).collect();
     let distance = |index: &usize| outline[*index].flat.distance_squared(start.flat);
@@ -155,7 +158,8 @@ fn bridge(outline: &[Vertex], start: Vertex, obstacles: &[[DVec2; 2]]) -> Option
     candidates.into_iter().find(|&index| {
         let end = outline[index].flat;
         let [before, after] = [index + outline.len() - 1, index + 1].map(|i| outline[i % outline.len()].flat);
-        // Where bridges meet, a corner of the outline is there several times: the one whose inside the bridge comes from
+        // Where bridges meet, a corner of the outline is there several times: the one whose inside the bridge
+        // comes from
         let (of_before, of_after) = (turn(before, end, start.flat), turn(end, after, start.flat));
         let convex = turn(before, end, after) > 0.0;
         let inside =
@@ -188,7 +192,8 @@ fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
     !apart && sides(turn(a, b, c), turn(a, b, d)) && sides(turn(c, d, a), turn(c, d, b))
 }
 
-/// Whether a point is inside an outline, in either direction: a ray to the right meets it an odd number of times.
+/// Whether a point is inside an outline, in either direction: a ray to the right meets it an odd number of
+/// times.
 fn is_inside(point: DVec2, outline: &[Vertex]) -> bool {
     let crossings = edges(outline)
         .filter(|[a, b]| (a.y > point.y) != (b.y > point.y) && (turn(*a, *b, point) > 0.0) == (b.y > a.y));

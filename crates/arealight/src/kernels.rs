@@ -49,8 +49,8 @@ impl Kernel {
         self.spirv.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
     }
 
-    /// As [`Kernel::words`], with images of this format where the module stores to rgba32f, and a G-buffer of so many samples: a word a type or a read,
-    /// so that one module serves all.
+    /// As [`Kernel::words`], with images of this format where the module stores to rgba32f, and a G-buffer of
+    /// so many samples: a word a type or a read, so that one module serves all.
     pub fn words_for(&self, format: RadianceFormat, samples: u32) -> Vec<u32> {
         let mut words = self.words();
         store_to(format, &mut words);
@@ -71,7 +71,8 @@ const fn write(name: &'static str, kind: BindingKind, access: Access, content: &
 pub const TABLE: Binding = read(
     "table_image",
     BindingKind::SampledImage,
-    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 to 5 pairs; rgba16f or \
+    "LightTable::texels: 2D array, layer 0 matrix, layer 1 magnitudes, layer 2 Schlick's matrix, layers 3 to \
+    5 pairs; rgba16f or \
      rgba32f",
 );
 /// Polygon lights.
@@ -89,14 +90,16 @@ pub const G_POSITION: Binding = read(
 pub const G_NORMAL: Binding = read(
     "g_normal",
     BindingKind::SampledImage,
-    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors); the shade kernel: by \
+    "shading normal in xyz, of any length; perceptual roughness in w (rgba16f; rgba32f for mirrors); the \
+    shade kernel: by \
      GBufferLayout",
 );
 /// Base colour and metalness of a G-buffer.
 pub const G_BASE_COLOR: Binding = read(
     "g_base_color",
     BindingKind::SampledImage,
-    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves); the shade kernel: by \
+    "linear base colour in rgb, metalness in a (rgba8 unorm; sRGB formats decode by themselves); the shade \
+    kernel: by \
      GBufferLayout",
 );
 /// Dielectric reflectance of a G-buffer.
@@ -111,15 +114,18 @@ pub const G_SPECULAR: Binding = read(
 pub const G_COAT: Binding = read(
     "g_coat",
     BindingKind::SampledImage,
-    "weight of the coat in r, its perceptual roughness in g; with Effects::COAT_NORMAL its normal's place on the octahedron, \
-     in [-1, 1], in ba (rgba16f; rg8 unorm without normals); read only with Effects::COAT, else bind any image",
+    "weight of the coat in r, its perceptual roughness in g; with Effects::COAT_NORMAL its normal's place on \
+    the octahedron, \
+     in [-1, 1], in ba (rgba16f; rg8 unorm without normals); read only with Effects::COAT, else bind any \
+     image",
 );
 
 /// A G-buffer's sheen.
 pub const G_SHEEN: Binding = read(
     "g_sheen",
     BindingKind::SampledImage,
-    "linear colour of the sheen in rgb, its perceptual roughness in a (rgba8 unorm; sRGB formats decode by themselves); read only \
+    "linear colour of the sheen in rgb, its perceptual roughness in a (rgba8 unorm; sRGB formats decode by \
+    themselves); read only \
      with Effects::SHEEN, else bind any image",
 );
 
@@ -127,15 +133,18 @@ pub const G_SHEEN: Binding = read(
 pub const G_ANISOTROPY: Binding = read(
     "g_anisotropy",
     BindingKind::SampledImage,
-    "tangent's place on the octahedron, in [-1, 1], in rg, perceptual roughness along it in b (Effects::ANISOTROPY; 0: \
-     isotropic), roughness of the diffuse lobe in a (Effects::DIFFUSE_ROUGHNESS) (rgba16f); read only with one of these, else bind any image",
+    "tangent's place on the octahedron, in [-1, 1], in rg, perceptual roughness along it in b \
+    (Effects::ANISOTROPY; 0: \
+     isotropic), roughness of the diffuse lobe in a (Effects::DIFFUSE_ROUGHNESS) (rgba16f); read only with \
+     one of these, else bind any image",
 );
 
 /// A G-buffer's thin films.
 pub const G_FILM: Binding = read(
     "g_film",
     BindingKind::SampledImage,
-    "how much of a surface a thin film covers in r, its index of refraction in g, its thickness in nanometres in b (rgba16f); read only with \
+    "how much of a surface a thin film covers in r, its index of refraction in g, its thickness in \
+    nanometres in b (rgba16f); read only with \
      Effects::THIN_FILM, else bind any image",
 );
 
@@ -143,7 +152,8 @@ pub const G_FILM: Binding = read(
 pub const LIGHT_TEXTURES: Binding = read(
     "light_textures",
     BindingKind::FilteredImage,
-    "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only with \
+    "2D array of the lights' textures, a layer each, with the levels of PyramidSize (rgba16f); read only \
+    with \
      Effects::IMAGES, else bind any 2D array image",
 );
 
@@ -158,28 +168,32 @@ const RADIANCE: Binding = write(
     "radiance_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "outgoing radiance in rgb, of the diffuse lobe alone with ShadeOptions::separate_lobes; 1 in a where there is a \
+    "outgoing radiance in rgb, of the diffuse lobe alone with ShadeOptions::separate_lobes; 1 in a where \
+    there is a \
      surface (rgba32f, or by RadianceFormat)",
 );
 const GLOSSY: Binding = write(
     "glossy_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "the glossy lobe's, likewise; used only with ShadeOptions::separate_lobes, else bind radiance_image's again",
+    "the glossy lobe's, likewise; used only with ShadeOptions::separate_lobes, else bind radiance_image's \
+    again",
 );
 
 const PICKS: Binding = write(
     "shadow_picks",
     BindingKind::StorageBuffer,
     Access::Write,
-    "u32[]: of each pixel ShadeOptions::shadow_rays words, a light and a lobe for each ray; written only with shadow rays, else bind any \
+    "u32[]: of each pixel ShadeOptions::shadow_rays words, a light and a lobe for each ray; written only \
+    with shadow rays, else bind any \
      buffer",
 );
 
 const STENCIL: Binding = read(
     "g_stencil",
     BindingKind::SampledImage,
-    "stencil in r, of which eight bits are compared (s8_uint, r8_uint); read only with ShadeOptions::stencil, else bind any image",
+    "stencil in r, of which eight bits are compared (s8_uint, r8_uint); read only with \
+    ShadeOptions::stencil, else bind any image",
 );
 const LIGHT_COUNTS: Binding = read(
     "light_counts",
@@ -195,11 +209,12 @@ const TILE_LISTS: Binding = write(
     "tiles::memory bytes; begins with tiles::NO_TILES per class",
 );
 
-/// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by [`constant::CLASS`]. Push constants:
-/// [`crate::gpu::ShadeConstants`].
+/// Shades a G-buffer with polygon lights and shapes: whole frames, or the tiles of one class, by
+/// [`constant::CLASS`]. Push constants: [`crate::gpu::ShadeConstants`].
 ///
-/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone, and the next with [`ShadeOptions::light_counts`](crate::plan::ShadeOptions::light_counts). A
-/// module that was pruned for them has no other, so that its pipeline layout needs no more; the module as it is has `tile_lists`, too.
+/// Whole frames use the first [`FRAME_BINDINGS`] bindings alone, and the next with
+/// [`ShadeOptions::light_counts`](crate::plan::ShadeOptions::light_counts). A module that was pruned for them
+/// has no other, so that its pipeline layout needs no more; the module as it is has `tile_lists`, too.
 pub static SHADE: Kernel = Kernel {
     name: "shade",
     spirv: include_bytes!("../spirv/shade.spv"),
@@ -249,8 +264,8 @@ pub static SHADE: Kernel = Kernel {
 /// How many of the first bindings of [`SHADE`] whole frames use.
 pub const FRAME_BINDINGS: usize = 17;
 
-/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`]. Push constants:
-/// [`crate::gpu::ShadeConstants`].
+/// Sorts the tiles of a G-buffer into classes; a workgroup per tile. Its descriptor set is that of [`SHADE`].
+/// Push constants: [`crate::gpu::ShadeConstants`].
 pub static CLASSIFY: Kernel = Kernel {
     name: "classify",
     spirv: include_bytes!("../spirv/classify.spv"),
@@ -301,13 +316,15 @@ const SHADOW: Binding = write(
     "shadow_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "of the light of a pixel: the part that arrives, the penumbra's width, 1 where there is light, how many rays (rgba16f)",
+    "of the light of a pixel: the part that arrives, the penumbra's width, 1 where there is light, how many \
+    rays (rgba16f)",
 );
 const SHADOWED: Binding = write(
     "radiance_image",
     BindingKind::StorageImage,
     Access::ReadWrite,
-    "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be unshadowed_image's",
+    "outgoing radiance in rgb; 1 in a where there is a surface (rgba32f, or by RadianceFormat); may be \
+    unshadowed_image's",
 );
 /// What blocks rays: nodes.
 pub const BLOCKER_NODES: Binding = read("nodes", BindingKind::StorageBuffer, "Blockers::nodes: GpuBvhNode[]");
@@ -319,16 +336,19 @@ const SHADOW_KEPT: Binding = write(
     "shadow_history",
     BindingKind::StorageBuffer,
     Access::ReadWrite,
-    "plan::shadow_history_size bytes, zeros before the first frame; used only with ShadowOptions::history, else bind any buffer",
+    "plan::shadow_history_size bytes, zeros before the first frame; used only with ShadowOptions::history, \
+    else bind any buffer",
 );
 const MOTION: Binding = read(
     "g_motion",
     BindingKind::SampledImage,
-    "where a pixel's point was in the frame before less where it is, in parts of the image's size (rg16f); read only with \
+    "where a pixel's point was in the frame before less where it is, in parts of the image's size (rg16f); \
+    read only with \
      ShadowHistory::MotionVectors, else bind any image",
 );
 
-/// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants: [`crate::gpu::ShadowConstants`].
+/// Traces the shadow rays that [`SHADE`] picked lights and lobes for. Push constants:
+/// [`crate::gpu::ShadowConstants`].
 pub static SHADOW_RAYS: Kernel = Kernel {
     name: "shadow_rays",
     spirv: include_bytes!("../spirv/shadow_rays.spv"),
@@ -368,7 +388,8 @@ pub static SHADOW_RAYS: Kernel = Kernel {
     ],
 };
 
-/// Makes means over frames of the rays of [`SHADOW_RAYS`]. Its descriptor set is that kernel's. Push constants: [`crate::gpu::ShadowConstants`].
+/// Makes means over frames of the rays of [`SHADOW_RAYS`]. Its descriptor set is that kernel's. Push
+/// constants: [`crate::gpu::ShadowConstants`].
 pub static SHADOW_HISTORY: Kernel = Kernel {
     name: "shadow_history",
     spirv: include_bytes!("../spirv/shadow_history.spv"),
@@ -409,8 +430,8 @@ pub static SHADOW_HISTORY: Kernel = Kernel {
     ],
 };
 
-/// Multiplies unshadowed radiance with what the rays of [`SHADOW_RAYS`] say of it. Its descriptor set is that kernel's. Push constants:
-/// [`crate::gpu::ShadowConstants`].
+/// Multiplies unshadowed radiance with what the rays of [`SHADOW_RAYS`] say of it. Its descriptor set is that
+/// kernel's. Push constants: [`crate::gpu::ShadowConstants`].
 pub static SHADOW_FILTER: Kernel = Kernel {
     name: "shadow_filter",
     spirv: include_bytes!("../spirv/shadow_filter.spv"),
@@ -453,7 +474,8 @@ pub static SHADOW_FILTER: Kernel = Kernel {
     ],
 };
 
-/// Loads a part of an image into level 0 of a layer of the light textures; an invocation per texel of the level. Push constants: [`crate::gpu::TextureLoadConstants`].
+/// Loads a part of an image into level 0 of a layer of the light textures; an invocation per texel of the
+/// level. Push constants: [`crate::gpu::TextureLoadConstants`].
 pub static TEXTURE_LOAD: Kernel = Kernel {
     name: "texture_load",
     spirv: include_bytes!("../spirv/texture_load.spv"),
@@ -526,7 +548,8 @@ mod tests {
                 .filter(|(from, to)| from != to)
                 .map(|(from, to)| (*from, *to))
                 .collect();
-            // The images of floats have one type, the stencil another; each image is read once, or more often in code that is there twice
+            // The images of floats have one type, the stencil another; each image is read once, or more often
+            // in code that is there twice
             let types = changed.extract_if(.., |change| *change == (0, 1)).count();
             assert_eq!(types, 2, "{}", kernel.name);
             assert!(changed.len() >= 8, "{}: {} reads", kernel.name, changed.len());

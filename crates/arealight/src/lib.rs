@@ -29,8 +29,8 @@
 //! # Ok::<(), arealight::LightError>(())
 //! ```
 //!
-//! Then: record a frame with `arealight-vk`, or from C with `arealight-capi`; take the table from `arealight-table`. The repository's
-//! `docs/embed-rust.md` goes through it from a device to the first light.
+//! Then: record a frame with `arealight-vk`, or from C with `arealight-capi`; take the table from
+//! `arealight-table`. The repository's `docs/embed-rust.md` goes through it from a device to the first light.
 //!
 //! # Conventions
 //! - SI radiometry, linear Rec. 709 colour. A light's radiance is W/(m² sr), constant over a one-sided
@@ -87,7 +87,8 @@ pub mod tiles;
 pub use blockers::{BlockerError, Blockers};
 #[doc(inline)]
 pub use effects::Effects;
-/// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to agree.
+/// The vectors and matrices that lights and frames are made of, so that a host needs no version of its own to
+/// agree.
 pub use glam;
 #[doc(inline)]
 pub use light::{Light, LightError, LightFault};
@@ -110,6 +111,6 @@ pub use tiles::TileClass;
 
 /// The smallest GGX alpha that is shaded; smaller ones are raised to it.
 ///
-/// At 1e-4 a lobe is 0.01 degrees wide, narrower than a pixel of any camera, and float32 directions resolve it
-/// into a thousand steps; nothing narrower is tested.
+/// At 1e-4 a lobe is 0.01 degrees wide, narrower than a pixel of any camera, and float32 directions resolve
+/// it into a thousand steps; nothing narrower is tested.
 pub const MIN_ALPHA: f64 = 1e-4;

@@ -11,9 +11,11 @@ pub struct Light {
     pub name: String,
     /// Radiance of the front or outside, W/(m² sr), linear Rec. 709, not negative.
     pub radiance: Vec3,
-    /// Whether the back of a polygon, mesh or disk, or the inside of a sphere, emits too. Of a tube only the outside is shaded.
+    /// Whether the back of a polygon, mesh or disk, or the inside of a sphere, emits too. Of a tube only the
+    /// outside is shaded.
     pub two_sided: bool,
-    /// An image that multiplies the radiance of a polygon or disk; the back shows it mirrored, as a slide does.
+    /// An image that multiplies the radiance of a polygon or disk; the back shows it mirrored, as a slide
+    /// does.
     pub texture: Option<LightTexture>,
     /// What shines.
     pub shape: LightShape,
@@ -53,7 +55,8 @@ pub enum LightFault {
         /// Its position.
         value: DVec3,
     },
-    /// A position or axis of a disk, sphere or tube is NaN, infinite, or farther from the origin than float32 reaches.
+    /// A position or axis of a disk, sphere or tube is NaN, infinite, or farther from the origin than float32
+    /// reaches.
     #[error("{field}: {value} is not a finite float32 vector")]
     NotFinite {
         /// The field of its shape.
@@ -137,7 +140,8 @@ pub enum LightFault {
         /// The hole.
         hole: usize,
     },
-    /// There is no way from a hole to the outline that crosses nothing: vertices are as near to each other as float64 can tell.
+    /// There is no way from a hole to the outline that crosses nothing: vertices are as near to each other as
+    /// float64 can tell.
     #[error("holes[{hole}]: no straight way to the outline: vertices lie too near to each other")]
     HoleNoBridge {
         /// The hole.
@@ -201,7 +205,8 @@ pub enum LightFault {
     },
     /// A texture coordinate is NaN or outside of the image.
     #[error(
-        "texture: uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the light shows \
+        "texture: uvs[{index}]: {value} is not within 0 to 1; load the part of the repeated image that the \
+        light shows \
          into a layer of its own"
     )]
     TextureOutside {
@@ -212,7 +217,8 @@ pub enum LightFault {
     },
     /// The texture coordinates bend: they are no affine function of the positions.
     #[error(
-        "texture: uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its mapping bends"
+        "texture: uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its \
+        mapping bends"
     )]
     TextureBent {
         /// The vertex that is farthest off.

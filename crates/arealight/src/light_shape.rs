@@ -13,8 +13,9 @@ pub(crate) const FLAT: f64 = 1e-4;
 /// The shape of a light, in world positions in the scene's unit of length.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LightShape {
-    /// A flat polygon of three vertices or more, convex or concave, whose edges do not cross. Holes are cut by
-    /// [`Light::cut_holes`]. The front is the right-hand side of the vertex order: seen from the front, the vertices run counter-clockwise.
+    /// A flat polygon of three vertices or more, convex or concave, whose edges do not cross. Holes are cut
+    /// by [`Light::cut_holes`]. The front is the right-hand side of the vertex order: seen from the front,
+    /// the vertices run counter-clockwise.
     Polygon(Vec<DVec3>),
     /// Several flat faces, each an outline as a polygon's: see [`crate::mesh`].
     Mesh {
@@ -23,8 +24,9 @@ pub enum LightShape {
         /// How many of the vertices each face has; one face alone is a polygon.
         faces: Vec<u32>,
     },
-    /// A flat disk or ellipse: `center + cos(t) axis_u + sin(t) axis_v` is its outline. A disk has perpendicular axes of one
-    /// length; any two axes that are not parallel will do. The front is the side of `axis_u × axis_v`.
+    /// A flat disk or ellipse: `center + cos(t) axis_u + sin(t) axis_v` is its outline. A disk has
+    /// perpendicular axes of one length; any two axes that are not parallel will do. The front is the side of
+    /// `axis_u × axis_v`.
     Disk {
         /// The middle.
         center: DVec3,
@@ -95,8 +97,9 @@ impl LightShape {
         matches!(self, Self::Polygon(_) | Self::Mesh { .. })
     }
 
-    /// Area times normal, of a polygon by Newell's sum over its vertices: its direction is the front, its length the area
-    /// (unit of length squared). Zero for a degenerate polygon. Of a mesh the sum over its faces; zero for what is closed, as spheres and tubes.
+    /// Area times normal, of a polygon by Newell's sum over its vertices: its direction is the front, its
+    /// length the area (unit of length squared). Zero for a degenerate polygon. Of a mesh the sum over its
+    /// faces; zero for what is closed, as spheres and tubes.
     pub fn area_vector(&self) -> DVec3 {
         match self {
             Self::Disk { axis_u, axis_v, .. } => axis_u.cross(*axis_v) * PI,
@@ -120,7 +123,8 @@ impl LightShape {
         }
         let [low, high] = self.bounds();
         let middle = (low + high) * 0.5;
-        // Weigh the triangles of a fan about a vertex of each face, which is in its plane, by their signed areas
+        // Weigh the triangles of a fan about a vertex of each face, which is in its plane, by their signed
+        // areas
         let (mut area, mut moment) = (0.0, DVec3::ZERO);
         let apex = vertices[0];
         for outline in self.outlines() {
@@ -139,7 +143,8 @@ impl LightShape {
         if center.is_finite() { center.clamp(low, high) } else { middle }
     }
 
-    /// The smallest and the largest corner of a box along the axes that holds it; an infinite box without vertices.
+    /// The smallest and the largest corner of a box along the axes that holds it; an infinite box without
+    /// vertices.
     pub fn bounds(&self) -> [DVec3; 2] {
         match *self {
             Self::Polygon(_) | Self::Mesh { .. } => self
@@ -147,7 +152,8 @@ impl LightShape {
                 .iter()
                 .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)]),
             Self::Disk { center, axis_u, axis_v } => {
-                // Along each axis an outline reaches as far as the root of the sum of both half axes' squares there
+                // Along each axis an outline reaches as far as the root of the sum of both half axes' squares
+                // there
                 let reach = (axis_u * axis_u + axis_v * axis_v).map(f64::sqrt);
                 [center - reach, center + reach]
             }
@@ -156,8 +162,9 @@ impl LightShape {
         }
     }
 
-    /// Whether it is a polygon that is convex and flat, both to a ten-thousandth of its size, and has at most four vertices:
-    /// what is shaded without [`Effects::POLYGON`](crate::Effects::POLYGON), as if its vertices were moved by that much.
+    /// Whether it is a polygon that is convex and flat, both to a ten-thousandth of its size, and has at most
+    /// four vertices: what is shaded without [`Effects::POLYGON`](crate::Effects::POLYGON), as if its
+    /// vertices were moved by that much.
     pub fn is_convex_quad(&self) -> bool {
         let vertices = self.vertices();
         if !(3..=4).contains(&vertices.len()) || self.is_mesh() {
@@ -173,8 +180,8 @@ impl LightShape {
         convex && self.is_flat()
     }
 
-    /// Whether every vertex lies in one plane, to a ten-thousandth of the outline's size, and every face of a mesh faces one way. So does a disk;
-    /// spheres and tubes are not flat.
+    /// Whether every vertex lies in one plane, to a ten-thousandth of the outline's size, and every face of a
+    /// mesh faces one way. So does a disk; spheres and tubes are not flat.
     pub fn is_flat(&self) -> bool {
         if !self.is_polygonal() {
             return matches!(self, Self::Disk { .. });

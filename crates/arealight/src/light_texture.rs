@@ -9,17 +9,20 @@ use glam::{DMat2, DVec2, DVec3};
 pub struct LightTexture {
     /// The layer of the light textures (see [`crate::pyramid`]).
     pub layer: u32,
-    /// A texture coordinate for each vertex of a polygon, in [0, 1]; (0, 0) is the outer corner of the first texel of the top row.
-    /// They are an affine function of the vertices' positions, as those of a triangle always are.
+    /// A texture coordinate for each vertex of a polygon, in [0, 1]; (0, 0) is the outer corner of the first
+    /// texel of the top row. They are an affine function of the vertices' positions, as those of a triangle
+    /// always are.
     ///
-    /// None for a disk: seen from its front, the image's rows run along `axis_u` and the top row is where `axis_v` points to; the
-    /// disk is what is seen of it within the parallelogram of both, which touches its edges.
+    /// None for a disk: seen from its front, the image's rows run along `axis_u` and the top row is where
+    /// `axis_v` points to; the disk is what is seen of it within the parallelogram of both, which touches its
+    /// edges.
     ///
     /// What lies outside of an image, when it is repeated, is loaded into a layer of its own.
     pub uvs: Vec<DVec2>,
 }
 
-/// A texture's place in the world: `corner + axis_u s + axis_v t` shows the texture coordinate `low + size (s, t)`.
+/// A texture's place in the world: `corner + axis_u s + axis_v t` shows the texture coordinate
+/// `low + size (s, t)`.
 ///
 /// `s` and `t` are *box coordinates*: from 0 to 1 over the box around what the light shows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,9 +1,10 @@
 //! Meshes of emitters: several flat faces that are one light.
 //!
-//! The faces of a light have one radiance, one two-sidedness and one record with shared bounds. Each is an outline of its own,
-//! convex or concave, which need not touch another. What a light sends is the sum of what its faces send, each by itself: of a one-sided light
-//! those that face the surface. That is exact where no face hides another from the surface, as in a convex mesh; what a concave mesh, or a two-sided
-//! closed one, hides of itself is added all the same.
+//! The faces of a light have one radiance, one two-sidedness and one record with shared bounds. Each is an
+//! outline of its own, convex or concave, which need not touch another. What a light sends is the sum of what
+//! its faces send, each by itself: of a one-sided light those that face the surface. That is exact where no
+//! face hides another from the surface, as in a convex mesh; what a concave mesh, or a two-sided closed one,
+//! hides of itself is added all the same.
 
 use crate::LightShape;
 use crate::light::LightFault;
@@ -14,8 +15,9 @@ impl LightShape {
     /// The most vertices of a face: what float32 counts.
     pub const MAX_FACE: u32 = 1 << 24;
 
-    /// The triangles of a mesh, each a face: `triangles` are indices into `positions`, three a triangle, counter-clockwise from the
-    /// front. Those without an area are left out. Coplanar neighbours cost less as one face of several vertices.
+    /// The triangles of a mesh, each a face: `triangles` are indices into `positions`, three a triangle,
+    /// counter-clockwise from the front. Those without an area are left out. Coplanar neighbours cost less as
+    /// one face of several vertices.
     ///
     /// ```
     /// # use arealight::LightShape;
@@ -45,8 +47,8 @@ impl LightShape {
         if shape.vertices().is_empty() { Err(LightFault::TrianglesNoArea) } else { Ok(shape) }
     }
 
-    /// Adds a flat face, an outline as that of a polygon: a polygon becomes a mesh of two faces, one without vertices the
-    /// face alone. A disk, sphere or tube is replaced by the face.
+    /// Adds a flat face, an outline as that of a polygon: a polygon becomes a mesh of two faces, one without
+    /// vertices the face alone. A disk, sphere or tube is replaced by the face.
     pub fn add_face(&mut self, outline: &[DVec3]) {
         let (mut vertices, mut faces) = match std::mem::take(self) {
             Self::Mesh { vertices, faces } => (vertices, faces),
@@ -74,8 +76,8 @@ impl LightShape {
         }
     }
 
-    /// The outlines of the faces: of a polygon its only one, of disks, spheres and tubes none. Where a mesh says that it has more vertices
-    /// than there are, what there is.
+    /// The outlines of the faces: of a polygon its only one, of disks, spheres and tubes none. Where a mesh
+    /// says that it has more vertices than there are, what there is.
     pub fn outlines(&self) -> impl Iterator<Item = &[DVec3]> {
         let whole = match self {
             Self::Polygon(vertices) => Some(&vertices[..]),
@@ -105,11 +107,11 @@ impl LightShape {
         if faces == vertices as u64 { Ok(()) } else { Err(LightFault::FaceCount { faces, vertices }) }
     }
 
-    /// The radius of a disk that from any distance covers as much as the faces add up to, or more: what bounds that know a light by the
-    /// sphere that holds it count on, which hold for a convex mesh as it is.
+    /// The radius of a disk that from any distance covers as much as the faces add up to, or more: what
+    /// bounds that know a light by the sphere that holds it count on, which hold for a convex mesh as it is.
     pub(crate) fn covering_radius(&self, two_sided: bool) -> f64 {
-        // Towards d the faces cover sum(A |n.d|), by Cauchy and Schwarz at most sqrt(sum(A) d.M d) with M = sum(A n n^T); those that face it half of
-        // that and of the sum of the area vectors
+        // Towards d the faces cover sum(A |n.d|), by Cauchy and Schwarz at most sqrt(sum(A) d.M d) with M =
+        // sum(A n n^T); those that face it half of that and of the sum of the area vectors
         let (mut total, mut vector, mut moments) = (0.0, DVec3::ZERO, DMat3::ZERO);
         for outline in self.outlines() {
             let area = area_of(outline);
@@ -119,7 +121,8 @@ impl LightShape {
             let normal = area.normalize_or_zero();
             moments += DMat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z) * size;
         }
-        // Wolkowicz and Styan 1980: a symmetric matrix' largest eigenvalue is at most its mean and sqrt(2/3) times what it differs from that by
+        // Wolkowicz and Styan 1980: a symmetric matrix' largest eigenvalue is at most its mean and sqrt(2/3)
+        // times what it differs from that by
         let mean = total / 3.0;
         let rest = (moments - DMat3::from_diagonal(DVec3::splat(mean))).to_cols_array();
         let spread = rest.iter().map(|value| value * value).sum::<f64>().sqrt();

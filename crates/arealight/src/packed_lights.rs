@@ -10,15 +10,16 @@ use glam::DVec3;
 /// Rows of a texture's place in the vertex buffer.
 const TEXTURE_ROWS: usize = 4;
 
-/// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each; [`PackedLights::summary`] goes to the frame.
+/// Lights as the GPU reads them, relative to an origin. The arrays are uploaded to a buffer each;
+/// [`PackedLights::summary`] goes to the frame.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PackedLights {
     /// One record per polygon or mesh: convex quads without a texture first, else in the given order.
     pub lights: Vec<GpuLight>,
-    /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's vertices a row with the
-    /// face's unit normal in xyz and their count in w. After the vertices of a textured light come four rows, its image's place:
-    /// (corner, lowest u), (axis of u, lowest v), (axis of v, extent in u), (extent in v, 0, 0, 0), see
-    /// [`TextureMap`].
+    /// Of each of these its vertices' positions relative to its center, in xyz. A mesh has before each face's
+    /// vertices a row with the face's unit normal in xyz and their count in w. After the vertices of a
+    /// textured light come four rows, its image's place: (corner, lowest u), (axis of u, lowest v), (axis of
+    /// v, extent in u), (extent in v, 0, 0, 0), see [`TextureMap`].
     pub vertices: Vec<[f32; 4]>,
     /// One record per disk, sphere or tube: by kind in this order, else in the given one.
     pub shapes: Vec<GpuShape>,
@@ -58,8 +59,9 @@ impl LightSummary {
 }
 
 impl PackedLights {
-    /// Checks and packs `lights` relative to `origin`: the subtraction is made in float64, so that a scene far from the
-    /// world's origin shades as well as one at it. Use the same origin for the G-buffer's positions.
+    /// Checks and packs `lights` relative to `origin`: the subtraction is made in float64, so that a scene
+    /// far from the world's origin shades as well as one at it. Use the same origin for the G-buffer's
+    /// positions.
     ///
     /// # Errors
     /// [`LightError`] names a light that cannot be shaded, by its index, and the field that is wrong.
@@ -95,8 +97,8 @@ impl PackedLights {
         }
     }
 
-    /// Adds the lights of `other`, which may be packed relative to another origin, after those that are here. Their quads are
-    /// counted as such only where no polygons but quads are here.
+    /// Adds the lights of `other`, which may be packed relative to another origin, after those that are here.
+    /// Their quads are counted as such only where no polygons but quads are here.
     ///
     /// # Errors
     /// [`LightError`] where a 32-bit index does not reach; then nothing is added.
@@ -135,7 +137,8 @@ impl PackedLights {
                 return Err(LightFault::VertexNotFinite { index, value });
             }
         }
-        // Subtract the origin in float64, then round once: the center for all, the vertices about the rounded center
+        // Subtract the origin in float64, then round once: the center for all, the vertices about the rounded
+        // center
         let center = (shape.center() - origin).as_vec3();
         let offsets: Vec<DVec3> =
             vertices.iter().map(|vertex| *vertex - origin - center.as_dvec3()).collect();

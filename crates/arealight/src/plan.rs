@@ -6,9 +6,11 @@ use crate::pyramid::{MOST_TAPS, PyramidSize};
 use crate::tiles::{self, TileClass};
 use crate::{Effects, LightSummary, Quality};
 
-/// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base colours are linear
-/// when they are read: in images of sRGB formats they are stored as sRGB. Coats are at `g_coat`, sheen at `g_sheen`, second roughnesses at `g_anisotropy` and thin films at `g_film`, alike in every layout. A G-buffer of any other layout is read by a
-/// bridge function in GLSL of the host's (docs/embed-glsl.md).
+/// What the images at the bindings `g_normal`, `g_base_color` and `g_specular` hold of a surface. Base
+/// colours are linear when they are read: in images of sRGB formats they are stored as sRGB. Coats are at
+/// `g_coat`, sheen at `g_sheen`, second roughnesses at `g_anisotropy` and thin films at `g_film`, alike in
+/// every layout. A G-buffer of any other layout is read by a bridge function in GLSL of the host's
+/// (docs/embed-glsl.md).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum GBufferLayout {
@@ -16,14 +18,17 @@ pub enum GBufferLayout {
     /// [`Effects::SPECULAR_INPUT`] dielectric F0 in rgb and F90.
     #[default]
     Arealight = 0,
-    /// Of Unreal Engine, for surfaces of its default shading model: `GBufferA` (normal, times 0.5, plus 0.5), `GBufferC` (base
-    /// colour) and `GBufferB` (metallic, specular, roughness). Dielectric F0 is 0.08 × specular.
+    /// Of Unreal Engine, for surfaces of its default shading model: `GBufferA` (normal, times 0.5, plus 0.5),
+    /// `GBufferC` (base colour) and `GBufferB` (metallic, specular, roughness). Dielectric F0 is 0.08 ×
+    /// specular.
     Unreal = 1,
-    /// Of Unity's Universal Render Pipeline, for metallic materials, without its option Accurate G-buffer normals: `GBuffer2` (normal,
-    /// smoothness), `GBuffer0` (albedo) and `GBuffer1` (reflectivity). Dielectric F0 is 0.04.
+    /// Of Unity's Universal Render Pipeline, for metallic materials, without its option Accurate G-buffer
+    /// normals: `GBuffer2` (normal, smoothness), `GBuffer0` (albedo) and `GBuffer1` (reflectivity).
+    /// Dielectric F0 is 0.04.
     Unity = 2,
-    /// Of engines that store directions on an octahedron and materials as glTF does: a signed place on the octahedron in
-    /// xy; base colour in rgb; occlusion, which is not used, roughness and metalness. Dielectric F0 is 0.04.
+    /// Of engines that store directions on an octahedron and materials as glTF does: a signed place on the
+    /// octahedron in xy; base colour in rgb; occlusion, which is not used, roughness and metalness.
+    /// Dielectric F0 is 0.04.
     Octahedral = 3,
 }
 
@@ -45,8 +50,8 @@ pub enum RadianceFormat {
     /// Sixteen bytes a texel.
     #[default]
     Rgba32Float = 0,
-    /// Eight bytes a texel: rounded to the nearest of 11 bits (a relative error of 4.9e-4), and what is above 65,504 is
-    /// stored as that. Lights added by several passes are rounded by each.
+    /// Eight bytes a texel: rounded to the nearest of 11 bits (a relative error of 4.9e-4), and what is above
+    /// 65,504 is stored as that. Lights added by several passes are rounded by each.
     Rgba16Float = 4,
 }
 
@@ -54,44 +59,53 @@ pub enum RadianceFormat {
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
-    /// What the host's surfaces need, of [`Effects::SURFACES`]; other effects are a frame's lights' to say, and are not read here.
+    /// What the host's surfaces need, of [`Effects::SURFACES`]; other effects are a frame's lights' to say,
+    /// and are not read here.
     pub surfaces: Effects,
     /// What accuracy the host pays for.
     pub quality: Quality,
-    /// What the binding `g_position` holds. Depth as stored, in either direction, of which exactly 0 or 1, one of which every depth
-    /// buffer is cleared to, marks a pixel without a surface; or else positions relative to the origin, of which w = 0 does.
+    /// What the binding `g_position` holds. Depth as stored, in either direction, of which exactly 0 or 1,
+    /// one of which every depth buffer is cleared to, marks a pixel without a surface; or else positions
+    /// relative to the origin, of which w = 0 does.
     pub from_depth: bool,
     /// How surfaces are stored.
     pub g_buffer: GBufferLayout,
     /// Overwrite or add.
     pub output: Output,
-    /// Whether the diffuse and the glossy lobe's radiance go to an image each, for what treats them apart (denoisers, skin, fog), or
-    /// their sum to one.
+    /// Whether the diffuse and the glossy lobe's radiance go to an image each, for what treats them apart
+    /// (denoisers, skin, fog), or their sum to one.
     pub separate_lobes: bool,
     /// Their format.
     pub format: RadianceFormat,
-    /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a light and a lobe for each. With 0
-    /// there are no shadows, and the pipeline has nothing of them.
+    /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a
+    /// light and a lobe for each. With 0 there are no shadows, and the pipeline has nothing of them.
     pub shadow_rays: u32,
     /// Whether the camera is orthographic: `ShadeFrame::camera` is the direction to it then.
     pub orthographic: bool,
-    /// Whether frames are rectangles of larger images, each from `ShadeFrame::offset` on: views side by side, an atlas. Without shadow rays.
+    /// Whether frames are rectangles of larger images, each from `ShadeFrame::offset` on: views side by side,
+    /// an atlas. Without shadow rays.
     pub rectangle: bool,
-    /// How many texels of the G-buffer a pixel of radiance has to a side, from 1 to [`ShadeOptions::MOST_TEXELS_PER_PIXEL`]; of them the first is shaded. 2 is half
-    /// resolution. Without shadow rays, unless it is 1.
+    /// How many texels of the G-buffer a pixel of radiance has to a side, from 1 to
+    /// [`ShadeOptions::MOST_TEXELS_PER_PIXEL`]; of them the first is shaded. 2 is half resolution. Without
+    /// shadow rays, unless it is 1.
     pub texels_per_pixel: u32,
-    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. A pixel's radiance is the mean over its samples, of which those with
-    /// the same surface in the same plane are shaded once; `a` is the part that has a surface. Without shadow rays and half resolution, unless it is 1.
+    /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. A pixel's
+    /// radiance is the mean over its samples, of which those with the same surface in the same plane are
+    /// shaded once; `a` is the part that has a surface. Without shadow rays and half resolution, unless it is
+    /// 1.
     pub samples: u32,
-    /// Whether frames have a stencil test: pixels that fail it stay as they are, with either [`Output`]. Without shadow rays.
+    /// Whether frames have a stencil test: pixels that fail it stay as they are, with either [`Output`].
+    /// Without shadow rays.
     pub stencil: bool,
-    /// Whether how many lights a frame has is read from a buffer, [`LightCounts`](crate::gpu::LightCounts), when the commands run: for lights that the
-    /// GPU culled or made. What [`LightSummary`] says is the most then. Costs a storage buffer more.
+    /// Whether how many lights a frame has is read from a buffer, [`LightCounts`](crate::gpu::LightCounts),
+    /// when the commands run: for lights that the GPU culled or made. What [`LightSummary`] says is the most
+    /// then. Costs a storage buffer more.
     pub light_counts: bool,
 }
 
 impl Default for ShadeOptions {
-    /// Both lobes, at the exact level; positions from an image, dielectrics of F0 = 0.04, overwriting one image of 32-bit floats.
+    /// Both lobes, at the exact level; positions from an image, dielectrics of F0 = 0.04, overwriting one
+    /// image of 32-bit floats.
     fn default() -> Self {
         Self {
             surfaces: Effects::DIFFUSE | Effects::GLOSSY,
@@ -149,13 +163,14 @@ impl ShadeOptions {
         self.surfaces.contains(Effects::THIN_FILM)
     }
 
-    /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits `OUTPUT_*`.
+    /// [`ShadeOptions::output`], [`ShadeOptions::separate_lobes`] and [`ShadeOptions::format`] as the bits
+    /// `OUTPUT_*`.
     pub fn output_bits(self) -> u32 {
         self.output as u32 | u32::from(self.separate_lobes) << 1 | self.format as u32
     }
 
-    /// [`ShadeOptions::orthographic`], [`ShadeOptions::rectangle`], [`ShadeOptions::stencil`] and [`ShadeOptions::texels_per_pixel`] as the bits
-    /// `VIEW_*`.
+    /// [`ShadeOptions::orthographic`], [`ShadeOptions::rectangle`], [`ShadeOptions::stencil`] and
+    /// [`ShadeOptions::texels_per_pixel`] as the bits `VIEW_*`.
     pub fn view_bits(self) -> u32 {
         u32::from(self.orthographic)
             | u32::from(self.rectangle) << 1
@@ -164,7 +179,8 @@ impl ShadeOptions {
     }
 }
 
-/// The values of the shade kernel's specialisation constants, for a frame's lights: what none of them needs is not in the pipeline.
+/// The values of the shade kernel's specialisation constants, for a frame's lights: what none of them needs
+/// is not in the pipeline.
 pub fn shade_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<(u32, u32)> {
     specialization_of_class(options, lights, tiles::NO_CLASS)
 }
@@ -198,14 +214,16 @@ fn specialization_of_class(options: ShadeOptions, lights: LightSummary, class: u
 /// How tiles get their lists of lights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TileOptions {
-    /// The most lights, of all kinds, that a tile's list holds, from 1 on: a tile that more lights contribute to is shaded by all of
-    /// the frame's.
+    /// The most lights, of all kinds, that a tile's list holds, from 1 on: a tile that more lights contribute
+    /// to is shaded by all of the frame's.
     pub capacity: u32,
-    /// Lights are culled from a tile that together contribute less than this fraction of what its other lights do, to the radiance of
-    /// each of its pixels, in the sum of the channels; in [0, 1). With 0 only lights that contribute nothing are left out.
+    /// Lights are culled from a tile that together contribute less than this fraction of what its other
+    /// lights do, to the radiance of each of its pixels, in the sum of the channels; in [0, 1). With 0 only
+    /// lights that contribute nothing are left out.
     pub cull_threshold: f32,
-    /// Frames of fewer lights than this, all of them convex quads without a texture, are shaded without tiles: to classify them would take
-    /// longer than it could save (docs/tiles.md). With 0 every frame is classified.
+    /// Frames of fewer lights than this, all of them convex quads without a texture, are shaded without
+    /// tiles: to classify them would take longer than it could save (docs/tiles.md). With 0 every frame is
+    /// classified.
     pub least_quads: u32,
 }
 
@@ -217,7 +235,8 @@ impl TileOptions {
 }
 
 impl Default for TileOptions {
-    /// Lists of 128 lights, of which none is culled that contributes anything; frames of four quads and more are classified.
+    /// Lists of 128 lights, of which none is culled that contributes anything; frames of four quads and more
+    /// are classified.
     fn default() -> Self {
         Self { capacity: 128, cull_threshold: 0.0, least_quads: 4 }
     }
@@ -241,18 +260,21 @@ pub enum ShadowHistory {
     /// One frame's.
     #[default]
     Off = 0,
-    /// Up to sixteen frames', as long as what rays find does not change: pixels are found again by the camera's motion alone.
+    /// Up to sixteen frames', as long as what rays find does not change: pixels are found again by the
+    /// camera's motion alone.
     Camera = 1,
     /// Likewise, found again by motion vectors of the host's.
     MotionVectors = 2,
 }
 
-/// Words at the beginning of the buffer that keeps shadows from frame to frame: for frames of even and of odd seeds a half each.
+/// Words at the beginning of the buffer that keeps shadows from frame to frame: for frames of even and of odd
+/// seeds a half each.
 pub const SHADOW_HISTORY_HEAD: usize = 40;
 /// Words of a pixel in that buffer, of one frame; it has two.
 pub const SHADOW_HISTORY_PIXEL: usize = 6;
 
-/// Bytes of the buffer that keeps shadows from frame to frame, for images of `size` pixels. It holds zeros before the first frame.
+/// Bytes of the buffer that keeps shadows from frame to frame, for images of `size` pixels. It holds zeros
+/// before the first frame.
 pub fn shadow_history_size(size: [u32; 2]) -> u64 {
     let pixels: u64 = size.map(u64::from).iter().product();
     4 * (SHADOW_HISTORY_HEAD as u64 + 2 * SHADOW_HISTORY_PIXEL as u64 * pixels)
@@ -265,7 +287,8 @@ pub fn shadow_history_specialization(options: ShadeOptions, history: ShadowHisto
     values
 }
 
-/// The values of the constants of the kernel [`kernels::SHADOW_RAYS`], for a frame's lights: what none of them needs is not in the pipeline.
+/// The values of the constants of the kernel [`kernels::SHADOW_RAYS`], for a frame's lights: what none of
+/// them needs is not in the pipeline.
 pub fn shadow_rays_specialization(options: ShadeOptions, lights: LightSummary) -> Vec<(u32, u32)> {
     shadow_specialization(options, options.effects(lights))
 }
@@ -284,7 +307,8 @@ fn shadow_specialization(options: ShadeOptions, effects: Effects) -> Vec<(u32, u
     ]
 }
 
-/// The values of the constants of the kernel [`kernels::SHADOW_FILTER`], which stores by `output` in the format of `options`.
+/// The values of the constants of the kernel [`kernels::SHADOW_FILTER`], which stores by `output` in the
+/// format of `options`.
 pub fn shadow_filter_specialization(
     options: ShadeOptions,
     filter: ShadowFilter,
@@ -334,8 +358,8 @@ fn lobe_specialization(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
 /// Width and height in texels of what an invocation of the blur kernel makes.
 pub const BLUR_BLOCK: [u32; 2] = [4, 4];
 
-/// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the largest, and
-/// of all.
+/// Taps to a side that the blur kernel is specialised for: those of most levels, of level 1, which is the
+/// largest, and of all.
 pub const BLUR_RADII: [u32; 3] = [3, 4, MOST_TAPS as u32];
 
 /// The groups that make `level` of so many layers.

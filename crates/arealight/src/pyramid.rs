@@ -1,30 +1,32 @@
 //! The pyramid of a light's texture: how large each level is, and how blurred.
 //!
-//! A light's texture is a layer of one array image that all lights share, so that no shader indexes an array of images.
-//! Level 0 is the image itself, in linear light; each further level has half the texels a side and about twice the
-//! blur, and is made from the one before with a separable Gaussian. Beyond its edge the image is mirrored, so that every
-//! level has the image's mean. A blurred lookup is one trilinear fetch ([`PyramidSize::level_of`]).
+//! A light's texture is a layer of one array image that all lights share, so that no shader indexes an array
+//! of images. Level 0 is the image itself, in linear light; each further level has half the texels a side and
+//! about twice the blur, and is made from the one before with a separable Gaussian. Beyond its edge the image
+//! is mirrored, so that every level has the image's mean. A blurred lookup is one trilinear fetch
+//! ([`PyramidSize::level_of`]).
 //!
 //! # Why so
 //! - Levels are twice apart: three times, as is common, doubles the error between them.
-//! - The blur of a level is 0.85 of its texels: less, and bilinear lookup shows the texels; more, and the kernel needs more
-//!   than six taps.
-//! - Mirrored, not extended: a blur that extends the edge sees too much of it. At the widest blur a picture with a bright
-//!   frame would be a fifth too bright, and a far light must show the image's mean. It also needs no margin, which would
-//!   take half as many texels again.
+//! - The blur of a level is 0.85 of its texels: less, and bilinear lookup shows the texels; more, and the
+//!   kernel needs more than six taps.
+//! - Mirrored, not extended: a blur that extends the edge sees too much of it. At the widest blur a picture
+//!   with a bright frame would be a fifth too bright, and a far light must show the image's mean. It also
+//!   needs no margin, which would take half as many texels again.
 //! - The last three levels are 2.29 times apart instead, so that the last, which is four texels a side, has
 //!   [`WIDEST_BLUR`]: a level of two texels could not show a gradient. Footprints of far lights are a little wider, and are
 //!   given this one.
 //! - Level 0 is sharp: a mirror shows the image, and updating it costs one copy.
-//! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a Gaussian than
-//!   mixing by the logarithm of the blur.
+//! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a
+//!   Gaussian than mixing by the logarithm of the blur.
 //!
-//! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`, `tests/tests/gpu/pyramid.rs`).
+//! Tested against a direct Gaussian in float64 (`crates/arealight-oracle/tests`,
+//! `tests/tests/gpu/pyramid.rs`).
 
 use crate::texture_part::TextureError;
 
-/// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask for more get
-/// this.
+/// The standard deviation of the last level, in texture coordinates: the square root of 1/8. Lookups that ask
+/// for more get this.
 pub const WIDEST_BLUR: f64 = 0.353_553_390_593_273_8;
 
 /// The variance of a level's blur, in squares of its own texels, but for the last three.
@@ -33,8 +35,8 @@ const VARIANCE: f64 = 0.85 * 0.85;
 /// The variance that bilinear lookup adds, in squares of a level's texels.
 const TENT: f64 = 1.0 / 6.0;
 
-/// How much larger `VARIANCE + TENT` is in each of the last three levels than in the one before: the cube root of
-/// `2 / (VARIANCE + TENT)`, as the last has `(4 WIDEST_BLUR)^2 = 2`.
+/// How much larger `VARIANCE + TENT` is in each of the last three levels than in the one before: the cube
+/// root of `2 / (VARIANCE + TENT)`, as the last has `(4 WIDEST_BLUR)^2 = 2`.
 const WIDENING: f64 = 1.310_209_9;
 
 /// Levels that are widened.
@@ -43,11 +45,11 @@ const WIDENED: u32 = 3;
 /// How much the level's fraction is lowered in its middle, times four.
 const EASE: f64 = 0.2;
 
-/// The size of a light texture: `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`] to
-/// [`PyramidSize::LARGEST`].
+/// The size of a light texture: `width` × `height` texels, each a power of two from [`PyramidSize::SMALLEST`]
+/// to [`PyramidSize::LARGEST`].
 ///
-/// Images of any other size are resampled when they are loaded. The blur is equally wide in both directions *in texels*, so
-/// a size whose aspect is near that of the lights is best.
+/// Images of any other size are resampled when they are loaded. The blur is equally wide in both directions
+/// *in texels*, so a size whose aspect is near that of the lights is best.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct PyramidSize {
     width: u32,
@@ -106,8 +108,8 @@ impl PyramidSize {
         (VARIANCE + TENT) * WIDENING.powi(widened.cast_signed()) - TENT
     }
 
-    /// The blur of a bilinear lookup in a level beyond that of a bilinear lookup in level 0: a standard deviation in
-    /// level 0's texels.
+    /// The blur of a bilinear lookup in a level beyond that of a bilinear lookup in level 0: a standard
+    /// deviation in level 0's texels.
     pub fn blur(self, level: u32) -> f64 {
         let texel = f64::from(1u32 << level);
         ((self.variance(level) + if level == 0 { 0.0 } else { TENT }) * texel * texel
@@ -115,9 +117,9 @@ impl PyramidSize {
         .sqrt()
     }
 
-    /// How `level`, from 1 on, is made from the level before. Half of a symmetric kernel, the innermost tap first: a texel is the sum of
-    /// `weights[i]` times the texels at `i + 1/2` texels of the finer level to both sides of its centre. The whole kernel sums to one.
-    /// Zero from [`PyramidSize::taps`] on.
+    /// How `level`, from 1 on, is made from the level before. Half of a symmetric kernel, the innermost tap
+    /// first: a texel is the sum of `weights[i]` times the texels at `i + 1/2` texels of the finer level to
+    /// both sides of its centre. The whole kernel sums to one. Zero from [`PyramidSize::taps`] on.
     pub fn weights(self, level: u32) -> [f32; MOST_TAPS] {
         // The Gaussian whose samples have the variance to add
         let (added, taps) = (self.added_variance(level), self.taps(level));
@@ -135,8 +137,9 @@ impl PyramidSize {
 
     /// How many taps to a side `level`, from 1 on, is made with.
     pub fn taps(self, level: u32) -> u32 {
-        // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape. Level 1, which adds
-        // 2.89, would be all but a box of six: a checker's error there is 3.6 % with six taps, 1.2 % with eight
+        // A kernel of n equal taps has the variance (n^2 - 1) / 12: leave room to a Gaussian's shape. Level
+        // 1, which adds 2.89, would be all but a box of six: a checker's error there is 3.6 % with six taps,
+        // 1.2 % with eight
         match self.added_variance(level) {
             ..=2.4 => 3,
             ..=3.6 => 4,
@@ -150,8 +153,8 @@ impl PyramidSize {
         4.0 * self.variance(level) - self.variance(level.saturating_sub(1))
     }
 
-    /// The level, between two, at which a trilinear lookup is blurred with a standard deviation of `blur` texels of
-    /// level 0 (of the geometric mean of both axes); from 0 to the last.
+    /// The level, between two, at which a trilinear lookup is blurred with a standard deviation of `blur`
+    /// texels of level 0 (of the geometric mean of both axes); from 0 to the last.
     pub fn level_of(self, blur: f64) -> f64 {
         let square = blur.max(0.0).powi(2);
         let last = f64::from(self.levels() - 1);

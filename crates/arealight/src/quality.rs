@@ -10,9 +10,9 @@ pub enum FormFactor {
     /// float32's own precision, absolute: 1e-6.
     #[default]
     Exact = 0,
-    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away. Of a
-    /// light of area A at five times its size, or any larger distance d, the error is at most 1e-6 A / (pi d²), both
-    /// as they are in the lobe's cosine space.
+    /// As [`FormFactor::Exact`], and relative precision for lights that look small: a sun, a lamp far away.
+    /// Of a light of area A at five times its size, or any larger distance d, the error is at most 1e-6 A /
+    /// (pi d²), both as they are in the lobe's cosine space.
     Difference = 1,
 }
 
@@ -20,31 +20,36 @@ pub enum FormFactor {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Horizon {
-    /// At the horizon of the lobe's cosine space. A fitted lobe reaches below the surface, with 2 % of its energy on
-    /// average and 17 % at grazing angles: lights leak in from there.
+    /// At the horizon of the lobe's cosine space. A fitted lobe reaches below the surface, with 2 % of its
+    /// energy on average and 17 % at grazing angles: lights leak in from there.
     #[default]
     Cosine = 0,
-    /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface. What the lobe loses there
-    /// is made up for, so that its albedo stays: a light that is wholly above both horizons is brighter than by
-    /// [`Horizon::Cosine`].
+    /// At the surface's horizon as well, before the lobe's transform: nothing leaks from behind the surface.
+    /// What the lobe loses there is made up for, so that its albedo stays: a light that is wholly above both
+    /// horizons is brighter than by [`Horizon::Cosine`].
     Both = 1,
 }
 
-/// How the specular lobe is integrated: by how many transformed cosines that stand for it, or over half vectors. Errors: docs/fit.md.
+/// How the specular lobe is integrated: by how many transformed cosines that stand for it, or over half
+/// vectors. Errors: docs/fit.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum SpecularLobes {
-    /// One integral a light, of the lobe that the reflectance asks for. A colour counts by the mean of its channels; the specular albedo
-    /// stays exact in each.
+    /// One integral a light, of the lobe that the reflectance asks for. A colour counts by the mean of its
+    /// channels; the specular albedo stays exact in each.
     #[default]
     One = 0,
-    /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. Of a surface that has sheen the second goes to that, at a third to a half of
-    /// its error. One all the same where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
+    /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. Of
+    /// a surface that has sheen the second goes to that, at a third to a half of its error. One all the same
+    /// where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
     Two = 1,
-    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to four times the instructions of one integral. Lobes of two
-    /// roughnesses ([`crate::Effects::ANISOTROPY`]) err a tenth to a thirtieth of what two lobes do under lamps, others as much or down to a third; of lights that fill the lobe,
-    /// as a sky does, two to three times as much, but that light from everywhere is exact. Lights that are polygons or meshes without an image alone;
-    /// all others have [`SpecularLobes::One`]. The table is read for albedos. Sheen has two lobes, as with [`SpecularLobes::Two`]. Tiles cull no such light.
+    /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to
+    /// four times the instructions of one integral. Lobes of two roughnesses ([`crate::Effects::ANISOTROPY`])
+    /// err a tenth to a thirtieth of what two lobes do under lamps, others as much or down to a third; of
+    /// lights that fill the lobe, as a sky does, two to three times as much, but that light from everywhere
+    /// is exact. Lights that are polygons or meshes without an image alone; all others have
+    /// [`SpecularLobes::One`]. The table is read for albedos. Sheen has two lobes, as with
+    /// [`SpecularLobes::Two`]. Tiles cull no such light.
     HalfVectors = 2,
 }
 
@@ -55,14 +60,15 @@ pub enum Lobes {
     /// The fitted table: twelve texel reads a pixel.
     #[default]
     Table = 0,
-    /// Formulas fitted to it (`arealight_formula_sample`): about a hundred multiply-adds a pixel and no texture, at 1.2
-    /// to 1.35 times the table's error. For roughness above .15; nearer to a mirror the table is far better.
+    /// Formulas fitted to it (`arealight_formula_sample`): about a hundred multiply-adds a pixel and no
+    /// texture, at 1.2 to 1.35 times the table's error. For roughness above .15; nearer to a mirror the table
+    /// is far better.
     Formula = 1,
 }
 
-/// How the part of a light's texture that a lobe sees is looked up: its footprint on the light, an ellipse that is far
-/// from round where a glossy surface is seen at an angle. Errors against the integral of texture times lobe:
-/// docs/textures.md.
+/// How the part of a light's texture that a lobe sees is looked up: its footprint on the light, an ellipse
+/// that is far from round where a glossy surface is seen at an angle. Errors against the integral of texture
+/// times lobe: docs/textures.md.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(u32)]
 pub enum Footprint {
@@ -71,8 +77,9 @@ pub enum Footprint {
     Round = 0,
     /// Four fetches along the footprint's longer axis.
     Ellipse = 1,
-    /// The light is split into four by four parts, each with a form factor of its own and two fetches: 16 form factors and 32
-    /// fetches per lobe. Lights with more than four vertices, and concave ones, are split into triangles, each into two by two parts.
+    /// The light is split into four by four parts, each with a form factor of its own and two fetches: 16
+    /// form factors and 32 fetches per lobe. Lights with more than four vertices, and concave ones, are split
+    /// into triangles, each into two by two parts.
     Split = 2,
 }
 

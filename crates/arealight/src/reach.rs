@@ -10,15 +10,17 @@ use std::f64::consts::PI;
 /// The density a steradian of Lambert's lobe of albedo 1, where it is largest.
 pub const DIFFUSE_DENSITY: f64 = 1.0 / PI;
 
-/// How far from [`LightShape::center`] of its shape `light` may reflect a radiance above `threshold` in any channel, in W/(m² sr), from surfaces whose lobes,
-/// times their albedos, are nowhere denser than `density` a steradian: the sum of [`DIFFUSE_DENSITY`] and [`LightTable::lobe_density`] for opaque
-/// surfaces of at least that roughness, [`DIFFUSE_DENSITY`] for surfaces without a specular lobe.
+/// How far from [`LightShape::center`] of its shape `light` may reflect a radiance above `threshold` in any
+/// channel, in W/(m² sr), from surfaces whose lobes, times their albedos, are nowhere denser than `density` a
+/// steradian: the sum of [`DIFFUSE_DENSITY`] and [`LightTable::lobe_density`] for opaque surfaces of at least
+/// that roughness, [`DIFFUSE_DENSITY`] for surfaces without a specular lobe.
 ///
-/// Infinite where nothing bounds it: of a textured light, whose image may be of any brightness, with a threshold of zero, or for a light that is not
-/// finite. What several lights add up to may be more than the threshold.
+/// Infinite where nothing bounds it: of a textured light, whose image may be of any brightness, with a
+/// threshold of zero, or for a light that is not finite. What several lights add up to may be more than the
+/// threshold.
 ///
-/// A light's solid angle is at most its area over the square of the distance to its nearest point, and what is reflected at most radiance
-/// times density times that.
+/// A light's solid angle is at most its area over the square of the distance to its nearest point, and what
+/// is reflected at most radiance times density times that.
 pub fn radius(light: &Light, threshold: f64, density: f64) -> f64 {
     if light.radiance == Vec3::ZERO {
         return 0.0;
@@ -31,8 +33,9 @@ pub fn radius(light: &Light, threshold: f64, density: f64) -> f64 {
     if radius.is_finite() { radius } else { f64::INFINITY }
 }
 
-/// The smallest and the largest corner of a box along the axes outside of which the light is of no more matter than outside of [`radius`], in
-/// world positions: of the sphere, or of its half before a flat light that shines to one side.
+/// The smallest and the largest corner of a box along the axes outside of which the light is of no more
+/// matter than outside of [`radius`], in world positions: of the sphere, or of its half before a flat light
+/// that shines to one side.
 pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
     let (center, size) = (light.shape.center(), size_about(&light.shape));
     let shines_to_one_side = light.shape.is_flat() && !light.two_sided;
@@ -66,8 +69,8 @@ fn fan_area(outline: &[DVec3]) -> f64 {
     rest.windows(2).map(|edge| 0.5 * (edge[0] - first).cross(edge[1] - first).length()).sum()
 }
 
-/// No point sees more of the light than this, in square units, from outside of the sphere that holds it: its solid angle is at most that over
-/// the square of the distance to the nearest point.
+/// No point sees more of the light than this, in square units, from outside of the sphere that holds it: its
+/// solid angle is at most that over the square of the distance to the nearest point.
 fn most_area(shape: &LightShape, size: f64) -> f64 {
     match shape {
         LightShape::Disk { .. } => shape.area_vector().length(),

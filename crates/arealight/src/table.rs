@@ -20,21 +20,22 @@
 //!
 //! The magnitude texel is `(albedo, schlick)`: the integrals over the hemisphere of `f cos` and of
 //! `f cos (1 - cos theta_vh)^5`, for a BRDF `f` without Fresnel term, so that the specular albedo is
-//! `f0 * albedo + (f90 - f0) * schlick`. Near the horizon these change within a width of alpha, which no grid resolves. So
-//! they may be stored with that part added in closed form, [`ggx_grazing_dip`], which a lookup takes away again: what is
-//! interpolated is smooth, and the albedos are within 2e-3 at every view. The description says if it was added, and
-//! so does the third channel of the GPU's magnitude texel.
+//! `f0 * albedo + (f90 - f0) * schlick`. Near the horizon these change within a width of alpha, which no grid
+//! resolves. So they may be stored with that part added in closed form, [`ggx_grazing_dip`], which a lookup
+//! takes away again: what is interpolated is smooth, and the albedos are within 2e-3 at every view. The
+//! description says if it was added, and so does the third channel of the GPU's magnitude texel.
 //!
 //! # Two matrices
-//! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves what
-//! is grazing. A second matrix layer holds the lobe of `f cos (1 - cos theta_vh)^5`, and a material of any
-//! reflectance has one lobe between the two, by their shares of its specular albedo. A table without it uses the one
-//! matrix for both.
+//! Schlick's weight changes the lobe's shape as well as its size: it takes away near the normal and leaves
+//! what is grazing. A second matrix layer holds the lobe of `f cos (1 - cos theta_vh)^5`, and a material of
+//! any reflectance has one lobe between the two, by their shares of its specular albedo. A table without it
+//! uses the one matrix for both.
 //!
 //! # Pairs
-//! Two transformed cosines follow a BRDF much better than one ([`crate::SpecularLobes::Two`]). [`LobePairs`] holds two matrices for
-//! every reflectance, and what share of the energy the second one has at a reflectance of 1 and at [`DIELECTRIC_F0`]: what a
-//! reflectance has of either lobe is linear in it, and so exact in each channel of a colour.
+//! Two transformed cosines follow a BRDF much better than one ([`crate::SpecularLobes::Two`]). [`LobePairs`]
+//! holds two matrices for every reflectance, and what share of the energy the second one has at a reflectance
+//! of 1 and at [`DIELECTRIC_F0`]: what a reflectance has of either lobe is linear in it, and so exact in each
+//! channel of a colour.
 
 use glam::{DMat3, DVec3};
 
@@ -57,14 +58,14 @@ pub struct TableDescription {
     pub brdf: String,
     /// What made it, for people: program, version, settings.
     pub made_by: String,
-    /// Whether [`ggx_grazing_dip`] is added to the albedos in the magnitude texels, and taken away again by a lookup. Without, for a BRDF of
-    /// which nothing is known, they are the albedos.
+    /// Whether [`ggx_grazing_dip`] is added to the albedos in the magnitude texels, and taken away again by a
+    /// lookup. Without, for a BRDF of which nothing is known, they are the albedos.
     pub ggx_dip: bool,
 }
 
 impl TableDescription {
-    /// What is added to `(albedo, schlick)` at a roughness and the cosine of a view. Roughness and cosine are clamped as
-    /// [`LightTable::lookup`] does.
+    /// What is added to `(albedo, schlick)` at a roughness and the cosine of a view. Roughness and cosine are
+    /// clamped as [`LightTable::lookup`] does.
     pub fn dip(&self, roughness: f64, cos_view: f64) -> [f64; 2] {
         if self.ggx_dip {
             ggx_grazing_dip(clamped_roughness(roughness), clamped_cosine(cos_view))
@@ -73,8 +74,8 @@ impl TableDescription {
         }
     }
 
-    /// How far an albedo at a node may lie outside of its range: not at all, or by twice what rounding to float16 moves
-    /// a number above 1.
+    /// How far an albedo at a node may lie outside of its range: not at all, or by twice what rounding to
+    /// float16 moves a number above 1.
     fn tolerance(&self) -> f32 {
         if self.ggx_dip { 1e-3 } else { 0.0 }
     }
@@ -162,8 +163,8 @@ pub enum TableError {
         /// The share found.
         share: f32,
     },
-    /// A magnitude, without the dip that was added to it, is outside [0, 1], where every albedo lies, or its Schlick part
-    /// is above the whole.
+    /// A magnitude, without the dip that was added to it, is outside [0, 1], where every albedo lies, or its
+    /// Schlick part is above the whole.
     #[error("magnitude: texel ({x}, {y}) is ({albedo}, {schlick}); must be 0 <= Schlick part <= albedo <= 1")]
     Magnitude {
         /// The texel's column (roughness).
@@ -288,8 +289,8 @@ impl LightTable {
         &self.magnitude
     }
 
-    /// `(albedo, schlick)` at each node: the magnitude layer without the dip. Where that was added and rounded, they may
-    /// lie 1e-3 outside of their range.
+    /// `(albedo, schlick)` at each node: the magnitude layer without the dip. Where that was added and
+    /// rounded, they may lie 1e-3 outside of their range.
     pub fn albedos(&self) -> Vec<[f32; 2]> {
         let texels = self.magnitude.iter().enumerate();
         let albedos = |(i, &texel)| {
@@ -299,18 +300,19 @@ impl LightTable {
         texels.map(albedos).collect()
     }
 
-    /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` (2 or more) stands
-    /// for.
+    /// The roughness and the cosine of the view angle that node `(x, y)` of a table of `size` (2 or more)
+    /// stands for.
     pub fn node(size: u32, x: u32, y: u32) -> (f64, f64) {
         let step = f64::from(size.saturating_sub(1).max(1));
         let v = f64::from(y) / step;
         (f64::from(x) / step, 1.0 - v * v)
     }
 
-    /// The [`LAYERS`] layers as the GPU image has them, four `f32` a texel: layer 0 the matrix; layer 1 the magnitude in its first two
-    /// channels, and in the third how much of GGX's dip was added to it, 1 or 0; layer 2 the matrix of Schlick's weight; layers 3 and 4 those of
-    /// [`LobePairs`]; layer 5 its shares in the first two channels. A table of one matrix has that again in layer 2; one without pairs
-    /// has its matrices in layers 3 and 4, of which the second has no share at a reflectance of 1.
+    /// The [`LAYERS`] layers as the GPU image has them, four `f32` a texel: layer 0 the matrix; layer 1 the
+    /// magnitude in its first two channels, and in the third how much of GGX's dip was added to it, 1 or 0;
+    /// layer 2 the matrix of Schlick's weight; layers 3 and 4 those of [`LobePairs`]; layer 5 its shares in
+    /// the first two channels. A table of one matrix has that again in layer 2; one without pairs has its
+    /// matrices in layers 3 and 4, of which the second has no share at a reflectance of 1.
     pub fn texels(&self) -> Vec<[f32; 4]> {
         let dip = f32::from(u8::from(self.description.ggx_dip));
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], dip, 0.0]);
@@ -374,7 +376,8 @@ impl LightTable {
     }
 }
 
-/// A perceptual roughness as it is looked up: within [0, 1], its alpha not below [`crate::MIN_ALPHA`]. NaN counts as 0.
+/// A perceptual roughness as it is looked up: within [0, 1], its alpha not below [`crate::MIN_ALPHA`]. NaN
+/// counts as 0.
 pub fn clamped_roughness(roughness: f64) -> f64 {
     roughness.clamp(crate::MIN_ALPHA.sqrt(), 1.0).max(crate::MIN_ALPHA.sqrt())
 }
@@ -417,9 +420,9 @@ pub fn mirror_frame(cos_view: f64) -> DMat3 {
 
 /// The part of a lobe's energy that lies above the surface, in (0, 1], for M⁻¹ of the surface frame.
 ///
-/// A lobe that is clipped at the surface's horizon as well as at that of cosine space loses the rest; divided by
-/// this, it keeps the albedo. The half space above the surface is one in cosine space too, and the lune between
-/// it and the upper one at an angle `a` between their normals holds `(1 + cos a) / 2` of a cosine.
+/// A lobe that is clipped at the surface's horizon as well as at that of cosine space loses the rest; divided
+/// by this, it keeps the albedo. The half space above the surface is one in cosine space too, and the lune
+/// between it and the upper one at an angle `a` between their normals holds `(1 + cos a) / 2` of a cosine.
 pub fn share_above_surface(inverse: &DMat3) -> f64 {
     // The normal of the surface's horizon in cosine space
     let horizon = inverse.x_axis.cross(inverse.y_axis);

@@ -18,11 +18,12 @@ pub enum Wrap {
 
 /// The part of an image that a layer shows: the whole, a piece, or many repeats.
 ///
-/// It is resampled to the layer's size by a tent two texels wide, of the image's or of the layer's, whichever are
-/// larger: a copy where they are equal, bilinear where the layer has more.
+/// It is resampled to the layer's size by a tent two texels wide, of the image's or of the layer's, whichever
+/// are larger: a copy where they are equal, bilinear where the layer has more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TexturePart {
-    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first texel.
+    /// The texture coordinates of the image that the layer shows at (0, 0), the outer corner of its first
+    /// texel.
     pub low: DVec2,
     /// What is added to them at (1, 1). Positive.
     pub size: DVec2,
@@ -72,7 +73,8 @@ pub enum TextureError {
     },
     /// The part is empty, or so many repeats that reading it would take seconds.
     #[error(
-        "size: {size} of {width} x {height} texels must be positive and cover at most {} texels a side; load fewer \
+        "size: {size} of {width} x {height} texels must be positive and cover at most {} texels a side; load \
+        fewer \
          repeats",
         TexturePart::MOST_TEXELS
     )]
@@ -97,8 +99,8 @@ impl TexturePart {
     /// The most texels of the image, repeats included, that a part may cover along an axis.
     pub const MOST_TEXELS: f64 = 16384.0;
 
-    /// The push constants that load the part of an image of `source` texels into `layer` of textures of `size`.
-    /// `decode` tells that the image holds sRGB in a format that does not decode by itself.
+    /// The push constants that load the part of an image of `source` texels into `layer` of textures of
+    /// `size`. `decode` tells that the image holds sRGB in a format that does not decode by itself.
     ///
     /// # Errors
     /// [`TextureError`] where the image or the part is empty, too large, or not a number.

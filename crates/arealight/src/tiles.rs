@@ -1,8 +1,9 @@
-//! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and `shade` share.
+//! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and
+//! `shade` share.
 //!
-//! A frame may have many lights of every kind, of which few contribute to a pixel. Each tile of 8 × 8 pixels gets a list of
-//! the lights that contribute to it, and each class of tiles has a pipeline with no more code than their lights need. docs/tiles.md
-//! has measurements.
+//! A frame may have many lights of every kind, of which few contribute to a pixel. Each tile of 8 × 8 pixels
+//! gets a list of the lights that contribute to it, and each class of tiles has a pipeline with no more code
+//! than their lights need. docs/tiles.md has measurements.
 
 use crate::LightSummary;
 use crate::plan::Output;
@@ -10,11 +11,12 @@ use crate::plan::Output;
 /// Width and height of a tile in pixels.
 pub const SIDE: u32 = 8;
 
-/// Words of a tile's record before the indices of its lights: how many convex quads without a texture, polygons in all, and shapes.
+/// Words of a tile's record before the indices of its lights: how many convex quads without a texture,
+/// polygons in all, and shapes.
 pub const RECORD_HEADER: u32 = 3;
 
-/// In the place of each of these counts: the tile is shaded by all lights of the frame, since its list does not hold those that
-/// contribute to it.
+/// In the place of each of these counts: the tile is shaded by all lights of the frame, since its list does
+/// not hold those that contribute to it.
 pub const ALL_LIGHTS: u32 = u32::MAX;
 
 /// Workgroups of a class's dispatch in x.
@@ -27,8 +29,8 @@ pub const NO_CLASS: u32 = 3;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum TileClass {
-    /// No surface, or no light that contributes to it. Its pipeline writes that, where pixels are overwritten; where they are added
-    /// to it has none.
+    /// No surface, or no light that contributes to it. Its pipeline writes that, where pixels are
+    /// overwritten; where they are added to it has none.
     Empty = 0,
     /// Convex quads without textures, and no other light.
     Quads = 1,
@@ -83,7 +85,8 @@ pub fn unpack(tile: u32) -> [u32; 2] {
     [tile & 0xffff, tile >> 16]
 }
 
-/// Words of a class at the buffer's begin: `VkDispatchIndirectCommand`, and how many tiles there are in the class.
+/// Words of a class at the buffer's begin: `VkDispatchIndirectCommand`, and how many tiles there are in the
+/// class.
 pub const CLASS_WORDS: usize = 4;
 
 /// The words of a class without a tile.
@@ -92,8 +95,8 @@ pub const NO_TILES: [u32; CLASS_WORDS] = [0, 0, 1, 0];
 /// Words before the classes' lists of tiles.
 pub const FIRST_LIST: u32 = (TileClass::ALL.len() * CLASS_WORDS) as u32;
 
-/// Bytes of the buffer of tile lists, for an image of `size` pixels and lists of `capacity` lights: the classes' dispatches
-/// ([`CLASS_WORDS`]), their lists of tiles, and a record a tile.
+/// Bytes of the buffer of tile lists, for an image of `size` pixels and lists of `capacity` lights: the
+/// classes' dispatches ([`CLASS_WORDS`]), their lists of tiles, and a record a tile.
 pub fn memory(size: [u32; 2], capacity: u32) -> u64 {
     let [columns, rows] = tile_counts(size).map(u64::from);
     let record = u64::from(RECORD_HEADER) + u64::from(capacity);

@@ -52,7 +52,8 @@ void main() {
     surface.normal = normal;
     surface.view = -position; // the camera is the origin
     surface.roughness = emission_roughness.w;
-    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04), 1.0);
+    arealight_surface_from_metalness(surface, base_color_metalness.rgb, base_color_metalness.a, vec3(0.04),
+                                     1.0);
 
     ArealightPoint point = arealight_point(surface);
     vec3 radiance = emission_roughness.rgb;

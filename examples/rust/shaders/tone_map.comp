@@ -7,7 +7,8 @@ layout(set = 0, binding = 0, rgba32f) uniform readonly image2D radiance_image;
 layout(set = 0, binding = 1, rgba8) uniform writeonly image2D shown_image;
 
 vec3 srgb(vec3 linear) {
-    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear, lessThanEqual(linear, vec3(0.0031308)));
+    return mix(1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055, 12.92 * linear,
+               lessThanEqual(linear, vec3(0.0031308)));
 }
 
 void main() {

@@ -13,12 +13,14 @@ use ash::vk;
 /// Bytes of a buffer that changes with the frame: more than the scene's vertices and lights need.
 const ROOM: usize = 1 << 16;
 
-/// The engine, with images of one size. Fields are dropped from the top: frames in flight end first, memory goes after what lies in it.
+/// The engine, with images of one size. Fields are dropped from the top: frames in flight end first, memory
+/// goes after what lies in it.
 pub struct Deferred<'a> {
     frames: Frames<'a>,
     places: Vec<Place<'a>>,
     tile_lists: Vec<Buffer<'a>>,
-    /// What a frame draws to, and leaves the radiance in, in `GENERAL` layout; another after [`Deferred::resize`].
+    /// What a frame draws to, and leaves the radiance in, in `GENERAL` layout; another after
+    /// [`Deferred::resize`].
     pub g_buffer: GBuffer<'a>,
     shade: ShadePass,
     _sets: DescriptorPool<'a>,
@@ -47,11 +49,13 @@ impl<'a> Deferred<'a> {
         // doc end
 
         // doc: pass
-        // Make the pass for the way in which your surfaces are stored; it takes every kind of light. It adds to the emission that was drawn
+        // Make the pass for the way in which your surfaces are stored; it takes every kind of
+        // light. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::FORMATS.check(options)?; // says which image has another format than it should
         let table = arealight_table::ggx();
-        // With tiles, for scenes of many lights; without, ShadePass::new. (TileOptions::default() classifies no frame of two.)
+        // With tiles, for scenes of many lights; without, ShadePass::new. (TileOptions::default() classifies
+        // no frame of two.)
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };
         // SAFETY: the pass is dropped after the frames, and before the device.
         let shade = unsafe { ShadePass::with_tiles(&context, options, tiles, table.size()) }?;
@@ -94,7 +98,8 @@ impl<'a> Deferred<'a> {
         // doc end
 
         // doc: barriers
-        // Place your barriers by what the pass says of itself: here, in the render pass that draws the G-buffer
+        // Place your barriers by what the pass says of itself: here, in the render pass that
+        // draws the G-buffer
         let g_buffer = GBuffer::new(gpu, size, shade.stages_and_access())?;
         // doc end
         let (table, tile_lists) = ((image, memory), vec![]);
@@ -138,15 +143,16 @@ impl<'a> Deferred<'a> {
     /// Where the device refuses.
     pub fn resize(&mut self, size: [u32; 2]) -> Result<()> {
         // doc: resize
-        // Make what has a size anew when no frame uses it, and point the sets at it: the pass itself knows no size
+        // Make what has a size anew when no frame uses it, and point the sets at it: the pass
+        // itself knows no size
         self.frames.wait()?;
         self.g_buffer = GBuffer::new(self.gpu, size, self.g_buffer.users)?;
         self.write_sets()
         // doc end
     }
 
-    /// Draws and shades the scene as it is after `seconds`, and records `then` behind it, which is given the place among the frames in
-    /// flight, and the commands. Waits for nothing but the frame before the last.
+    /// Draws and shades the scene as it is after `seconds`, and records `then` behind it, which is given the
+    /// place among the frames in flight, and the commands. Waits for nothing but the frame before the last.
     ///
     /// # Errors
     /// Where the device refuses, and those of `then`.

@@ -256,8 +256,8 @@ impl<'a> Draw<'a> {
     /// Records the drawing of `count` vertices.
     ///
     /// # Safety
-    /// The commands are being recorded, outside a render pass; the buffer holds so many [`Vertex`]; the set is of the
-    /// layout that this was made with.
+    /// The commands are being recorded, outside a render pass; the buffer holds so many [`Vertex`]; the set
+    /// is of the layout that this was made with.
     pub unsafe fn record(
         &self,
         commands: vk::CommandBuffer,

@@ -25,7 +25,8 @@ pub struct Host<'a> {
     pub size: [u32; 2],
 }
 
-/// Records a frame of `lights`, whose arrays `upload` brings into the buffers of the resources. The pass lives until the frame is done.
+/// Records a frame of `lights`, whose arrays `upload` brings into the buffers of the resources. The pass
+/// lives until the frame is done.
 ///
 /// # Errors
 /// Whatever is wrong with a handle, a light or a resource, by name.

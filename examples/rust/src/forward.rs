@@ -1,4 +1,5 @@
-//! A forward engine: its fragment shader includes the GLSL library, and reads table and lights by bridges of its own.
+//! A forward engine: its fragment shader includes the GLSL library, and reads table and lights by bridges of
+//! its own.
 
 use crate::Result;
 use crate::draw::{Draw, DrawOptions, Users};

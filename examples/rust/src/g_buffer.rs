@@ -40,7 +40,8 @@ impl<'a> GBuffer<'a> {
     };
     // doc end
 
-    /// Makes the images and the drawing; between one and the next the images are used in these stages, with this access, and copied from.
+    /// Makes the images and the drawing; between one and the next the images are used in these stages, with
+    /// this access, and copied from.
     ///
     /// # Errors
     /// Where memory is out, or the device has no such images.

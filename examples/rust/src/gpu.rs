@@ -1,5 +1,5 @@
-//! What an engine has before Arealight comes: a device, memory, commands and frames in flight. Nothing optional is
-//! enabled: Vulkan 1.1 as every device has it.
+//! What an engine has before Arealight comes: a device, memory, commands and frames in flight. Nothing
+//! optional is enabled: Vulkan 1.1 as every device has it.
 
 use crate::Result;
 use ash::vk;
@@ -33,7 +33,8 @@ impl Instance {
         let names: Vec<_> = extensions.iter().map(|name| name.as_ptr()).collect();
         let info =
             vk::InstanceCreateInfo::default().application_info(&application).enabled_extension_names(&names);
-        // SAFETY: the loader's initialisers are safe to run; the info outlives the call, and the entry the instance.
+        // SAFETY: the loader's initialisers are safe to run; the info outlives the call, and the entry the
+        // instance.
         unsafe {
             let entry = ash::Entry::load()?;
             Ok(Self { raw: entry.create_instance(&info, None)?, entry })
@@ -78,8 +79,8 @@ impl<'a> Gpu<'a> {
         Self::with(instance, &[], |_, _| true)
     }
 
-    /// Makes the first device with a queue that draws, computes and `fits`, which is given the device and the queue's family; with
-    /// extensions, such as that which presents to a window.
+    /// Makes the first device with a queue that draws, computes and `fits`, which is given the device and the
+    /// queue's family; with extensions, such as that which presents to a window.
     ///
     /// # Errors
     /// Where there is none.
@@ -113,8 +114,8 @@ impl<'a> Gpu<'a> {
         }
     }
 
-    /// Memory of a type that `requirements` allow and that has `flags`. A real engine takes many resources out of one
-    /// allocation.
+    /// Memory of a type that `requirements` allow and that has `flags`. A real engine takes many resources
+    /// out of one allocation.
     fn allocate(
         &self,
         requirements: vk::MemoryRequirements,
@@ -314,7 +315,8 @@ impl Drop for Image<'_> {
     }
 }
 
-/// What the commands of a frame wait for, and what they say when they are done, beside their fence; nothing by default.
+/// What the commands of a frame wait for, and what they say when they are done, beside their fence; nothing
+/// by default.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Semaphores {
     /// What is waited for, and the stage that does.
@@ -356,8 +358,8 @@ impl<'a> Frames<'a> {
         }
     }
 
-    /// Waits until the oldest frame in flight is done, records another in its place, and submits it. `record` is
-    /// given the place, whose resources are free now, and the commands.
+    /// Waits until the oldest frame in flight is done, records another in its place, and submits it. `record`
+    /// is given the place, whose resources are free now, and the commands.
     ///
     /// # Errors
     /// Those of `record`, and of the device.
@@ -377,7 +379,8 @@ impl<'a> Frames<'a> {
         let place = self.next;
         let (commands, fence) = self.slots[place];
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the fence says that the commands' last use is over; it is reset only when they are complete.
+        // SAFETY: the fence says that the commands' last use is over; it is reset only when they are
+        // complete.
         unsafe {
             device.wait_for_fences(&[fence], true, u64::MAX)?;
             device.begin_command_buffer(commands, &begin)?;

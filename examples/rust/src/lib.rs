@@ -1,7 +1,8 @@
 //! Two small engines that embed Arealight, each with a device, memory and frames in flight of its own:
 //!
 //! - [`deferred`] draws a G-buffer, and records the recorder's pass (`arealight-vk`) behind it;
-//! - [`forward`] includes the GLSL library in its fragment shader, and needs the recorder for the table's image alone.
+//! - [`forward`] includes the GLSL library in its fragment shader, and needs the recorder for the table's
+//!   image alone.
 //!
 //! ```sh
 //! cargo run --release -p arealight-examples --bin deferred -- deferred.png
@@ -14,8 +15,8 @@
 //! cargo run --release -p arealight-examples --features window --bin deferred
 //! ```
 //!
-//! Both make the same picture. What is theirs alone is in [`deferred`] and [`forward`]; what every Vulkan engine has
-//! is in [`gpu`] and [`draw`].
+//! Both make the same picture. What is theirs alone is in [`deferred`] and [`forward`]; what every Vulkan
+//! engine has is in [`gpu`] and [`draw`].
 
 pub mod command_line;
 pub mod deferred;

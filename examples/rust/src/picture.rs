@@ -17,7 +17,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Red, green and blue as a screen takes them: brightness is compressed (Reinhard) and encoded as sRGB. `tone_map.comp` does so too.
+    /// Red, green and blue as a screen takes them: brightness is compressed (Reinhard) and encoded as sRGB.
+    /// `tone_map.comp` does so too.
     pub fn encoded(&self) -> Vec<u8> {
         let encode = |pixel: &Vec4| {
             let shown = pixel.truncate() / (Vec3::ONE + pixel.truncate());

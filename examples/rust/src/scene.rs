@@ -82,7 +82,8 @@ pub fn vertices(seconds: f64) -> Vec<Vertex> {
     block(&mut mesh, Vec3::new(1.2, 0.0, -0.6), Vec3::new(0.9, 0.5, 0.9), dull);
     for light in lights(seconds) {
         let black = Surface { base_color: Vec3::ZERO, metalness: 1.0, emission: light.radiance, ..white };
-        // A panel lies a centimetre behind its light: in the light's own plane, the last bit would say whether it is lit
+        // A panel lies a centimetre behind its light: in the light's own plane, the last bit would say
+        // whether it is lit
         let back = -0.01 * light.shape.area_vector().normalize_or_zero();
         let corners =
             light.shape.vertices().iter().map(|vertex| (*vertex + back).as_vec3()).collect::<Vec<_>>();

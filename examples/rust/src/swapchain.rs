@@ -73,8 +73,8 @@ pub struct Swapchain<'a> {
 }
 
 impl<'a> Swapchain<'a> {
-    /// Makes images as large as the window, or of `size` where the window leaves that open; none where it has no area, as one that is
-    /// minimised.
+    /// Makes images as large as the window, or of `size` where the window leaves that open; none where it has
+    /// no area, as one that is minimised.
     ///
     /// # Errors
     /// Where the device refuses.
@@ -137,7 +137,8 @@ impl<'a> Swapchain<'a> {
         Ok(Some(made))
     }
 
-    /// The image that is shown next, its number, and the semaphores of the frame at `place` that copies to it.
+    /// The image that is shown next, its number, and the semaphores of the frame at `place` that copies to
+    /// it.
     ///
     /// # Errors
     /// `ERROR_OUT_OF_DATE_KHR` where the window has changed, and where the device refuses.
@@ -178,7 +179,8 @@ impl<'a> Swapchain<'a> {
 impl Drop for Swapchain<'_> {
     fn drop(&mut self) {
         let device = &self.gpu.device;
-        // SAFETY: all are this device's, and after the wait nothing uses them; a lost device uses nothing either.
+        // SAFETY: all are this device's, and after the wait nothing uses them; a lost device uses nothing
+        // either.
         unsafe {
             let _ = device.device_wait_idle();
             for semaphore in self.free.iter().chain(&self.drawn) {

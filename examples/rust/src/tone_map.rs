@@ -1,4 +1,5 @@
-//! From radiance to what a screen takes, on the GPU: a compute pass between the engine's image and a window's.
+//! From radiance to what a screen takes, on the GPU: a compute pass between the engine's image and a
+//! window's.
 
 use crate::Result;
 use crate::gpu::{DescriptorPool, Gpu, Image};
@@ -90,8 +91,9 @@ impl<'a> ToneMap<'a> {
         Ok(())
     }
 
-    /// Records the pass behind compute work that wrote the radiance, and a copy of the picture to `target`: an image of the same size that
-    /// can be blitted to, whose contents are lost, and which is left in `layout`.
+    /// Records the pass behind compute work that wrote the radiance, and a copy of the picture to `target`:
+    /// an image of the same size that can be blitted to, whose contents are lost, and which is left in
+    /// `layout`.
     ///
     /// # Safety
     /// The commands are being recorded, and the image is free from the stage `TRANSFER` on.

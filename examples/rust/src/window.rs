@@ -27,8 +27,8 @@ pub enum Shown {
     Nowhere(String),
 }
 
-/// Opens a window of `size` pixels and shows the scene in it as time passes, until it is closed; or so many `frames`, each a thirtieth of a
-/// second after the other whatever the clock says.
+/// Opens a window of `size` pixels and shows the scene in it as time passes, until it is closed; or so many
+/// `frames`, each a thirtieth of a second after the other whatever the clock says.
 ///
 /// # Errors
 /// Where the device refuses.
@@ -119,7 +119,8 @@ impl<'a> View<'a> {
         // SAFETY: the device has the extension; the view before was dropped.
         let Some(swapchain) = (unsafe { Swapchain::new(gpu, surface, wanted) })? else { return Ok(None) };
         engine.resize(swapchain.size)?;
-        // SAFETY: the image stays until the engine is resized, when no view is left; the swapchain waits before this goes.
+        // SAFETY: the image stays until the engine is resized, when no view is left; the swapchain waits
+        // before this goes.
         let tone_map = unsafe { ToneMap::new(gpu, &engine.g_buffer.radiance, swapchain.size) }?;
         Ok(Some(Self { swapchain, tone_map, wanted }))
     }
@@ -131,7 +132,8 @@ impl<'a> View<'a> {
         // Behind the frame's own commands: acquire an image, and bring the radiance to it; then show it
         let mut shown = 0;
         engine.frame(seconds, |place, commands| {
-            // SAFETY: the place's last frame is over; the commands are being recorded, and wait for the image at TRANSFER.
+            // SAFETY: the place's last frame is over; the commands are being recorded, and wait for the image
+            // at TRANSFER.
             unsafe {
                 let (image, index, semaphores) = swapchain.acquire(place)?;
                 tone_map.record(commands, image, vk::ImageLayout::PRESENT_SRC_KHR);

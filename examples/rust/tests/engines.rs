@@ -17,10 +17,10 @@ fn difference(a: &Picture, b: &Picture) -> f32 {
     a.pixels.iter().zip(&b.pixels).map(|(a, b)| (*a - *b).truncate().abs().max_element()).fold(0.0, f32::max)
 }
 
-/// How far apart the engines' pictures may be. The deferred one has positions from depth and the inverse of a matrix,
-/// the forward one interpolates them: about 1e-6 of the distance each, which the narrowest lobe (alpha 1/16) and the
-/// brightest light (6 W/(m² sr)) turn into 6 * 16 * 1e-6 = 1e-4. Normals, colours and roughness are what the G-buffer's
-/// formats hold exactly.
+/// How far apart the engines' pictures may be. The deferred one has positions from depth and the inverse of a
+/// matrix, the forward one interpolates them: about 1e-6 of the distance each, which the narrowest lobe
+/// (alpha 1/16) and the brightest light (6 W/(m² sr)) turn into 6 * 16 * 1e-6 = 1e-4. Normals, colours and
+/// roughness are what the G-buffer's formats hold exactly.
 const TOLERANCE: f32 = 1e-4;
 
 #[test]

@@ -1,4 +1,5 @@
-//! The program in a window, on a screen of its own: what is seen is what the engine draws, and the validation layer is silent.
+//! The program in a window, on a screen of its own: what is seen is what the engine draws, and the validation
+//! layer is silent.
 
 mod screen;
 
@@ -44,7 +45,8 @@ fn a_window_shows_what_the_engine_draws() {
     assert_eq!(String::from_utf8_lossy(&output.stdout), format!("{FRAMES} frames were shown\n"));
     assert!(output.status.success());
 
-    // What was seen: some pictures are caught while the next is copied over them, so one of all must be a frame's
+    // What was seen: some pictures are caught while the next is copied over them, so one of all must be a
+    // frame's
     let gpu = Gpu::new(&instance).unwrap();
     let mut engine = Deferred::new(&gpu, SIZE).unwrap();
     let frames = (0..FRAMES).map(|frame| {

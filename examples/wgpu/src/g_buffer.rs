@@ -23,7 +23,8 @@ pub struct GBuffer {
     pipeline: wgpu::RenderPipeline,
 }
 
-/// From positions relative to the camera to wgpu's clip space, in which y is up: the scene's camera is for Vulkan's.
+/// From positions relative to the camera to wgpu's clip space, in which y is up: the scene's camera is for
+/// Vulkan's.
 pub fn clip_from_view(camera: &Camera) -> Mat4 {
     Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * camera.clip_from_view
 }

@@ -1,7 +1,8 @@
-//! A host that draws by wgpu and shades by Arealight's recorder, in a command buffer of wgpu's, on the same queue.
+//! A host that draws by wgpu and shades by Arealight's recorder, in a command buffer of wgpu's, on the same
+//! queue.
 //!
-//! [`g_buffer`] is wgpu alone. [`shading`] is what meets Vulkan: handles of wgpu-hal go to `arealight-vk` as they are, and wgpu
-//! is told what it cannot see. docs/embed-wgpu.md explains it.
+//! [`g_buffer`] is wgpu alone. [`shading`] is what meets Vulkan: handles of wgpu-hal go to `arealight-vk` as
+//! they are, and wgpu is told what it cannot see. docs/embed-wgpu.md explains it.
 
 pub mod g_buffer;
 pub mod shading;

@@ -96,7 +96,8 @@ impl Shading {
     }
 
     // doc: hand_over
-    /// Records wgpu's own barriers: what our commands read, and write, is in the state and layout that they want, and wgpu knows so.
+    /// Records wgpu's own barriers: what our commands read, and write, is in the state and layout that they
+    /// want, and wgpu knows so.
     pub fn hand_over(&self, gpu: &Gpu, g_buffer: &GBuffer) -> wgpu::CommandBuffer {
         let [normal, base_color, radiance] = &g_buffer.colors;
         let texture = |texture, state| wgpu::TextureTransition { texture, selector: None, state };

@@ -1,4 +1,5 @@
-//! The picture that wgpu and the recorder make together, held against that of the engine in examples/rust, which makes every Vulkan call itself.
+//! The picture that wgpu and the recorder make together, held against that of the engine in examples/rust,
+//! which makes every Vulkan call itself.
 
 use arealight_examples::deferred::Deferred;
 use arealight_examples::gpu::{Instance, Semaphores};
@@ -7,7 +8,8 @@ use arealight_wgpu_example::{Gpu, draw};
 
 const SIZE: [u32; 2] = [160, 100];
 
-/// Pictures may be so far apart: that of positions that are made of depth, as between the engines of examples/rust.
+/// Pictures may be so far apart: that of positions that are made of depth, as between the engines of
+/// examples/rust.
 const TOLERANCE: f32 = 1e-4;
 
 fn of_rust_example(seconds: f64) -> Picture {

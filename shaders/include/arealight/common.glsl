@@ -24,12 +24,13 @@ const float AREALIGHT_MIN_ALPHA = 1e-4;
 // Squared lengths below this count as zero: 2^-100, far above float32's smallest normal number.
 const float AREALIGHT_TINY = 7.8886090522101181e-31;
 
-// The sine of the elevation below which an end of a curved outline, or a vertex in the difference form, counts as on the horizon:
-// 1.7 x 2^-24, about what the rounding of a vertex can make of zero. In a lobe's cosine space it is as much narrower as heights
-// are lower there: arealight_horizon_width.
+// The sine of the elevation below which an end of a curved outline, or a vertex in the difference form,
+// counts as on the horizon: 1.7 x 2^-24, about what the rounding of a vertex can make of zero. In a lobe's
+// cosine space it is as much narrower as heights are lower there: arealight_horizon_width.
 const float AREALIGHT_HORIZON_WIDTH = 1e-7;
 
-// The sine of the elevation over a light's plane below which a shading point counts as in it: what rounding can make of zero.
+// The sine of the elevation over a light's plane below which a shading point counts as in it: what rounding
+// can make of zero.
 const float AREALIGHT_PLANE_WIDTH = 3e-7;
 
 // The largest absolute component of v.
@@ -39,8 +40,9 @@ float arealight_max_component(vec3 v) {
 }
 
 // v divided by its length, for vectors of any length from 1e-37 to 3e38; `fallback` for the zero vector and
-// where a component is NaN or infinite. The result's length is 1 to 2e-7. Where the driver takes denormal numbers for zero, as Vulkan
-// allows, components below 1.2e-38 are lost: the direction is exact to 1.2e-7 for lengths from 1e-31.
+// where a component is NaN or infinite. The result's length is 1 to 2e-7. Where the driver takes denormal
+// numbers for zero, as Vulkan allows, components below 1.2e-38 are lost: the direction is exact to 1.2e-7 for
+// lengths from 1e-31.
 vec3 arealight_normalize_or(vec3 v, vec3 fallback) {
     float largest = arealight_max_component(v);
     if (!(largest >= 1e-37 && largest <= 3e38)) {
@@ -76,12 +78,14 @@ float arealight_luminance(vec3 color) {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided light, else 0. A point
-// in the light's plane is on neither side, so that a light in the plane of a surface does not light it by the last bit. `offset`
-// goes from the point to the light's center; `normal` is that of the front, unit. 0 where a component of `offset` is not finite.
+// The side of a light that a shading point is on, if it lights it: 1 before the front, -1 behind a two-sided
+// light, else 0. A point in the light's plane is on neither side, so that a light in the plane of a surface
+// does not light it by the last bit. `offset` goes from the point to the light's center; `normal` is that of
+// the front, unit. 0 where a component of `offset` is not finite.
 //
-// What rounding makes of a height is in proportion to the coordinates that it is made of. Along those to which the normal is perpendicular
-// nothing is added, and nothing rounded: a level ceiling has a side at any height, however large it is.
+// What rounding makes of a height is in proportion to the coordinates that it is made of. Along those to
+// which the normal is perpendicular nothing is added, and nothing rounded: a level ceiling has a side at any
+// height, however large it is.
 float arealight_lit_side(vec3 offset, vec3 normal, bool two_sided) {
     float height = -dot(offset, normal);
     float width = AREALIGHT_PLANE_WIDTH * dot(abs(offset), clamp(1e9 * abs(normal), 0.0, 1.0));
@@ -93,14 +97,15 @@ float arealight_settled_height(float height, float width) {
     return abs(height) > width ? height : 0.0;
 }
 
-// Whether x is neither infinite nor NaN, by its bits, of which no compiler may assume anything. Of a light's record, which
-// all of a wave read, GPUs with scalar units compute this once for the wave.
+// Whether x is neither infinite nor NaN, by its bits, of which no compiler may assume anything. Of a light's
+// record, which all of a wave read, GPUs with scalar units compute this once for the wave.
 bool arealight_is_finite(float x) {
     return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
 }
 
-// A form factor in [0, 1] for any bits: 0 where it is negative or NaN, or where something of the light is not `finite`. The bit
-// patterns of [0, 1] are those up to 0x3f800000; everything negative or NaN lies beyond infinity's 0x7f800000.
+// A form factor in [0, 1] for any bits: 0 where it is negative or NaN, or where something of the light is not
+// `finite`. The bit patterns of [0, 1] are those up to 0x3f800000; everything negative or NaN lies beyond
+// infinity's 0x7f800000.
 float arealight_guarded_form_factor(float form_factor, bool finite) {
     uint bits = floatBitsToUint(form_factor);
     return finite && bits < 0x7f800000u ? uintBitsToFloat(min(bits, 0x3f800000u)) : 0.0;

@@ -4,12 +4,12 @@
 #include "arealight/common.glsl"
 
 // GGX with height-correlated Smith masking-shadowing, in the surface frame (z is the normal): the truth that
-// the fitted lobes stand for. Twin of arealight_oracle::ggx. Sources: Walter et al. 2007 (D), Heitz 2014 (G2),
-// Heitz 2018 (visible normals). Directions are unit vectors.
+// the fitted lobes stand for. Twin of arealight_oracle::ggx. Sources: Walter et al. 2007 (D), Heitz 2014
+// (G2), Heitz 2018 (visible normals). Directions are unit vectors.
 
 //
-// Where the distribution has two alphas, along x and along y of a frame whose z is the normal, `alpha` is both: the isotropic one is that
-// with both alike, in any frame.
+// Where the distribution has two alphas, along x and along y of a frame whose z is the normal, `alpha` is
+// both: the isotropic one is that with both alike, in any frame.
 
 // The distribution of normals, 1/sr. Relative error 1e-5 down to alpha 1e-3, 1e-3 at 1e-4 (from the rounding
 // of `half_vector`).
@@ -40,7 +40,8 @@ vec3 arealight_ggx_evaluate(vec3 view, vec3 light, vec2 alpha, vec3 f0, float f9
     }
     vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
     vec3 fresnel = f0 + (vec3(f90) - f0) * arealight_schlick_weight(view, half_vector);
-    return fresnel * (arealight_ggx_distribution(half_vector, alpha) * arealight_ggx_visibility(view, light, alpha) * light.z);
+    return fresnel * (arealight_ggx_distribution(half_vector, alpha)
+                      * arealight_ggx_visibility(view, light, alpha) * light.z);
 }
 
 // A light direction drawn from the visible normals; `u` in [0, 1)^2. It may lie below the surface.
@@ -57,7 +58,8 @@ vec3 arealight_ggx_sample(vec3 view, vec2 alpha, vec2 u) {
     float p2 = mix(sqrt(max(0.0, 1.0 - p1 * p1)), r * sin(phi), s);
     vec3 normal = t1 * p1 + t2 * p2 + stretched * sqrt(max(0.0, 1.0 - p1 * p1 - p2 * p2));
     // Take the stretch back, and mirror the view
-    vec3 half_vector = arealight_normalize_or(vec3(alpha * normal.xy, max(0.0, normal.z)), vec3(0.0, 0.0, 1.0));
+    vec3 half_vector = arealight_normalize_or(vec3(alpha * normal.xy, max(0.0, normal.z)),
+                                              vec3(0.0, 0.0, 1.0));
     return half_vector * (2.0 * dot(view, half_vector)) - view;
 }
 

@@ -6,21 +6,19 @@
 // The sum of a light over lobes. A kind of light is a record with `radiance`, a type for it in the shading
 // frame of a point, and functions:
 //
-//     // The light in the shading frame; false where it does not shine onto the point's side
-//     bool arealight_to_local(ArealightPoint point, Light light, out Local local);
-//     // Its vector form factor in a linear space, clipped at that space's horizon: it points to where the light comes from,
-//     // and its z is the form factor
-//     vec3 arealight_vector_form_factor(mat3 space, Local local);
-//     // The vector form factor of facets, over half vectors, and whether there is one: of polygons alone (with AREALIGHT_HALF_VECTORS)
-//     vec3 arealight_facet_form_factor(ArealightFacets facets, Local local);
-//     bool arealight_has_facet_form_factor(Local local);
-//     // which AREALIGHT_WITHOUT_HALF_VECTORS(Local) makes for a kind that has none
-//     // The colour of its image averaged over a lobe, 1 without: what the radiance is multiplied with
-//     vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
+//     // The light in the shading frame; false where it does not shine onto the point's side bool
+//     arealight_to_local(ArealightPoint point, Light light, out Local local); // Its vector form factor in a
+//     linear space, clipped at that space's horizon: it points to where the light comes from, // and its z is
+//     the form factor vec3 arealight_vector_form_factor(mat3 space, Local local); // The vector form factor
+//     of facets, over half vectors, and whether there is one: of polygons alone (with AREALIGHT_HALF_VECTORS)
+//     vec3 arealight_facet_form_factor(ArealightFacets facets, Local local); bool
+//     arealight_has_facet_form_factor(Local local); // which AREALIGHT_WITHOUT_HALF_VECTORS(Local) makes for
+//     a kind that has none // The colour of its image averaged over a lobe, 1 without: what the radiance is
+//     multiplied with vec3 arealight_image_average(mat3 space, Local local, vec3 vector);
 //
-// AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected and arealight_radiance.
-// EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop AREALIGHT_LOOPED_LOBES, where one after the other
-// costs compilers less than both at once.
+// AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE), the last line of its file, makes of them arealight_reflected
+// and arealight_radiance. EACH_LOBE is AREALIGHT_UNROLLED_LOBES, or for kinds whose form factor is a loop
+// AREALIGHT_LOOPED_LOBES, where one after the other costs compilers less than both at once.
 
 // What a surface reflects of a light of unit radiance towards the viewer, per channel.
 struct ArealightReflected {
@@ -28,7 +26,8 @@ struct ArealightReflected {
     vec3 specular;
 };
 
-// Of a kind of light without half vectors: one whose edges are no straight ones. Its lobes are the fitted ones.
+// Of a kind of light without half vectors: one whose edges are no straight ones. Its lobes are the fitted
+// ones.
 #define AREALIGHT_WITHOUT_HALF_VECTORS(Local)                                                       \
     bool arealight_has_facet_form_factor(Local local) {                                             \
         return false;                                                                               \
@@ -37,15 +36,15 @@ struct ArealightReflected {
         return vec3(0.0);                                                                           \
     }
 
-// What AREALIGHT_LIGHT_KIND makes of them:
-// arealight_lobe_weight: of one lobe, its form factor times the image's mean. What is left of a lobe above the surface keeps its albedo
-// (gain); rounding of a small part may not exceed it, which arealight_form_factor sees to. By half vectors what it reflects.
-// arealight_lobe_albedo: what that is multiplied with; by half vectors it is 1.
-// arealight_reflected: of a light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off.
-// arealight_radiance: outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
+// What AREALIGHT_LIGHT_KIND makes of them: arealight_lobe_weight: of one lobe, its form factor times the
+// image's mean. What is left of a lobe above the surface keeps its albedo (gain); rounding of a small part
+// may not exceed it, which arealight_form_factor sees to. By half vectors what it reflects.
+// arealight_lobe_albedo: what that is multiplied with; by half vectors it is 1. arealight_reflected: of a
+// light of unit radiance, without visibility, lobe by lobe; 0 for lobes that are off. arealight_radiance:
+// outgoing radiance towards the viewer of all lobes, W/(m^2 sr).
 //
-// The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the table's lobe, and
-// as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
+// The diffuse lobe is exact to the form factor's error; the specular lobe is the fitted one: exact for the
+// table's lobe, and as close to GGX as the table's fit (docs/fit.md). Source: Heitz et al. 2016, eq. 11.
 #define AREALIGHT_LIGHT_KIND(Light, Local, EACH_LOBE)                                               \
     vec3 arealight_lobe_weight(ArealightPoint point, int lobe, Local local) {                       \
         if (!arealight_has_lobe(lobe)) {                                                            \

@@ -20,14 +20,16 @@ const int AREALIGHT_LOBE_SHEEN = 4;
 const int AREALIGHT_LOBES = 5;
 
 // The lobes before this one may be there: what a loop over them goes through.
-const int AREALIGHT_LOBE_END = AREALIGHT_HAS_SHEEN ? AREALIGHT_LOBES : AREALIGHT_HAS_COAT ? AREALIGHT_LOBE_SHEEN : AREALIGHT_LOBE_COAT;
+const int AREALIGHT_LOBE_END = AREALIGHT_HAS_SHEEN ? AREALIGHT_LOBES : AREALIGHT_HAS_COAT
+    ? AREALIGHT_LOBE_SHEEN : AREALIGHT_LOBE_COAT;
 
 // A surface made ready for any number of lights: all that does not depend on the light.
 struct ArealightPoint {
     vec3 position;
     mat3 to_frame; // offsets from the point into the shading frame: x to the viewer's side, z the normal
     ArealightLobe lobes[AREALIGHT_LOBES];
-    ArealightHalfVectors half_vectors;      // of the specular lobe and of the coat's, with AREALIGHT_HALF_VECTORS
+    // Of the specular lobe and of the coat's, with AREALIGHT_HALF_VECTORS
+    ArealightHalfVectors half_vectors;
     ArealightHalfVectors coat_half_vectors;
 };
 
@@ -40,7 +42,8 @@ bool arealight_has_lobe(int lobe) {
          : AREALIGHT_HAS_SPECULAR && (lobe == AREALIGHT_LOBE_SPECULAR || AREALIGHT_HAS_TWO_SPECULAR_LOBES);
 }
 
-// The lobe of an index that a loop counts: by choices, since compilers keep all that an index reaches in memory, all of the point with it.
+// The lobe of an index that a loop counts: by choices, since compilers keep all that an index reaches in
+// memory, all of the point with it.
 ArealightLobe arealight_lobe_at(ArealightPoint point, int index) {
     ArealightLobe lobe = point.lobes[AREALIGHT_LOBE_DIFFUSE];
     if (index == AREALIGHT_LOBE_SPECULAR) {
@@ -55,27 +58,33 @@ ArealightLobe arealight_lobe_at(ArealightPoint point, int index) {
     return lobe;
 }
 
-// Whether the specular lobe of a surface is two, whose sheen has this colour: one that has any leaves the second place to that.
+// Whether the specular lobe of a surface is two, whose sheen has this colour: one that has any leaves the
+// second place to that.
 bool arealight_has_two_specular_lobes(vec3 sheen) {
     return AREALIGHT_HAS_SHEEN && sheen != vec3(0.0) ? false : AREALIGHT_HAS_TWO_SPECULAR_LOBES;
 }
 
-// Puts two specular lobes of these spaces into `point`, exact in the reflectance and its colour: TableSample::lobes.
-void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surface, ArealightTableSample table, mat3 first, mat3 second) {
+// Puts two specular lobes of these spaces into `point`, exact in the reflectance and its colour:
+// TableSample::lobes.
+void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surface, ArealightTableSample table,
+                             mat3 first, mat3 second) {
     vec3 albedo = arealight_specular_albedo(table, surface.f0, surface.f90);
     vec3 second_albedo = arealight_second_albedo(table, surface.f0, surface.f90, albedo);
     point.lobes[AREALIGHT_LOBE_SPECULAR] = arealight_lobe(first, albedo - second_albedo);
     point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(second, second_albedo);
 }
 
-// Puts the specular lobes of a surface into `point`; what there may not be is a branch of its own, which is removed before a driver gets it. Their albedos, without Fresnel term and of Schlick's weight.
-ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame, ArealightSurface surface) {
+// Puts the specular lobes of a surface into `point`; what there may not be is a branch of its own, which is
+// removed before a driver gets it. Their albedos, without Fresnel term and of Schlick's weight.
+ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame,
+                                                  ArealightSurface surface) {
     bool has_two = arealight_has_two_specular_lobes(surface.sheen.color);
     if (AREALIGHT_HAS_ANISOTROPY && surface.anisotropy.roughness != surface.roughness) {
         ArealightStretchedSample stretched = arealight_stretched_sample(frame, surface, has_two);
         if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
             if (has_two) {
-                arealight_put_two_lobes(point, surface, stretched.table, stretched.space, stretched.schlick_space);
+                arealight_put_two_lobes(point, surface, stretched.table, stretched.space,
+                                        stretched.schlick_space);
                 return stretched.table;
             }
         }
@@ -85,7 +94,8 @@ ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, Ar
     ArealightTableSample table = arealight_specular_sample(frame, surface.roughness, has_two);
     if (AREALIGHT_HAS_TWO_SPECULAR_LOBES) {
         if (has_two) {
-            arealight_put_two_lobes(point, surface, table, arealight_table_space(frame, table.matrix, table.alpha),
+            arealight_put_two_lobes(point, surface, table,
+                                    arealight_table_space(frame, table.matrix, table.alpha),
                                     arealight_table_space(frame, table.schlick_matrix, table.alpha));
             return table;
         }
@@ -121,7 +131,8 @@ ArealightPoint arealight_point(ArealightSurface surface) {
             point.half_vectors = arealight_specular_half_vectors(frame, with_film, surface, table);
         }
         if (AREALIGHT_COUPLES_DIFFUSE && AREALIGHT_COUPLES_BY_ALBEDO) {
-            vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0), surface.interface_f90);
+            vec3 reflected = arealight_specular_albedo(table, vec3(surface.interface_f0),
+                                                       surface.interface_f90);
             point.lobes[AREALIGHT_LOBE_DIFFUSE].albedo *= 1.0 - reflected.x;
         }
         if (AREALIGHT_RESCATTERS) {
@@ -156,13 +167,15 @@ ArealightPoint arealight_point(ArealightSurface surface) {
     return point;
 }
 
-// Sheen's second lobe takes light away, of a small light more than there is by 3e-3 of its radiance: no light is reflected as less than none.
+// Sheen's second lobe takes light away, of a small light more than there is by 3e-3 of its radiance: no light
+// is reflected as less than none.
 #define AREALIGHT_FROM_ZERO(sum)                                                      \
     if (AREALIGHT_HAS_TWO_SHEEN_LOBES) {                                              \
         sum.specular = max(sum.specular, vec3(0.0));                                  \
     }
 
-// Adds what each lobe reflects, its albedo times arealight_lobe_weight: one after the other, or in a loop. For light_kind.glsl.
+// Adds what each lobe reflects, its albedo times arealight_lobe_weight: one after the other, or in a loop.
+// For light_kind.glsl.
 #define AREALIGHT_UNROLLED_LOBES(sum, point, local)                                  \
     vec3 diffuse = arealight_lobe_weight(point, AREALIGHT_LOBE_DIFFUSE, local);       \
     vec3 specular = arealight_lobe_weight(point, AREALIGHT_LOBE_SPECULAR, local);     \

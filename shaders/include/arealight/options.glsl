@@ -1,8 +1,9 @@
 #ifndef AREALIGHT_OPTIONS_GLSL
 #define AREALIGHT_OPTIONS_GLSL
 
-// What a shader uses of the library: options of the translation unit. Define them before the include, as 0 or 1, or as an
-// expression of literals and specialisation constants; these here are the defaults. What is off is not in the pipeline.
+// What a shader uses of the library: options of the translation unit. Define them before the include, as 0 or
+// 1, or as an expression of literals and specialisation constants; these here are the defaults. What is off
+// is not in the pipeline.
 
 // Lobes.
 #ifndef AREALIGHT_DIFFUSE
@@ -11,16 +12,17 @@
 #ifndef AREALIGHT_SPECULAR
 #define AREALIGHT_SPECULAR 1
 #endif
-// The diffuse lobe gets what the specular one's Fresnel term leaves, as in glTF: ArealightSurface.interface_f0, interface_f90. Else the
-// two are added, as many engines do. And by albedo: it gets what the specular lobe does not reflect of the view, as in OpenPBR.
+// The diffuse lobe gets what the specular one's Fresnel term leaves, as in glTF:
+// ArealightSurface.interface_f0, interface_f90. Else the two are added, as many engines do. And by albedo: it
+// gets what the specular lobe does not reflect of the view, as in OpenPBR.
 #ifndef AREALIGHT_COUPLED
 #define AREALIGHT_COUPLED 0
 #endif
 #ifndef AREALIGHT_COUPLED_BY_ALBEDO
 #define AREALIGHT_COUPLED_BY_ALBEDO 0
 #endif
-// What the specular lobe's facets reflect more than once is added, as in OpenPBR; else it is lost, as in glTF. Metals have a diffuse lobe
-// then.
+// What the specular lobe's facets reflect more than once is added, as in OpenPBR; else it is lost, as in
+// glTF. Metals have a diffuse lobe then.
 #ifndef AREALIGHT_MULTIPLE_SCATTERING
 #define AREALIGHT_MULTIPLE_SCATTERING 0
 #endif
@@ -28,8 +30,9 @@
 #ifndef AREALIGHT_DIFFUSE_ROUGHNESS
 #define AREALIGHT_DIFFUSE_ROUGHNESS 0
 #endif
-// A clear coat above both, ArealightSurface.coat; with a normal of its own; and with what is below getting what the coat does not reflect
-// of the view, as in OpenPBR, instead of what a Fresnel term of the view leaves, as in glTF.
+// A clear coat above both, ArealightSurface.coat; with a normal of its own; and with what is below getting
+// what the coat does not reflect of the view, as in OpenPBR, instead of what a Fresnel term of the view
+// leaves, as in glTF.
 #ifndef AREALIGHT_COAT
 #define AREALIGHT_COAT 0
 #endif
@@ -44,8 +47,9 @@
 #define AREALIGHT_SHEEN 0
 #endif
 
-// A thin film on the surface, below sheen and a coat, ArealightSurface.film. Without it a host may put films into the surface's reflectances itself
-// (thin_film.glsl): they look the same by fitted lobes, and by half vectors lack what a light shows of a film at its own angle.
+// A thin film on the surface, below sheen and a coat, ArealightSurface.film. Without it a host may put films
+// into the surface's reflectances itself (thin_film.glsl): they look the same by fitted lobes, and by half
+// vectors lack what a light shows of a film at its own angle.
 #ifndef AREALIGHT_THIN_FILM
 #define AREALIGHT_THIN_FILM 0
 #endif
@@ -60,17 +64,20 @@
 #define AREALIGHT_TWO_SIDED 0
 #endif
 
-// Clip lights at the surface's own horizon too, before any lobe: nothing leaks in from below (arealight::Horizon::Both).
+// Clip lights at the surface's own horizon too, before any lobe: nothing leaks in from below
+// (arealight::Horizon::Both).
 #ifndef AREALIGHT_SURFACE_HORIZON
 #define AREALIGHT_SURFACE_HORIZON 0
 #endif
 
-// Two transformed cosines for the specular lobe (arealight::SpecularLobes::Two), at .6 to .8 times the error of one.
+// Two transformed cosines for the specular lobe (arealight::SpecularLobes::Two), at .6 to .8 times the error
+// of one.
 #ifndef AREALIGHT_TWO_SPECULAR_LOBES
 #define AREALIGHT_TWO_SPECULAR_LOBES 0
 #endif
 
-// The specular lobe, and a coat's, by half vectors of polygons without an image (arealight::SpecularLobes::HalfVectors): lobes/half_vectors.glsl.
+// The specular lobe, and a coat's, by half vectors of polygons without an image
+// (arealight::SpecularLobes::HalfVectors): lobes/half_vectors.glsl.
 #ifndef AREALIGHT_HALF_VECTORS
 #define AREALIGHT_HALF_VECTORS 0
 #endif
@@ -143,16 +150,20 @@ const bool AREALIGHT_HAS_TEXTURED_DISKS = bool(AREALIGHT_TEXTURED_DISKS);
 const bool AREALIGHT_CLIPS_AT_SURFACE = bool(AREALIGHT_SURFACE_HORIZON);
 const bool AREALIGHT_USES_FORMULA = bool(AREALIGHT_FORMULA);
 // Not by formulas, which make one. A choice, no logical operators: compilers would make branches of those.
-const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false : bool(AREALIGHT_TWO_SPECULAR_LOBES);
+const bool AREALIGHT_HAS_TWO_SPECULAR_LOBES = AREALIGHT_USES_FORMULA ? false
+    : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_HAS_HALF_VECTORS = bool(AREALIGHT_HALF_VECTORS);
 // Sheen is two lobes wherever the level asks for more than one specular lobe.
-const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true : bool(AREALIGHT_TWO_SPECULAR_LOBES);
+const bool AREALIGHT_WANTS_TWO_SHEEN_LOBES = AREALIGHT_HAS_HALF_VECTORS ? true
+    : bool(AREALIGHT_TWO_SPECULAR_LOBES);
 const bool AREALIGHT_HAS_TWO_SHEEN_LOBES = AREALIGHT_HAS_SHEEN ? AREALIGHT_WANTS_TWO_SHEEN_LOBES : false;
 const bool AREALIGHT_USES_DIFFERENCE = bool(AREALIGHT_DIFFERENCE);
 
 const int AREALIGHT_FOOTPRINT_ROUND = 0;   // one fetch
-const int AREALIGHT_FOOTPRINT_ELLIPSE = 1; // four fetches along the footprint's longer axis; of disks split is this, too
-const int AREALIGHT_FOOTPRINT_SPLIT = 2;   // four by four parts of the light, each with a form factor of its own and two fetches
+// Four fetches along the footprint's longer axis; of disks split is this, too
+const int AREALIGHT_FOOTPRINT_ELLIPSE = 1;
+// Four by four parts of the light, each with a form factor of its own and two fetches
+const int AREALIGHT_FOOTPRINT_SPLIT = 2;
 const bool AREALIGHT_SPLITS_IMAGES = AREALIGHT_FOOTPRINT == AREALIGHT_FOOTPRINT_SPLIT;
 
 #endif

@@ -3,11 +3,13 @@
 
 #include "arealight/common.glsl"
 
-// How far a light is of any matter: what forward and clustered hosts sort lights by, on the GPU. The same bounds as arealight::reach in Rust, a
-// millionth wider for float32: no point outside of them reflects more than a threshold. Included by itself; it needs nothing of options.glsl.
+// How far a light is of any matter: what forward and clustered hosts sort lights by, on the GPU. The same
+// bounds as arealight::reach in Rust, a millionth wider for float32: no point outside of them reflects more
+// than a threshold. Included by itself; it needs nothing of options.glsl.
 //
-//     float density = AREALIGHT_INVERSE_PI + lobe_density;  // of Lambert's lobe, and LightTable::lobe_density of the least roughness
-//     float reach = arealight_reach(radiance, arealight_disk_extent(axis_u, axis_v), threshold, density);
+//     float density = AREALIGHT_INVERSE_PI + lobe_density; // of Lambert's lobe, and LightTable::lobe_density
+//     of the least roughness float reach = arealight_reach(radiance, arealight_disk_extent(axis_u, axis_v),
+//     threshold, density);
 
 // The reach of what nothing bounds: a light with an image, or a threshold of zero.
 const float AREALIGHT_UNBOUNDED = 3e38;
@@ -26,7 +28,8 @@ ArealightExtent arealight_polygon_extent(float size, float area) {
 // A disk or ellipse, by its half axes.
 ArealightExtent arealight_disk_extent(vec3 axis_u, vec3 axis_v) {
     vec3 area = cross(axis_u, axis_v);
-    return ArealightExtent(sqrt(dot(axis_u, axis_u) + dot(axis_v, axis_v)), AREALIGHT_PI * sqrt(dot(area, area)));
+    return ArealightExtent(sqrt(dot(axis_u, axis_u) + dot(axis_v, axis_v)), AREALIGHT_PI
+                           * sqrt(dot(area, area)));
 }
 
 ArealightExtent arealight_sphere_extent(float radius) {
@@ -39,8 +42,9 @@ ArealightExtent arealight_tube_extent(vec3 half_axis, float radius) {
     return ArealightExtent(size, 2.0 * AREALIGHT_PI * radius * size);
 }
 
-// How far from its middle a light of this radiance, in W/(m^2 sr), may reflect more than `threshold`, in W/(m^2 sr), in any channel, from surfaces
-// whose lobes, times their albedos, are nowhere denser than `density` a steradian.
+// How far from its middle a light of this radiance, in W/(m^2 sr), may reflect more than `threshold`, in
+// W/(m^2 sr), in any channel, from surfaces whose lobes, times their albedos, are nowhere denser than
+// `density` a steradian.
 float arealight_reach(vec3 radiance, ArealightExtent extent, float threshold, float density) {
     float brightest = max(radiance.r, max(radiance.g, radiance.b));
     if (brightest <= 0.0) {
@@ -50,8 +54,8 @@ float arealight_reach(vec3 radiance, ArealightExtent extent, float threshold, fl
     return reach < AREALIGHT_UNBOUNDED ? reach : AREALIGHT_UNBOUNDED;
 }
 
-// The box about a light of this reach, `size` and middle: of a flat light that shines to one side, towards the unit `front`, of the half before it. Else
-// `front` is zero.
+// The box about a light of this reach, `size` and middle: of a flat light that shines to one side, towards
+// the unit `front`, of the half before it. Else `front` is zero.
 void arealight_reach_box(vec3 center, float reach, float size, vec3 front, out vec3 low, out vec3 high) {
     // In the plane of the light, which is flat to 1e-4 of its size
     vec3 beside = reach * sqrt(max(1.0 - front * front, vec3(0.0))) + 1e-4 * size + 1e-6 * reach;

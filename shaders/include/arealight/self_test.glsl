@@ -1,15 +1,17 @@
 #ifndef AREALIGHT_SELF_TEST_GLSL
 #define AREALIGHT_SELF_TEST_GLSL
 
-// Ten shading points with the answers of float64, for a host's own shader to run with its own bridges: whether the table is loaded as it
-// should be. A table of which layers are missing, whose axes are swapped, or which is read as sRGB makes a picture that is only darker.
-// examples/self_test.comp runs it. It is for the default options: of the specular lobe alone, from the table, as one lobe.
+// Ten shading points with the answers of float64, for a host's own shader to run with its own bridges:
+// whether the table is loaded as it should be. A table of which layers are missing, whose axes are swapped,
+// or which is read as sRGB makes a picture that is only darker. examples/self_test.comp runs it. It is for
+// the default options: of the specular lobe alone, from the table, as one lobe.
 
 #include "arealight/lights/quad.glsl"
 #include "arealight/material.glsl"
 
 const int AREALIGHT_SELF_TEST_POINTS = 10;
-// What an answer may be off by, relative to the largest channel: half floats are off by 4e-4, a table of 32 nodes a side by 4e-3.
+// What an answer may be off by, relative to the largest channel: half floats are off by 4e-4, a table of 32
+// nodes a side by 4e-3.
 const float AREALIGHT_SELF_TEST_TOLERANCE = 1e-2;
 
 // Direction to the viewer; perceptual roughness.
@@ -20,23 +22,32 @@ const vec4 AREALIGHT_SELF_TEST_VIEWS[10] = vec4[10](
     vec4(0.995, 0.0, 0.0999, 0.5));
 // Reflectance at normal incidence.
 const vec3 AREALIGHT_SELF_TEST_F0[10] = vec3[10](
-    vec3(0.9, 0.6, 0.3), vec3(0.9, 0.6, 0.3), vec3(0.04, 0.04, 0.04), vec3(0.04, 0.04, 0.04), vec3(0.8, 0.8, 0.9),
-    vec3(0.95, 0.9, 0.8), vec3(0.5, 0.5, 0.5), vec3(0.04, 0.04, 0.04), vec3(0.7, 0.3, 0.1), vec3(0.2, 0.2, 0.2));
+    vec3(0.9, 0.6, 0.3), vec3(0.9, 0.6, 0.3), vec3(0.04, 0.04, 0.04), vec3(0.04, 0.04, 0.04),
+        vec3(0.8, 0.8, 0.9),
+    vec3(0.95, 0.9, 0.8), vec3(0.5, 0.5, 0.5), vec3(0.04, 0.04, 0.04), vec3(0.7, 0.3, 0.1),
+        vec3(0.2, 0.2, 0.2));
 // Rectangles of unit radiance: centers, and half of each side.
 const vec3 AREALIGHT_SELF_TEST_CENTERS[10] = vec3[10](
-    vec3(0.0, 0.0, 2.0), vec3(-1.5, 0.0, 1.8), vec3(-1.5, 0.5, 1.0), vec3(-2.0, 0.1, 0.6), vec3(-1.0, 0.3, 0.8),
-    vec3(-0.55, 0.0, 2.0), vec3(0.4, 1.0, 1.2), vec3(0.3, -1.2, 1.1), vec3(1.6, -0.2, 1.0), vec3(-1.4, -0.4, 0.5));
+    vec3(0.0, 0.0, 2.0), vec3(-1.5, 0.0, 1.8), vec3(-1.5, 0.5, 1.0), vec3(-2.0, 0.1, 0.6),
+        vec3(-1.0, 0.3, 0.8),
+    vec3(-0.55, 0.0, 2.0), vec3(0.4, 1.0, 1.2), vec3(0.3, -1.2, 1.1), vec3(1.6, -0.2, 1.0),
+        vec3(-1.4, -0.4, 0.5));
 const vec3 AREALIGHT_SELF_TEST_HALVES_U[10] = vec3[10](
     vec3(0.5, 0.0, 0.0), vec3(0.0, 0.6, 0.0), vec3(0.0, 0.8, 0.0), vec3(0.0, 0.9, 0.0), vec3(0.0, 0.7, 0.0),
-    vec3(0.4, 0.0, 0.0), vec3(0.9, 0.0, 0.0), vec3(-0.8, 0.0, 0.0), vec3(0.0, -0.7, 0.0), vec3(0.0, 0.8, 0.0));
+    vec3(0.4, 0.0, 0.0), vec3(0.9, 0.0, 0.0), vec3(-0.8, 0.0, 0.0), vec3(0.0, -0.7, 0.0),
+        vec3(0.0, 0.8, 0.0));
 const vec3 AREALIGHT_SELF_TEST_HALVES_V[10] = vec3[10](
     vec3(0.0, -0.5, 0.0), vec3(0.5, 0.0, 0.5), vec3(0.3, 0.0, 0.6), vec3(0.1, 0.0, 0.5), vec3(0.4, 0.0, 0.5),
-    vec3(0.0, -0.4, 0.0), vec3(0.0, -0.5, 0.4), vec3(0.0, 0.3, 0.5), vec3(-0.2, 0.0, 0.6), vec3(0.0, 0.0, 0.8));
+    vec3(0.0, -0.4, 0.0), vec3(0.0, -0.5, 0.4), vec3(0.0, 0.3, 0.5), vec3(-0.2, 0.0, 0.6),
+        vec3(0.0, 0.0, 0.8));
 // What is reflected, in float64.
 const vec3 AREALIGHT_SELF_TEST_ANSWERS[10] = vec3[10](
-    vec3(0.204311820, 0.136210142, 0.068108463), vec3(0.687826604, 0.458758969, 0.229691334), vec3(0.009917959, 0.009917959, 0.009917959),
-    vec3(0.206355886, 0.206355886, 0.206355886), vec3(0.106919034, 0.106919034, 0.119933446), vec3(0.941347369, 0.891802796, 0.792713649),
-    vec3(0.024654984, 0.024654984, 0.024654984), vec3(0.011057375, 0.011057375, 0.011057375), vec3(0.418419854, 0.183879639, 0.066609532),
+    vec3(0.204311820, 0.136210142, 0.068108463), vec3(0.687826604, 0.458758969, 0.229691334),
+        vec3(0.009917959, 0.009917959, 0.009917959),
+    vec3(0.206355886, 0.206355886, 0.206355886), vec3(0.106919034, 0.106919034, 0.119933446),
+        vec3(0.941347369, 0.891802796, 0.792713649),
+    vec3(0.024654984, 0.024654984, 0.024654984), vec3(0.011057375, 0.011057375, 0.011057375),
+        vec3(0.418419854, 0.183879639, 0.066609532),
     vec3(0.201004664, 0.201004664, 0.201004664));
 
 // What the library makes of a point: black, but for its specular lobe.

@@ -16,23 +16,24 @@ struct ArealightSheen {
     float roughness; // perceptual, in [0, 1]
 };
 
-// A thin film of even thickness on a surface: KHR_materials_iridescence. Of the surface it changes f0, f90 and those of the interface, which are those
-// of what lies below it (with AREALIGHT_THIN_FILM).
+// A thin film of even thickness on a surface: KHR_materials_iridescence. Of the surface it changes f0, f90
+// and those of the interface, which are those of what lies below it (with AREALIGHT_THIN_FILM).
 struct ArealightThinFilm {
     float weight;    // how much of the surface it covers, in [0, 1]; 0: none
     float ior;       // index of refraction; counts as one from 1 to 100
     float thickness; // in nanometres; one of 0 is none, above 1e5 it counts as that
 };
 
-// A specular lobe of two roughnesses (with AREALIGHT_ANISOTROPY). A highlight is the longer along the tangent the more this exceeds
-// ArealightSurface.roughness, which is that across it.
+// A specular lobe of two roughnesses (with AREALIGHT_ANISOTROPY). A highlight is the longer along the tangent
+// the more this exceeds ArealightSurface.roughness, which is that across it.
 struct ArealightAnisotropy {
-    vec3 tangent;    // of any length, projected onto the surface; zero or along the normal: some direction of the surface
+    // Of any length, projected onto the surface; zero or along the normal: some direction of the surface
+    vec3 tangent;
     float roughness; // perceptual, along the tangent, in [0, 1]
 };
 
-// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added or with AREALIGHT_COUPLED coupled; and what lies
-// on them.
+// A shading point and its two lobes: Lambert and GGX with Schlick's Fresnel term, added or with
+// AREALIGHT_COUPLED coupled; and what lies on them.
 struct ArealightSurface {
     vec3 position;       // relative to the host's origin, in the lights' unit of length
     vec3 normal;         // shading normal, of any length
@@ -41,11 +42,12 @@ struct ArealightSurface {
     vec3 f0;             // reflectance at normal incidence, in [0, 1]
     float f90;           // reflectance at grazing incidence, in [0, 1]
     float roughness;     // perceptual, in [0, 1]
-    // Of the interface that light crosses on its way to the diffuse lobe, whose channels are coupled by the largest; both 0 where there
-    // is none. Read with AREALIGHT_COUPLED alone
+    // Of the interface that light crosses on its way to the diffuse lobe, whose channels are coupled by the
+    // largest; both 0 where there is none. Read with AREALIGHT_COUPLED alone
     float interface_f0;  // reflectance at normal incidence, in [0, 1]
     float interface_f90; // at grazing incidence, in [0, 1]
-    float diffuse_roughness; // of EON, in [0, 1]; 0: Lambert's lobe. Read with AREALIGHT_DIFFUSE_ROUGHNESS alone
+    // Of EON, in [0, 1]; 0: Lambert's lobe. Read with AREALIGHT_DIFFUSE_ROUGHNESS alone
+    float diffuse_roughness;
     ArealightCoat coat;  // read with AREALIGHT_COAT alone
     ArealightAnisotropy anisotropy; // read with AREALIGHT_ANISOTROPY alone
     ArealightSheen sheen; // read with AREALIGHT_SHEEN alone
@@ -72,14 +74,14 @@ void arealight_surface_from_metalness(inout ArealightSurface surface, vec3 base_
     surface.interface_f90 = dielectric_f90;
 }
 
-// Perceptual roughness along the tangent, of KHR_materials_anisotropy: of a roughness, which is that across it, and an
-// anisotropyStrength, both in [0, 1].
+// Perceptual roughness along the tangent, of KHR_materials_anisotropy: of a roughness, which is that across
+// it, and an anisotropyStrength, both in [0, 1].
 float arealight_gltf_anisotropy(float roughness, float strength) {
     return sqrt(mix(roughness * roughness, 1.0, strength * strength));
 }
 
-// Perceptual roughness along the tangent and across it of OpenPBR's specular_roughness and specular_roughness_anisotropy, both in
-// [0, 1]. The sum of the squared alphas is that of the isotropic lobe.
+// Perceptual roughness along the tangent and across it of OpenPBR's specular_roughness and
+// specular_roughness_anisotropy, both in [0, 1]. The sum of the squared alphas is that of the isotropic lobe.
 vec2 arealight_openpbr_anisotropy(float roughness, float anisotropy) {
     float aspect = 1.0 - anisotropy;
     float along = roughness * roughness * sqrt(2.0 / (1.0 + aspect * aspect));
@@ -89,8 +91,9 @@ vec2 arealight_openpbr_anisotropy(float roughness, float anisotropy) {
 // What a coat reflects at normal incidence: that of an index of refraction of 1.5.
 const float AREALIGHT_COAT_F0 = 0.04;
 
-// The part of the light that a coat reflects instead of what is below, in [0, weight]: Schlick's term of the view, `cos_view` being the
-// cosine between the view and the coat's normal, on either side. What is below gets the rest: multiply emission by it.
+// The part of the light that a coat reflects instead of what is below, in [0, weight]: Schlick's term of the
+// view, `cos_view` being the cosine between the view and the coat's normal, on either side. What is below
+// gets the rest: multiply emission by it.
 float arealight_coat_share(ArealightCoat coat, float cos_view) {
     float from_normal = 1.0 - abs(cos_view);
     float square = from_normal * from_normal;
@@ -125,12 +128,16 @@ ArealightFrame arealight_surface_frame(vec3 normal, vec3 view) {
     return frame;
 }
 
-// A thin surface from behind, for light that it lets through to the viewer: it faces away from the viewer, who is as far behind it as before it. Its
-// members but normal and view are for the caller to set to what is let through: diffuse_albedo, of an ideally diffusing sheet
-// (KHR_materials_diffuse_transmission). What it reflects so is the mirror image of what the front would, exactly.
+// A thin surface from behind, for light that it lets through to the viewer: it faces away from the viewer,
+// who is as far behind it as before it. Its members but normal and view are for the caller to set to what is
+// let through: diffuse_albedo, of an ideally diffusing sheet (KHR_materials_diffuse_transmission). What it
+// reflects so is the mirror image of what the front would, exactly.
 ArealightSurface arealight_other_side(ArealightSurface surface) {
     surface.normal = -surface.normal;
-    surface.view += surface.normal * (-2.0 * dot(surface.normal, surface.view) / max(dot(surface.normal, surface.normal), AREALIGHT_TINY));
+    surface.view += surface.normal * (-2.0
+                                      * dot(surface.normal,
+                                            surface.view) / max(dot(surface.normal, surface.normal),
+                                                                AREALIGHT_TINY));
     return surface;
 }
 

@@ -1,4 +1,5 @@
-//! Anisotropic GGX on the GPU: against the float64 twin, against isotropic GGX, in its image of a G-buffer, and where it is hard.
+//! Anisotropic GGX on the GPU: against the float64 twin, against isotropic GGX, in its image of a G-buffer,
+//! and where it is hard.
 
 use arealight::plan::GBufferLayout;
 use arealight::{Effects, Lobes, Quality};
@@ -28,7 +29,8 @@ fn with_anisotropy(point: &EvalPoint, change: impl Fn(Anisotropy) -> Option<Anis
     EvalPoint { surface: Surface { anisotropy, ..point.surface }, ..point.clone() }
 }
 
-/// Metals under polygons of 3 to 8 vertices anywhere, above, across and below their horizons; tangents of any direction.
+/// Metals under polygons of 3 to 8 vertices anywhere, above, across and below their horizons; tangents of any
+/// direction.
 fn points(seed: u64) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     let one = |i| {
@@ -46,7 +48,8 @@ fn points(seed: u64) -> Vec<EvalPoint> {
 fn stretched_lobes_follow_their_float64_twin() {
     let Some(engine) = TestEngine::new() else { return };
     let points = points(1);
-    // Two lobes, over their part above the surface; the least squares lose five bits of the matrices' seventeen that count
+    // Two lobes, over their part above the surface; the least squares lose five bits of the matrices'
+    // seventeen that count
     let bound = |given: &EvalPoint| {
         let least = given.surface.alpha.min(given.surface.anisotropy.unwrap().alpha);
         2.0 * rounding(least) / 0.6 + 2e-5
@@ -154,8 +157,8 @@ fn nothing_jumps_where_the_view_crosses_the_normal() {
             .collect();
         let largest = |at: usize| spreads.iter().skip(at).step_by(2).fold(0.0_f32, |a, b| a.max(*b));
         println!("{quality:?}: {:.1e} at the normal, {:.1e} around it", largest(0), largest(1));
-        // The nine normals turn with the azimuth, and are round to the eighth order alone: 7e-4 for alphas 30 times apart, where the lobe
-        // itself errs by 2e-2. Nine on a grid jump by 5e-2
+        // The nine normals turn with the azimuth, and are round to the eighth order alone: 7e-4 for alphas 30
+        // times apart, where the lobe itself errs by 2e-2. Nine on a grid jump by 5e-2
         assert!(largest(0) < 1e-3, "{quality:?}: {}", largest(0));
         // The twin: a tenth of a radian away the view's azimuth counts
         assert!(largest(1) > 0.05, "{quality:?}: {}", largest(1));

@@ -1,5 +1,5 @@
-//! The rational functions of `arc.glsl` and `difference.glsl`, evaluated in float64 from the GLSL's own text, have the errors that their comments
-//! state.
+//! The rational functions of `arc.glsl` and `difference.glsl`, evaluated in float64 from the GLSL's own text,
+//! have the errors that their comments state.
 
 const ARC_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/arc.glsl");
 const DIFFERENCE_GLSL: &str = include_str!("../../../shaders/include/arealight/form_factor/difference.glsl");
@@ -81,7 +81,8 @@ fn ratio(theta: f64) -> f64 {
     if theta == 0.0 { 1.0 } else { theta / theta.sin() }
 }
 
-/// The largest error of `expression` relative to `exact` over the angles from 0 to `end`, given the variables of an angle.
+/// The largest error of `expression` relative to `exact` over the angles from 0 to `end`, given the variables
+/// of an angle.
 fn largest_error(
     expression: &str,
     end: f64,

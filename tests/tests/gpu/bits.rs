@@ -1,5 +1,5 @@
-//! Every bit pattern gives a finite answer: the eval kernel is given buffers that no host would write, without
-//! the checks of the CPU side in between.
+//! Every bit pattern gives a finite answer: the eval kernel is given buffers that no host would write,
+//! without the checks of the CPU side in between.
 
 use arealight::gpu::GpuLight;
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, PyramidSize, Quality, SpecularLobes};
@@ -76,8 +76,8 @@ impl Numbers {
     }
 }
 
-/// The direction from a light to the shading point, the origin, or its opposite, as the light's first vertices run; what there is
-/// of it.
+/// The direction from a light to the shading point, the origin, or its opposite, as the light's first
+/// vertices run; what there is of it.
 fn facing_normal(center: [f32; 3], vertices: [[f32; 4]; 3]) -> [f32; 3] {
     let [a, b, c] = vertices.map(|v| DVec3::new(v[0].into(), v[1].into(), v[2].into()));
     let normal = (b - a).cross(c - a);
@@ -85,7 +85,8 @@ fn facing_normal(center: [f32; 3], vertices: [[f32; 4]; 3]) -> [f32; 3] {
     (if normal.dot(center + a) > 0.0 { center } else { -center }).normalize_or_zero().as_vec3().to_array()
 }
 
-/// Albedo and radiance are one, so that the answer is a form factor: Lambert's, or the lobe's times its albedo.
+/// Albedo and radiance are one, so that the answer is a form factor: Lambert's, or the lobe's times its
+/// albedo.
 fn buffers() -> Buffers {
     let mut random = Random::new(21);
     let mut buffers = Buffers { lights: Vec::new(), vertices: Vec::new(), cases: Vec::new() };
@@ -198,7 +199,8 @@ fn check(engine: &TestEngine, given: &Buffers, effects: Effects, quality: Qualit
         let largest = if glossy { 1.0 + 1e-6 } else { 1.0 };
         let light = &given.lights[index];
         let outline = outline(given, light, effects);
-        // A vertex that is not finite gives no light; of a light in parts only those are dark that have the vertex
+        // A vertex that is not finite gives no light; of a light in parts only those are dark that have the
+        // vertex
         let no_light = !in_parts
             && outline.iter().any(|vertex| vertex[..3].iter().any(|coordinate| !coordinate.is_finite()));
         // A NaN is in no range
@@ -217,7 +219,8 @@ fn check(engine: &TestEngine, given: &Buffers, effects: Effects, quality: Qualit
         wrong.len(),
         wrong[..wrong.len().min(5)].join("\n")
     );
-    // The twin: it is not that every odd number makes a light dark. Half of the exponents are beyond what squares reach
+    // The twin: it is not that every odd number makes a light dark. Half of the exponents are beyond what
+    // squares reach
     assert!(partial > COUNT / 25 && dark > COUNT / 10, "{partial} partial, {dark} dark");
     assert!(in_parts || infinite > COUNT / 10, "{infinite} outlines that are not finite");
 }

@@ -1,4 +1,5 @@
-//! Blockers along rays, found in a hierarchy on the GPU, against every triangle in turn in float64; and what blocks in a scene.
+//! Blockers along rays, found in a hierarchy on the GPU, against every triangle in turn in float64; and what
+//! blocks in a scene.
 
 use arealight::Blockers;
 use arealight_engine::host::Buffer;
@@ -25,7 +26,8 @@ impl Ray {
         Self { origin: origin.as_vec3(), direction: direction.as_vec3(), distance: distance as f32 }
     }
 
-    /// The distances, below the ray's, of all triangles that it meets, if `margin` is added to each on all sides (or taken off).
+    /// The distances, below the ray's, of all triangles that it meets, if `margin` is added to each on all
+    /// sides (or taken off).
     fn met(&self, triangles: &[Triangle], margin: f64) -> Vec<f64> {
         let (origin, direction) = (self.origin.as_dvec3(), self.direction.as_dvec3());
         let meet = |[a, b, c]: &Triangle| {
@@ -63,7 +65,8 @@ fn hits(engine: &TestEngine, blockers: &Blockers, rays: &[Ray]) -> Vec<f64> {
     found.into_iter().map(f64::from).collect()
 }
 
-/// How many rays are told wrongly: not free where they must be, free where they may not, or blocked where nothing is.
+/// How many rays are told wrongly: not free where they must be, free where they may not, or blocked where
+/// nothing is.
 fn wrong(rays: &[Ray], found: &[f64], triangles: &[Triangle], margin: f64) -> usize {
     let is_wrong = |(ray, found): &(&Ray, &f64)| {
         if **found == f64::from(ray.distance) {

@@ -258,7 +258,8 @@ fn calls_out_of_order_are_refused() {
     let library = CLibrary::new(&engine);
     let pass = library.pass(AREALIGHT_EFFECT_DIFFUSE);
     let (arealight, resources) = (library.arealight, ArealightResources::default());
-    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
+    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and
+    // below.
     unsafe {
         // A pass is no library, and the other way round
         refused(
@@ -384,7 +385,8 @@ fn passes_with_tiles_ask_for_their_buffers() {
         ..ArealightPassOptions::default()
     };
     let mut pass = null_mut();
-    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and below.
+    // SAFETY: the pointers are null or valid, and calls that are refused look behind no handle, here and
+    // below.
     unsafe {
         let wrong = ArealightPassOptions { tile_cull_threshold: 1.0, ..tiles };
         let create =

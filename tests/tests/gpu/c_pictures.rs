@@ -1,5 +1,5 @@
-//! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, of several faces, and a G-buffer of
-//! the host's own, with a table whose first upload was never run.
+//! What a host in C shades is what the recorder does, to the last bit: lights with images, with holes, of
+//! several faces, and a G-buffer of the host's own, with a table whose first upload was never run.
 
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, Light, LightFault, LightShape, LightTexture, TexturePart, Wrap};
@@ -322,7 +322,8 @@ fn c_shades_images_holes_and_meshes_as_rust_does_to_the_last_bit() {
     assert_eq!(c_coated, rust);
     assert_ne!(c_coated, c);
 
-    // The twins: before the image was loaded, with another one, with other holes, and with faces shared out otherwise
+    // The twins: before the image was loaded, with another one, with other holes, and with faces shared out
+    // otherwise
     assert!((dark - c).truncate().max_element() < 0.0, "{dark} {c}");
     assert!(shade([0.99, HOLES[1]]) != c && shade([HOLES[0], 0.24]) != c);
     let mut shared = CLights::new(HOLES);

@@ -45,8 +45,8 @@ fn points(seed: u64, tilt: f64) -> Vec<EvalPoint> {
     (0..COUNT).map(one).collect()
 }
 
-/// What float32 may lose of the three lobes, of the coat's by its share: with both horizons they are divided by their parts above the
-/// surface, of which the base's is at least .6 and the coat's the larger of two.
+/// What float32 may lose of the three lobes, of the coat's by its share: with both horizons they are divided
+/// by their parts above the surface, of which the base's is at least .6 and the coat's the larger of two.
 fn bound(surface: &Surface, normal: DVec3, view: DVec3) -> f64 {
     let coat = surface.coat.map_or(0.0, |coat| {
         let cos_view = SurfaceFrame::new(coat.normal.unwrap_or(normal), view).cos_view();
@@ -55,8 +55,9 @@ fn bound(surface: &Surface, normal: DVec3, view: DVec3) -> f64 {
     (2.0 * rounding(surface.alpha) + coat) / 0.6
 }
 
-/// What float32 loses more over half vectors of a coat whose horizon the view is at or below: the half vectors of light that passes straight on are differences of
-/// unit vectors there, 1e-3 long. 1.1e-4 of what the coat reflects, by measurement.
+/// What float32 loses more over half vectors of a coat whose horizon the view is at or below: the half
+/// vectors of light that passes straight on are differences of unit vectors there, 1e-3 long. 1.1e-4 of what
+/// the coat reflects, by measurement.
 fn along_the_coat(quality: Quality, surface: &Surface, normal: DVec3, view: DVec3) -> f64 {
     let of_coat = |coat: Coat| {
         let cos_view = SurfaceFrame::new(coat.normal.unwrap_or(normal), view).cos_view();

@@ -96,7 +96,8 @@ fn a_light_below_the_base_s_horizon_lights_the_coat() {
             let options = (Quality { horizon, ..Quality::default() }, 0.0);
             let (plain, tiled, listed) = pictures(&engine, &bent_sweep(bend, 1.0), &lights, options);
             assert_eq!(different(&plain, &tiled, lights.len()), 0, "{bend}, {horizon:?}");
-            // The twin: tiles of the base alone leave out lights that light the coat where it isn't clipped at the base's horizon
+            // The twin: tiles of the base alone leave out lights that light the coat where it isn't clipped
+            // at the base's horizon
             let (bare, _, bare_listed) = pictures(&engine, &bent_sweep(bend, 0.0), &lights, options);
             println!("{bend}, {horizon:?}: {listed} with coats, {bare_listed} without");
             assert!(different(&plain, &bare, lights.len()) > 100, "{bend}, {horizon:?}");

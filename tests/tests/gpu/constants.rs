@@ -6,8 +6,8 @@ use arealight::pyramid::MOST_TAPS;
 use arealight::{Effects, Footprint, FormFactor, Horizon, Lobes, SpecularLobes, TileClass, TubeEnds, tiles};
 use std::collections::BTreeMap;
 
-/// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation constants
-/// are none of them.
+/// The constants whose names begin with `prefix` in a GLSL source, without it, by name. Specialisation
+/// constants are none of them.
 fn glsl_constants(source: &str, prefix: &str) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     for line in source.lines() {

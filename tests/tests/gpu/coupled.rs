@@ -1,4 +1,5 @@
-//! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin, and where they are hard.
+//! Diffuse lobes below a Fresnel term on the GPU, rough ones, and layers by albedo: against the float64 twin,
+//! and where they are hard.
 
 use arealight::{Effects, Quality};
 use arealight_engine::EvalPoint;
@@ -54,8 +55,9 @@ fn points(seed: u64, kind: Kind) -> Vec<EvalPoint> {
     (0..COUNT).map(one).collect()
 }
 
-/// Three lobes, divided by their parts above the surface where both horizons clip, of which the least is .6. The view's cosine, whose
-/// rounding the albedos follow within alpha of the horizon (table.glsl), counts once more for what the interface takes.
+/// Three lobes, divided by their parts above the surface where both horizons clip, of which the least is .6.
+/// The view's cosine, whose rounding the albedos follow within alpha of the horizon (table.glsl), counts once
+/// more for what the interface takes.
 fn bound(surface: &Surface) -> f64 {
     let coat = surface.coat.map_or(0.0, |coat| 2.0 * rounding(coat.alpha));
     (3.0 * rounding(surface.alpha) + coat) / 0.6

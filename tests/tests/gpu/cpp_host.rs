@@ -1,5 +1,5 @@
-//! The host in C++ (examples/cpp) is compiled, runs under validation, and draws what the recorder draws from Rust, to the
-//! last bit.
+//! The host in C++ (examples/cpp) is compiled, runs under validation, and draws what the recorder draws from
+//! Rust, to the last bit.
 
 use arealight::plan::ShadeOptions;
 use arealight::{Light, LightShape, PackedLights};
@@ -227,7 +227,8 @@ fn cpp_draws_the_same_with_tiles() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
     let tiled = read_picture(&picture);
-    // Lights that are left out contribute nothing, which the quality level may round to 1e-6 of their radiance: of all 16
+    // Lights that are left out contribute nothing, which the quality level may round to 1e-6 of their
+    // radiance: of all 16
     let is_same = |other: &[[f32; 3]]| {
         tiled.iter().flatten().zip(other.iter().flatten()).all(|(a, b)| (a - b).abs() <= 16e-6)
     };

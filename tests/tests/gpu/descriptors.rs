@@ -1,4 +1,5 @@
-//! How passes get at a host's resources: sets, sets with offsets of rings of lights, and pushed descriptors. The picture is the same.
+//! How passes get at a host's resources: sets, sets with offsets of rings of lights, and pushed descriptors.
+//! The picture is the same.
 
 use crate::recorder::field;
 use arealight::PackedLights;

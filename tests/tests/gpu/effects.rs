@@ -1,5 +1,5 @@
-//! Effects are switches of what is computed, never of what comes out: one that no pixel uses changes no bit of a
-//! picture, and the set of a scene shows what the set of all does.
+//! Effects are switches of what is computed, never of what comes out: one that no pixel uses changes no bit
+//! of a picture, and the set of a scene shows what the set of all does.
 
 use arealight::kernels::SHADE;
 use arealight::plan::{Output, ShadeOptions, shade_specialization};
@@ -94,7 +94,8 @@ fn code_that_no_light_needs_changes_no_bit() {
         footprint: Footprint::Ellipse,
         ..Quality::default()
     };
-    // Pipelines take their time: each effect once, and all but one of them at once on levels that bring code of their own
+    // Pipelines take their time: each effect once, and all but one of them at once on levels that bring code
+    // of their own
     let mut sets: Vec<_> = unused.iter().map(|effect| (effect, plain)).collect();
     sets.push((unused - Effects::POLYGON, dear));
     sets.push((unused - Effects::POLYGON, Quality { specular_lobes: SpecularLobes::HalfVectors, ..dear }));

@@ -1,5 +1,5 @@
-//! The errors of light textures' lookups in short form: every level is within its bars, and the filter of Heitz et al. 2016 is
-//! not. `arealight bench textures` is the long form.
+//! The errors of light textures' lookups in short form: every level is within its bars, and the filter of
+//! Heitz et al. 2016 is not. `arealight bench textures` is the long form.
 
 use arealight::Footprint;
 use arealight_benches::footprints::{METHODS, Options, run};

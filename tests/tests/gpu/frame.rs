@@ -165,8 +165,8 @@ fn the_shade_pass_equals_eval_at_every_pixel() {
             }
             let reflected = (shaded[i] - emitted[i]).truncate().as_dvec3();
             for channel in 0..3 {
-                // Both lobes are rounded on both sides, and a light's position relative to the camera here, to
-                // the point there. In most scenes one light prevails: the brightest
+                // Both lobes are rounded on both sides, and a light's position relative to the camera here,
+                // to the point there. In most scenes one light prevails: the brightest
                 let bound = 5.0 * rounding(alphas[i]) * f64::from(radiance);
                 comparison.add(reflected[channel], expected[channel], bound, || format!("pixel {i}"));
             }
@@ -212,8 +212,8 @@ fn reference_converges(engine: &TestEngine, name: &str) {
         count += 1;
     }
     assert!(count > 30, "{count} pixels have a surface");
-    // Over all pixels the noise of 256 samples averages out: what stays would be a bias. Noise of one pixel is
-    // around its mean / sqrt(256), of the mean of 50 pixels a seventh of that, 1 %: three of those
+    // Over all pixels the noise of 256 samples averages out: what stays would be a bias. Noise of one pixel
+    // is around its mean / sqrt(256), of the mean of 50 pixels a seventh of that, 1 %: three of those
     for channel in 0..3 {
         let bias = (difference[channel] / total[channel]).abs();
         assert!(bias < 0.03, "{name}, channel {channel}: {bias} of the light is missing or too much");
@@ -223,9 +223,10 @@ fn reference_converges(engine: &TestEngine, name: &str) {
 #[test]
 fn the_fitted_lobes_look_like_the_reference() {
     let Some(engine) = TestEngine::new() else { return };
-    // A smoke test of the mean reflected light. The fit errs by a few per cent of it (at 1,024 samples a pixel: 1 % in
-    // the room, 0.5 % in the sweep), and most where a dielectric floor is seen at 75 to 88 degrees, since one matrix
-    // serves every F0: 6.6 % in the demo. A lobe that is lost or counted twice changes it by tens of per cent.
+    // A smoke test of the mean reflected light. The fit errs by a few per cent of it (at 1,024 samples a
+    // pixel: 1 % in the room, 0.5 % in the sweep), and most where a dielectric floor is seen at 75 to 88
+    // degrees, since one matrix serves every F0: 6.6 % in the demo. A lobe that is lost or counted twice
+    // changes it by tens of per cent.
     for (name, bound) in [("room.glb", 0.05), ("sweep.glb", 0.05), ("demo.glb", 0.1), ("coats.glb", 0.05)] {
         let scene = scene(name);
         let mut fitted = view(&engine, &scene);

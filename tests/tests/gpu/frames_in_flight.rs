@@ -1,4 +1,5 @@
-//! Frames by one pass that do not wait for each other: of several sizes, as of a window that is resized, and recorded on several threads.
+//! Frames by one pass that do not wait for each other: of several sizes, as of a window that is resized, and
+//! recorded on several threads.
 
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary, PackedLights};
@@ -152,7 +153,8 @@ fn frames_of_other_sizes_are_recorded_while_one_is_in_flight() {
     });
     assert!(alone[0].iter().all(|texel| texel[0] > 0.05) && alone[0][0] != alone[0][63]);
 
-    // All of them, while the first waits for the CPU: images are made, sets written and frames recorded meanwhile
+    // All of them, while the first waits for the CPU: images are made, sets written and frames recorded
+    // meanwhile
     let made = sizes.map(images);
     // SAFETY: the event is destroyed when nothing is pending.
     let event = unsafe { device.create_event(&vk::EventCreateInfo::default(), None) }.unwrap();
@@ -237,7 +239,8 @@ fn threads_record_with_one_pass_and_make_its_pipelines_at_once() {
     let lights = host.storage_buffer("lights", &packed.lights).unwrap();
     let vertices = host.storage_buffer("vertices", &packed.vertices).unwrap();
     let buffers = [lights.handle(), vertices.handle()];
-    // Each thread asks for the pipelines of three sets of effects, in an order of its own: the first to ask makes them
+    // Each thread asks for the pipelines of three sets of effects, in an order of its own: the first to ask
+    // makes them
     let added = [Effects::empty(), Effects::TWO_SIDED, Effects::POLYGON];
     let frame_of = |size, index: u32| {
         let summary = packed.summary();

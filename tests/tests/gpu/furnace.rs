@@ -1,4 +1,5 @@
-//! The white furnace in short form: with both horizons, or over half vectors, next to nothing of light from everywhere is lost. `arealight bench furnace` is the long form.
+//! The white furnace in short form: with both horizons, or over half vectors, next to nothing of light from
+//! everywhere is lost. `arealight bench furnace` is the long form.
 
 use arealight_benches::furnace::{Options, Row, run};
 use arealight_engine::host::testing::device_or_skip;

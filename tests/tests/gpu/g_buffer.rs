@@ -74,7 +74,8 @@ fn of_bytes(values: [u8; 4]) -> [f32; 4] {
     values.map(|value| of_unorm(value.into(), 8))
 }
 
-/// Radiances are the same but for rounding: 2^-22 of what is decoded, which the frame and the lobe multiply by less than 100.
+/// Radiances are the same but for rounding: 2^-22 of what is decoded, which the frame and the lobe multiply
+/// by less than 100.
 #[track_caller]
 fn assert_same(layout: Vec3, ours: Vec3) {
     let apart = ((layout - ours) / ours).abs().max_element();
@@ -148,7 +149,8 @@ fn surfaces_of_other_layouts_are_shaded_as_ours(engine: &TestEngine) {
         layouts.push(shaded);
     }
 
-    // What eight and ten bits cost: of the surface that was meant, a few hundredths. The first has another reflectance
+    // What eight and ten bits cost: of the surface that was meant, a few hundredths. The first has another
+    // reflectance
     let meant = exact.shade(engine);
     for shaded in &layouts[1..3] {
         let apart = ((shaded - meant) / meant).abs().max_element();

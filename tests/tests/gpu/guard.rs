@@ -1,5 +1,6 @@
-//! No NaN comes out, and no compiler may think otherwise: the last guard of a form factor compares bits as whole numbers,
-//! and is still there when the optimiser is done. Outputs are judged by their bits, before any clamp that hides a NaN.
+//! No NaN comes out, and no compiler may think otherwise: the last guard of a form factor compares bits as
+//! whole numbers, and is still there when the optimiser is done. Outputs are judged by their bits, before any
+//! clamp that hides a NaN.
 
 use arealight::kernels::{Kernel, SHADE, constant};
 use arealight::{Effects, FormFactor, Horizon, SpecularLobes};
@@ -26,7 +27,8 @@ fn ids(instruction: &Instruction) -> Vec<u32> {
     instruction.operands.iter().filter_map(Operand::id_ref_any).collect()
 }
 
-/// Where the values of a function come from and go to; through variables too, as the compiler's front end leaves them.
+/// Where the values of a function come from and go to; through variables too, as the compiler's front end
+/// leaves them.
 struct Flow<'a> {
     made_by: HashMap<u32, &'a Instruction>,
     used_by: HashMap<u32, Vec<&'a Instruction>>,
@@ -88,8 +90,8 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// How many comparisons of a float's bits with infinity's decide something: they reach a choice between values or a
-/// branch.
+/// How many comparisons of a float's bits with infinity's decide something: they reach a choice between
+/// values or a branch.
 fn guards(module: &Module) -> usize {
     let constants: HashSet<u32> = module
         .types_global_values

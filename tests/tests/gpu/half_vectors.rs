@@ -1,4 +1,5 @@
-//! GGX over half vectors on the GPU: its float64 twin, both ways around an outline, and the promises that a form factor keeps.
+//! GGX over half vectors on the GPU: its float64 twin, both ways around an outline, and the promises that a
+//! form factor keeps.
 
 use crate::coat_tiles::pictures;
 use crate::properties::on_a_circle;
@@ -172,7 +173,8 @@ fn a_light_that_is_cut_in_two_sends_what_it_did() {
         one_half += (first - f64::from(whole.x)).abs() / COUNT as f64;
     }
     println!("{apart:.1e} on average, {most:.1e} at most; of one half {one_half:.1e}");
-    // Chords, masking at the means of halves, and the gain of each part: by measurement 1.2e-3 on average and 3.5e-2 at most
+    // Chords, masking at the means of halves, and the gain of each part: by measurement 1.2e-3 on average and
+    // 3.5e-2 at most
     assert!(apart < 2e-3 && most < 5e-2, "{apart:e}, {most:e}");
     assert!(one_half > 0.1, "{one_half:e}");
 }

@@ -1,5 +1,5 @@
-//! Devices that lack something, images that are gone, and names for debuggers: on devices that lie about themselves, so
-//! that every answer can be had on any.
+//! Devices that lack something, images that are gone, and names for debuggers: on devices that lie about
+//! themselves, so that every answer can be had on any.
 
 use arealight::plan::ShadeOptions;
 use arealight::{Effects, LightSummary};
@@ -109,8 +109,8 @@ fn what_a_device_lacks_is_named() {
 fn a_set_that_points_at_a_destroyed_table_is_refused() {
     let Some(engine) = TestEngine::new() else { return };
     let host = engine.host();
-    // SAFETY: no submission uses the pass or the table; the set is new, and the layout the pass's. Nothing is recorded
-    // where an error is returned.
+    // SAFETY: no submission uses the pass or the table; the set is new, and the layout the pass's. Nothing is
+    // recorded where an error is returned.
     unsafe {
         let pass = ComputePass::new(engine.context(), &arealight_tool_kernels::kernels::EVAL, &[]).unwrap();
         let mut table =

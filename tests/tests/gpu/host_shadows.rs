@@ -1,4 +1,5 @@
-//! Hosts that have shadows of their own: a function of theirs says what part of a light arrives, or what blocks a ray, and reads a set of theirs.
+//! Hosts that have shadows of their own: a function of theirs says what part of a light arrives, or what
+//! blocks a ray, and reads a set of theirs.
 
 use crate::shadows::{flat, options, surfaces, symmetric_lights};
 use arealight::plan::ShadeOptions;
@@ -74,7 +75,8 @@ fn a_host_says_itself_what_blocks() {
 fn a_host_multiplies_each_light_with_what_its_shadow_maps_say() {
     let Some(engine) = TestEngine::new() else { return };
     let host = engine.host();
-    // Of two lights one arrives by a quarter in the left half of the image, the other one by a half everywhere
+    // Of two lights one arrives by a quarter in the left half of the image, the other one by a half
+    // everywhere
     let masks = host
         .image(&ImageDescription {
             name: "shadow masks",

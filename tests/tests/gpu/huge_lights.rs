@@ -1,5 +1,5 @@
-//! Lights far larger than their distance, and lights in the plane of the point: which side of its plane a point is on is told by the plane
-//! in the world, not by vertices, whose heights drown in their lengths.
+//! Lights far larger than their distance, and lights in the plane of the point: which side of its plane a
+//! point is on is told by the plane in the world, not by vertices, whose heights drown in their lengths.
 
 use arealight::{FormFactor, Horizon, Light, LightShape, Quality};
 use arealight_engine::EvalPoint;
@@ -34,7 +34,8 @@ impl Axes {
     }
 }
 
-/// A convex light of 3 to 8 vertices about the point, which shines down on it from `height`; float32 holds every coordinate.
+/// A convex light of 3 to 8 vertices about the point, which shines down on it from `height`; float32 holds
+/// every coordinate.
 fn ceiling(stream: &mut Stream, axes: Axes, size: f64, height: f64) -> Light {
     let count = 3 + stream.below(6);
     // The point stays a tenth of the light's size from its edges
@@ -98,7 +99,8 @@ fn view(stream: &mut Stream, normal: DVec3) -> DVec3 {
     }
 }
 
-/// The edges' own rounding, as of lights of ordinary size; of the metal's lobe its alpha of at least 1/4 makes four times that.
+/// The edges' own rounding, as of lights of ordinary size; of the metal's lobe its alpha of at least 1/4
+/// makes four times that.
 fn bound(point: &EvalPoint) -> f64 {
     if point.surface.diffuse_albedo == DVec3::ZERO { 2e-6 } else { 1e-6 }
 }

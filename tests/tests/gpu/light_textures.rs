@@ -1,4 +1,5 @@
-//! A host's mistakes with light textures have typed answers that name the field, and then nothing is recorded.
+//! A host's mistakes with light textures have typed answers that name the field, and then nothing is
+//! recorded.
 
 use crate::recorder::field;
 use arealight::{PyramidSize, TexturePart};
@@ -71,7 +72,8 @@ fn updates_that_cannot_be_recorded_are_refused() {
     engine
         .host()
         .submit(|commands| {
-            // SAFETY: Nothing is recorded where an error is returned, nor without updates, so that no set is used.
+            // SAFETY: Nothing is recorded where an error is returned, nor without updates, so that no set is
+            // used.
             let record =
                 |sets: &[_], updates: &[_]| unsafe { array.image().record_update(commands, sets, updates) };
             let error = record(&sets[1..], &[update(0)]).unwrap_err();

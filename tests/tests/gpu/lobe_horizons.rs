@@ -9,7 +9,8 @@ fn lobe_height(inverse: DMat3) -> DVec3 {
     DVec3::new(inverse.x_axis.z, inverse.y_axis.z, inverse.z_axis.z)
 }
 
-/// The normal of a lobe's horizon: its part across the mirror direction over that along it, over the view's sine.
+/// The normal of a lobe's horizon: its part across the mirror direction over that along it, over the view's
+/// sine.
 fn ratio(inverse: DMat3, cos_view: f64) -> f64 {
     // In the mirror frame
     let normal = lobe_height(inverse);

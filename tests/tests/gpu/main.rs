@@ -1,4 +1,5 @@
-//! The GPU against the oracle, through compute dispatches; and what Rust, the GLSL and the SPIR-V must state alike.
+//! The GPU against the oracle, through compute dispatches; and what Rust, the GLSL and the SPIR-V must state
+//! alike.
 //!
 //! One binary, since each links the engine and the oracle. A test's name begins with its module: `tiles::…`.
 

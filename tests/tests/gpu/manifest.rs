@@ -1,5 +1,5 @@
-//! The manifest in Rust and the embedded SPIR-V say the same: bindings, group sizes, constants, push constants,
-//! and every offset of every structure that the CPU writes.
+//! The manifest in Rust and the embedded SPIR-V say the same: bindings, group sizes, constants, push
+//! constants, and every offset of every structure that the CPU writes.
 
 mod reflection;
 mod structures;

@@ -85,8 +85,8 @@ fn every_material_looks_like_the_reference() {
     println!("{}", found.to_text());
     assert_eq!(found.materials.len(), 17);
     for material in &found.materials {
-        // As docs/materials.md has them at a larger size, and a half more: lobes of two roughnesses are crescents, which no matrix is near to;
-        // sheen and rough lobes err most where they graze
+        // As docs/materials.md has them at a larger size, and a half more: lobes of two roughnesses are
+        // crescents, which no matrix is near to; sheen and rough lobes err most where they graze
         let bound = match material.name.as_str() {
             "brushed along" | "brushed across" => 0.45,
             // So does a film on rough metal, whose reflectance turns with the angle

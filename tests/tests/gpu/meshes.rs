@@ -1,5 +1,5 @@
-//! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are nearly, in frames and
-//! against the Monte Carlo reference.
+//! Meshes of emitters, several faces that are one light: against their faces, against spheres that they are
+//! nearly, in frames and against the Monte Carlo reference.
 
 use arealight::{Effects, Horizon, Light, LightShape, LightTable, Quality};
 use arealight_engine::{EvalPoint, Reference, SceneRenderer};
@@ -16,7 +16,8 @@ static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 const SIZE: [u32; 2] = [64, 36];
 
-/// A mesh of three outlines at random places of one region: convex and concave, to the front and the back, some cut by the horizon.
+/// A mesh of three outlines at random places of one region: convex and concave, to the front and the back,
+/// some cut by the horizon.
 fn mesh(random: &mut Random, two_sided: bool) -> Light {
     let center = random.direction() * random.between(1.0, 3.0);
     let mut light = point(lambert_surface(), DVec3::Z, Vec::new(), two_sided).light;
@@ -68,7 +69,8 @@ fn assert_sums(engine: &TestEngine, table: Option<&LightTable>, levels: &[Level]
                 let lobe = table.map_or_else(|| Lobe::lambert(surface), |table| Lobe::glossy(table, surface));
                 Seen::new(&given, case, lobe, level.quality.horizon).judge().bound(level)
             });
-            // A face may err by its bound, and as part of the mesh by as much for being given from a center that is twice as far from it
+            // A face may err by its bound, and as part of the mesh by as much for being given from a center
+            // that is twice as far from it
             let bound = 3.0 * bounds.sum::<f64>();
             let sum: f64 = found[1..].iter().sum();
             // What overlaps in the view of the lobe is no more than all there is
@@ -92,7 +94,8 @@ fn a_mesh_sends_what_its_faces_do() {
     far_meshes_keep_relative_precision(&engine, all[0]);
 }
 
-/// A one-sided cube around the point is dark, a two-sided one is all there is; the polygon kernel alone takes the cube for one outline.
+/// A one-sided cube around the point is dark, a two-sided one is all there is; the polygon kernel alone takes
+/// the cube for one outline.
 fn faces_in_front_alone_count(engine: &TestEngine, level: Level) {
     let cube = |two_sided| EvalPoint {
         light: Light { two_sided, ..cube(DVec3::new(0.1, 0.2, 0.3), 1.0) },
@@ -189,8 +192,8 @@ fn icosphere(times: usize) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     (corners, triangles)
 }
 
-/// A mesh between two spheres sends no less than the inner one and no more than the outer one, before any lobe: so it is a sphere to the
-/// square of the two radii's ratio.
+/// A mesh between two spheres sends no less than the inner one and no more than the outer one, before any
+/// lobe: so it is a sphere to the square of the two radii's ratio.
 #[test]
 fn an_icosphere_is_a_sphere_to_the_error_of_its_faces() {
     let Some(engine) = TestEngine::new() else { return };

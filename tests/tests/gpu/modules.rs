@@ -1,4 +1,5 @@
-//! Every file of these tests is a module of theirs: one that no `mod` names is not compiled, and its tests do not run.
+//! Every file of these tests is a module of theirs: one that no `mod` names is not compiled, and its tests do
+//! not run.
 
 use std::path::Path;
 

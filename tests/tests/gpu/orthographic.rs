@@ -1,5 +1,5 @@
-//! Scenes through an orthographic camera: what it sees, and what it is shaded like, with shadows and without. The twin of each is a
-//! perspective camera that sees as much.
+//! Scenes through an orthographic camera: what it sees, and what it is shaded like, with shadows and without.
+//! The twin of each is a perspective camera that sees as much.
 
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Light, LightShape, Quality};

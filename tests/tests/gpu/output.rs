@@ -69,7 +69,8 @@ fn lobes_apart_are_those_of_one_image(engine: &TestEngine) {
 
 fn sixteen_bits_are_the_nearest_to_thirty_two_and_saturate(engine: &TestEngine) {
     let nearest = |value: Vec4| Vec4::from_array(value.to_array().map(|v| f16::from_f32(v).to_f32()));
-    // The one is beyond the largest number of sixteen bits in two channels, and near the smallest in the third
+    // The one is beyond the largest number of sixteen bits in two channels, and near the smallest in the
+    // third
     let bright = Light { radiance: Vec3::new(1e7, 2e38, 1e-4), ..lamp() };
     for (output, separate_lobes) in [(Output::Overwrite, false), (Output::Add, true)] {
         let single = ShadeOptions { output, separate_lobes, ..ShadeOptions::default() };

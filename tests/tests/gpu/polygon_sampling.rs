@@ -1,5 +1,5 @@
-//! Directions drawn over polygons: the areas are pi times the form factor, the directions are inside of the polygon, and their
-//! density is the clamped cosine's.
+//! Directions drawn over polygons: the areas are pi times the form factor, the directions are inside of the
+//! polygon, and their density is the clamped cosine's.
 
 use arealight_oracle::polygon::{above_horizon, form_factor};
 use arealight_tests::kernel::POLYGON_SAMPLING;
@@ -14,7 +14,8 @@ const DRAWS: usize = 1024;
 /// A convex polygon in float32, at or above the horizon.
 type Polygon = Vec<DVec3>;
 
-/// Quads of about `size` at a distance of 1 somewhere above the horizon, of any orientation, cut at the horizon.
+/// Quads of about `size` at a distance of 1 somewhere above the horizon, of any orientation, cut at the
+/// horizon.
 fn polygons(count: usize, size: f64) -> Vec<Polygon> {
     let mut random = Random::new(17);
     let mut all = Vec::new();
@@ -85,7 +86,8 @@ fn draws_are_inside_with_the_form_factor_as_area() {
             let exact = form_factor(polygon).abs() * PI;
             let area = draws[0].1;
             worst = worst.max((area - exact).abs());
-            // Areas below two circles cancel, of up to pi / 2 each, and each rounded by two units in the last place of it
+            // Areas below two circles cancel, of up to pi / 2 each, and each rounded by two units in the last
+            // place of it
             assert!((area - exact).abs() <= 5e-7, "{size}: {area}, {exact}: {polygon:?}");
             // The twin: the area of a polygon a hundredth larger
             assert!(exact < 1e-4 || (area * 1.01 - exact).abs() > 5e-7, "{size}: {area}");
@@ -123,7 +125,8 @@ fn the_density_is_the_clamped_cosine() {
         }
         let [rms, twin] = [square, twin].map(|sum: f64| (sum / polygons.len() as f64).sqrt());
         println!("{size}: rms {rms:.5}, worst {worst:.5}, twin {twin:.5}");
-        // What 1,024 points of the R2 sequence leave of an area with a straight edge is .0027; 20 steps of Newton's method leave no less
+        // What 1,024 points of the R2 sequence leave of an area with a straight edge is .0027; 20 steps of
+        // Newton's method leave no less
         assert!(rms < 0.0035 && worst < 0.02, "{size}: {rms}, {worst}");
         assert!(twin > 0.03, "{size}: the twin is as good: {twin}");
     }

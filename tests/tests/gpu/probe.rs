@@ -1,4 +1,5 @@
-//! What the comments of the GLSL library state of single functions, held against float64 one function at a time.
+//! What the comments of the GLSL library state of single functions, held against float64 one function at a
+//! time.
 
 use arealight::table::{TableSample, mirror_frame};
 use arealight_oracle::frame::SurfaceFrame;
@@ -311,8 +312,9 @@ fn arcs_are_what_they_say() {
         let place = || format!("{given:?}: {found:?}");
         let (a, b) = (wide(found[0]), wide(found[1]));
         let exact = arc(a, b);
-        // Eight units of 2^-24 of the angle, or of a radian: the two unit vectors, their sum and its length, the cross product, the
-        // quotient. (3.6e-7 was stated once; a second 20,000 arcs have 4.6e-7, between nearly opposite ends.)
+        // Eight units of 2^-24 of the angle, or of a radian: the two unit vectors, their sum and its length,
+        // the cross product, the quotient. (3.6e-7 was stated once; a second 20,000 arcs have 4.6e-7, between
+        // nearly opposite ends.)
         let bound = 5e-7 * a.cross(b).length().atan2(a.dot(b)).max(1.0);
         arcs.add(found[0][3].into(), exact, bound, place);
         twin.add(f64::from(found[0][3]) * 1.001, exact, bound, String::new);
@@ -333,7 +335,8 @@ fn arcs_are_what_they_say() {
     assert!(noticed > 10_000, "the twin: {noticed} noticed");
 }
 
-/// Rays that leave a floor of any tilt, out to 300 m, start above it; where positions are wrong by a step, too.
+/// Rays that leave a floor of any tilt, out to 300 m, start above it; where positions are wrong by a step,
+/// too.
 #[test]
 fn shadow_rays_start_above_the_surface_that_they_leave() {
     let Some(engine) = TestEngine::new() else { return };

@@ -1,6 +1,6 @@
-//! Properties of the polygon integral on the GPU, for every level and both ways around an outline: no oracle, only the
-//! maths. Each relation holds but for the sum of what its form factors may err (see `arealight_tests::lobe`), and
-//! each has a twin that the same comparison notices.
+//! Properties of the polygon integral on the GPU, for every level and both ways around an outline: no oracle,
+//! only the maths. Each relation holds but for the sum of what its form factors may err (see
+//! `arealight_tests::lobe`), and each has a twin that the same comparison notices.
 //!
 //! A test takes many properties: with a software driver a pipeline costs more than all that it computes here.
 
@@ -25,8 +25,8 @@ const COUNT: usize = 300;
 
 const PATHS: [Path; 2] = [Path::Quad, Path::Polygon];
 
-/// A polygon for a path: convex with three or four vertices, or a star of three to eight. Its front faces the point, from
-/// anywhere around it; some come near to it.
+/// A polygon for a path: convex with three or four vertices, or a star of three to eight. Its front faces the
+/// point, from anywhere around it; some come near to it.
 fn outline(random: &mut Random, path: Path, index: usize) -> Vec<DVec3> {
     let center = random.direction() * random.between(0.5, 3.0);
     match path {

@@ -93,7 +93,8 @@ fn shade(effects: Effects, quality: Quality) -> Vec<(u32, u32)> {
     shade_specialization(options, LightSummary { quad_count: 1, effects, ..LightSummary::default() })
 }
 
-/// The specialisations that are looked at: each effect by itself and all, each level, and each class of tiles.
+/// The specialisations that are looked at: each effect by itself and all, each level, and each class of
+/// tiles.
 fn specializations(kernel: &Kernel) -> Vec<Vec<(u32, u32)>> {
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
     let plain = Quality::default();
@@ -169,7 +170,8 @@ fn what_is_not_in_use_is_left_out() {
     let words = kernels::SHADE.words();
     let left = |effects: Effects| prune(&words, &shade(effects, Quality::default())).len();
     let lobes = Effects::DIFFUSE | Effects::GLOSSY;
-    // A third of the module is left where all lights are quads (names and constants stay), and each effect adds to that
+    // A third of the module is left where all lights are quads (names and constants stay), and each effect
+    // adds to that
     assert!(left(lobes) * 3 < words.len(), "{} of {}", left(lobes), words.len());
     for effect in [Effects::POLYGON, Effects::TEXTURED, Effects::ELLIPSE, Effects::SPHERE, Effects::TUBE] {
         assert!(left(lobes | effect) > left(lobes) + 300, "{effect:?}");
@@ -203,7 +205,8 @@ fn function_names(module: &[u32]) -> BTreeSet<String> {
 /// Every set of kinds of light has a module of its own, without a function of the kinds that it lacks.
 #[test]
 fn each_set_of_lights_has_a_module_of_its_own() {
-    // Of each kind what the names of its functions alone contain. Textured polygons are shaded by the polygon loop
+    // Of each kind what the names of its functions alone contain. Textured polygons are shaded by the polygon
+    // loop
     let kinds = [
         (Effects::TEXTURED, "arealight_bridge_light_texture("),
         (Effects::POLYGON | Effects::MESH, "struct-ArealightMeshLight"),

@@ -1,5 +1,5 @@
-//! The prefilter on the GPU, every level of it, against float64: images of any size, repeated and in part; what is
-//! black, blinding or not a number; and layers that are left alone.
+//! The prefilter on the GPU, every level of it, against float64: images of any size, repeated and in part;
+//! what is black, blinding or not a number; and layers that are left alone.
 
 use arealight::{Light, LightShape, LightTexture, PyramidSize, TexturePart, Wrap};
 use arealight_engine::{Engine, EngineError, SourceImage, SourceTexels};
@@ -92,8 +92,9 @@ impl Picture {
         Texture::from_fn(content[0] as usize, content[1] as usize, texel)
     }
 
-    /// What a resampled texel may be off, as a part of the largest: the tent's place is rounded to 2^-24 of the way to
-    /// it, and changes the weights by as much of its radius; twice, for two axes, and twice, for both sides of a tent.
+    /// What a resampled texel may be off, as a part of the largest: the tent's place is rounded to 2^-24 of
+    /// the way to it, and changes the weights by as much of its radius; twice, for two axes, and twice, for
+    /// both sides of a tent.
     fn resampling_error(&self, size: PyramidSize) -> f64 {
         let off = |axis: usize| {
             let texels = self.part.size[axis] * f64::from(self.size[axis]);
@@ -117,8 +118,9 @@ fn compare(
         let found = engine.download_level(layer, level).unwrap();
         let expected = twin.level(level);
         assert_eq!(found.len(), expected.texels().len());
-        // Each level rounds once, and averages what the ones before have rounded: nothing is negative, so that relative
-        // errors only add. In each, float32 rounds 24 sums and products, which is little beside.
+        // Each level rounds once, and averages what the ones before have rounded: nothing is negative, so
+        // that relative errors only add. In each, float32 rounds 24 sums and products, which is little
+        // beside.
         let relative = f64::from(level + 1) * (HALF_ULP + 24.0 * 2.0_f64.powi(-24));
         for (index, (found, expected)) in found.iter().zip(expected.texels()).enumerate() {
             for channel in 0..3 {
@@ -182,7 +184,8 @@ fn the_comparison_finds_another_picture_another_kernel_and_a_cut_bit() {
     let mut brighter = picture.clone();
     brighter.texels[2000][1] *= 1.01;
     assert!(failures(&brighter, size) > 0);
-    // Numbers that are cut to sixteen bits, not rounded, are all too small: seen as twins that are larger by as much
+    // Numbers that are cut to sixteen bits, not rounded, are all too small: seen as twins that are larger by
+    // as much
     let mut cut = picture.clone();
     for texel in &mut cut.texels {
         *texel = texel.map(|value| value * (1.0 + 1.5 * HALF_ULP as f32));

@@ -1,4 +1,5 @@
-//! docs/architecture.md lists the functions that one quad light goes through: each is where the list says, and what it calls is listed too.
+//! docs/architecture.md lists the functions that one quad light goes through: each is where the list says,
+//! and what it calls is listed too.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -41,7 +42,8 @@ fn listed(page: &str) -> (BTreeMap<String, BTreeSet<String>>, BTreeSet<String>) 
     (by_file, names(below).map(str::to_owned).collect())
 }
 
-/// The body of a function in a file or in its macro: all definitions of that name but those of another kind of light.
+/// The body of a function in a file or in its macro: all definitions of that name but those of another kind
+/// of light.
 fn body(source: &str, function: &str) -> Option<String> {
     let start = source.match_indices(&format!(" {function}(")).find(|(at, _)| {
         // A definition has a type before it, and is no call

@@ -92,8 +92,9 @@ fn most(light: &Light, reach: f64, part: f64, random: &mut Stream) -> f64 {
     most
 }
 
-/// A direction from a light, the normal of a surface there, and the direction to a viewer who sees the light mirrored, or about so. Mostly from before
-/// the light, where it is largest, and at any angle to the surface: lobes are densest near grazing.
+/// A direction from a light, the normal of a surface there, and the direction to a viewer who sees the light
+/// mirrored, or about so. Mostly from before the light, where it is largest, and at any angle to the surface:
+/// lobes are densest near grazing.
 fn seen(front: DVec3, random: &mut Stream) -> [DVec3; 3] {
     let spread = if random.one_in(4) { 2.0 } else { 0.2 };
     let away = (front + random.direction() * spread).normalize_or(DVec3::Z);

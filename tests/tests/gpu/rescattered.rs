@@ -1,4 +1,5 @@
-//! Light that facets reflect more than once, on the GPU: against the float64 twin, and where all of it has to come back.
+//! Light that facets reflect more than once, on the GPU: against the float64 twin, and where all of it has to
+//! come back.
 
 use arealight::{Effects, Lobes, Quality};
 use arealight_engine::EvalPoint;

@@ -1,4 +1,5 @@
-//! G-buffers of several samples a texel: a pixel is the mean over its surfaces, each shaded once, in its sample's place.
+//! G-buffers of several samples a texel: a pixel is the mean over its surfaces, each shaded once, in its
+//! sample's place.
 
 use crate::recorder::field;
 use arealight::LightTable;

@@ -1,4 +1,5 @@
-//! The self-test that hosts run: its answers are the oracle's, the right table passes it, and tables as hosts load them wrongly fail.
+//! The self-test that hosts run: its answers are the oracle's, the right table passes it, and tables as hosts
+//! load them wrongly fail.
 
 use arealight::table::LAYERS;
 use arealight_engine::host::{ImageDescription, Usage};
@@ -91,7 +92,8 @@ fn the_right_table_passes_and_wrong_ones_fail() {
     assert_eq!(wrong_points(&engine, &texels), 0);
     assert_eq!(run(&engine, engine.table()), 0, "in half floats");
 
-    // What hosts do to a table: they copy the first layer alone, take rows for columns, or call its format sRGB
+    // What hosts do to a table: they copy the first layer alone, take rows for columns, or call its format
+    // sRGB
     let first_layer: Vec<_> =
         texels.iter().enumerate().map(|(at, texel)| if at < layer { *texel } else { [0.0; 4] }).collect();
     let swapped: Vec<_> = (0..texels.len())

@@ -47,8 +47,8 @@ fn lights(seed: u64, surface: impl Fn(&mut Random) -> arealight_oracle::material
         .collect()
 }
 
-/// Polygons of 1 to 30 lobe widths, at random in front of the mirror direction: random lights would rarely hit
-/// so narrow a lobe. Alpha is `low` to `high`, evenly in its logarithm.
+/// Polygons of 1 to 30 lobe widths, at random in front of the mirror direction: random lights would rarely
+/// hit so narrow a lobe. Alpha is `low` to `high`, evenly in its logarithm.
 fn lights_at_the_mirror_direction(seed: u64, low: f64, high: f64) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     (0..COUNT)
@@ -178,8 +178,8 @@ fn ceiling(size: f64, height: f64) -> Vec<DVec3> {
 
 #[test]
 fn a_mirror_sees_a_ceiling_of_any_size() {
-    // Heights of a narrow lobe's cosine space are alpha times as low: a vertex that is on the horizon there by
-    // 1e-7 is not in the world
+    // Heights of a narrow lobe's cosine space are alpha times as low: a vertex that is on the horizon there
+    // by 1e-7 is not in the world
     let points: Vec<EvalPoint> = (0..64)
         .map(|i| {
             let size = 10.0_f64.powf(f64::from(i) / 10.0);

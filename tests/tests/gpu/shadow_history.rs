@@ -1,4 +1,5 @@
-//! Shadows over frames: a still picture loses its noise, a moved camera finds its pixels again, and what changes is not dragged along.
+//! Shadows over frames: a still picture loses its noise, a moved camera finds its pixels again, and what
+//! changes is not dragged along.
 
 use arealight::plan::{ShadeOptions, ShadowFilter, ShadowHistory};
 use arealight::{Light, LightShape};

@@ -1,5 +1,5 @@
-//! The errors of shadows in short form: rays are unbiased, the filter takes most of their noise away, and without shadows the error is far above. `arealight
-//! bench shadows` is the long form.
+//! The errors of shadows in short form: rays are unbiased, the filter takes most of their noise away, and
+//! without shadows the error is far above. `arealight bench shadows` is the long form.
 
 use arealight_benches::shadow_levels::{Level, LevelResult, Options, SceneResult, run};
 use arealight_engine::host::testing::device_or_skip;
@@ -40,7 +40,8 @@ fn every_level_errs_as_little_as_it_is_for() {
         // Less noise than of as many independent rays, which would leave .71 and .5
         let one = rmse(Level::Rays(1));
         assert!(rmse(Level::Rays(2)) < 0.7 * one && rmse(Level::Rays(4)) < 0.48 * one, "{}", scene.name);
-        // So coarse a picture has few pixels in a penumbra to take a mean over, and four rays leave less to take away: .31, .38 and .5 were seen
+        // So coarse a picture has few pixels in a penumbra to take a mean over, and four rays leave less to
+        // take away: .31, .38 and .5 were seen
         for (rays, most) in [(1, 0.4), (2, 0.48), (4, 0.6)] {
             let (plain, filtered) = (find(scene, Level::Rays(rays)), find(scene, Level::Filtered(rays)));
             let left = left(filtered, plain);

@@ -1,5 +1,5 @@
-//! The errors of shadows in films, in short form: a history takes away noise at rest and in motion, and drags nothing along. `arealight bench shadows
-//! --motion` is the long form.
+//! The errors of shadows in films, in short form: a history takes away noise at rest and in motion, and drags
+//! nothing along. `arealight bench shadows --motion` is the long form.
 
 use arealight_benches::shadow_motion::{Motion, Options, Scheme, Still, run};
 use arealight_engine::host::testing::device_or_skip;
@@ -21,7 +21,8 @@ fn a_history_errs_less_than_none_whatever_moves() {
     for motion in Motion::ALL {
         let (with, without) = (film(motion, true), film(motion, false));
         assert_eq!((with.not_finite, without.not_finite), (0, 0), "{motion:?}");
-        // Without history a frame knows of no other: against a truth that did not move along, the camera's film would err by ten times as much
+        // Without history a frame knows of no other: against a truth that did not move along, the camera's
+        // film would err by ten times as much
         assert!((0.75..1.33).contains(&(without.rmse / rest.rmse)), "{motion:?}: {without:?}");
         // Half of it, three quarters and four fifths were seen
         let most = if motion == Motion::Rest { 0.6 } else { 0.95 };

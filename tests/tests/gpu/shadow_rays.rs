@@ -1,4 +1,5 @@
-//! Shadow rays drawn by the GLSL library, for the reference's shading points behind triangles: their mean visibility is the exact one's.
+//! Shadow rays drawn by the GLSL library, for the reference's shading points behind triangles: their mean
+//! visibility is the exact one's.
 
 use arealight::{LightTable, Quality};
 use arealight_cases::answers::read_answers;
@@ -66,7 +67,8 @@ fn rays(engine: &TestEngine, cases: &[SupportedCase], count: usize) -> Vec<Vec<R
     found.chunks(count).map(<[Ray]>::to_vec).collect()
 }
 
-/// The part of the unshadowed light that arrives by these rays, per channel. `blocks` says what of a ray's way to the light is blocked.
+/// The part of the unshadowed light that arrives by these rays, per channel. `blocks` says what of a ray's
+/// way to the light is blocked.
 fn shadow(case: &SupportedCase, rays: &[Ray], blocks: impl Fn(DVec3) -> bool) -> DVec3 {
     let vertices = &case.light.vertices;
     let normal = (vertices[1] - vertices[0]).cross(vertices[2] - vertices[0]);
@@ -114,7 +116,8 @@ fn shadows_by_256_rays_are_those_of_the_reference() {
         unshadowed(&table, case) * shadow(case, &rays[index], |target| is_hidden(target, &case.blockers))
     };
     let found = errors(&cases, by_rays);
-    // What the reference's own 256 rays give, unstratified; of the lobes' own error .014 and .12 are in the last two
+    // What the reference's own 256 rays give, unstratified; of the lobes' own error .014 and .12 are in the
+    // last two
     println!("by rays: {found:?}");
     assert!(found.iter().zip([0.025, 0.018, 0.15]).all(|(found, bound)| *found <= bound), "{found:?}");
     // The twin: without shadows

@@ -126,7 +126,8 @@ fn it_is_the_light_of_the_visible_parts() {
     let Some(engine) = TestEngine::new() else { return };
     let (quad, blocker) = (quad(2.0), blocker());
     let triangles = [floor(0.0), blocker.clone()].concat();
-    // Half as much again as the noise of so many samples, .022 and .057; over all pixels it averages out to .002
+    // Half as much again as the noise of so many samples, .022 and .057; over all pixels it averages out to
+    // .002
     for (material, noise) in [(lambert(0.8), 0.03), (glossy(), 0.08)] {
         let view = View::new(&triangles, material);
         let compare = |shadows: bool| -> Vec<(f64, f64)> {
@@ -150,7 +151,8 @@ fn it_is_the_light_of_the_visible_parts() {
 #[test]
 fn a_surface_does_not_block_its_own_light() {
     let Some(engine) = TestEngine::new() else { return };
-    // Whole pictures, alike to the bit where nothing but the floor is there; also far from the origin, and near zero
+    // Whole pictures, alike to the bit where nothing but the floor is there; also far from the origin, and
+    // near zero
     for height in [0.0, 0.04, -1.0, 1000.0] {
         let floor: Vec<Triangle> =
             floor(0.0).iter().map(|t| t.map(|vertex| vertex + DVec3::Y * height)).collect();

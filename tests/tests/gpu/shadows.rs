@@ -1,4 +1,5 @@
-//! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces of every kind.
+//! The shade pass and the shadow pass, after one another: what arrives of lights of every kind, from surfaces
+//! of every kind.
 
 use arealight::plan::{ShadeOptions, ShadowFilter};
 use arealight::{Effects, Horizon, Light, LightShape, Quality, SpecularLobes, TubeEnds};
@@ -227,7 +228,8 @@ fn rays_leave_the_pocket_and_the_hole_of_a_light_alone() {
         for (surface, material, view) in surfaces() {
             let patch = ShadowPatch { material, view, lights: vec![light.clone()], blockers: within.clone() };
             let found = patch.run(&passes).mean();
-            // Eight draws in the pocket after one another are as likely as .4^8 = 7e-4 for a lobe that looks into it
+            // Eight draws in the pocket after one another are as likely as .4^8 = 7e-4 for a lobe that looks
+            // into it
             assert!(found > 0.99, "{kind}, {surface}: {found}");
             // The twin: a blocker before a part of the light
             let patch = ShadowPatch { blockers: beyond.clone(), ..patch };

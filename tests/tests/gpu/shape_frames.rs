@@ -198,7 +198,8 @@ fn pixels_show_what_the_oracle_says_with_every_set_of_kinds() {
         let mut lit = 0;
         for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {
             for (channel, expected) in expected.to_array().into_iter().enumerate() {
-                // The narrowest lobe's rounding, for two lobes of each of the lights, of a radiance of 3 at most
+                // The narrowest lobe's rounding, for two lobes of each of the lights, of a radiance of 3 at
+                // most
                 let bound = 6.0 * shapes.len() as f64 * rounding(0.16);
                 let place = || format!("pixel {index}, channel {channel}");
                 comparison.add(found[channel].into(), expected, bound, place);
@@ -285,8 +286,8 @@ fn the_reference_samples_shapes() {
         for group in groups {
             let ((shaded, _), (sampled, picture)) = (render(&group, false), render(&group, true));
             let ratio = sampled / shaded;
-            // The noise of a light that some thirty of the pixels see is 1 % (half of that for four times the samples): three of
-            // those. A part that is not sampled, or counted twice, is tens of per cent
+            // The noise of a light that some thirty of the pixels see is 1 % (half of that for four times the
+            // samples): three of those. A part that is not sampled, or counted twice, is tens of per cent
             let bound = if glossy { 0.05 } else { 0.03 };
             // Blurs of an image are a few per cent off, and here of one sign: docs/textures.md
             let bound = if group.iter().any(|shape| shape.texture.is_some()) { 0.06 } else { bound };

@@ -1,4 +1,5 @@
-//! Disks and spheres before a fitted lobe: from a light's record through a lobe's matrix, clipped at one horizon or at both.
+//! Disks and spheres before a fitted lobe: from a light's record through a lobe's matrix, clipped at one
+//! horizon or at both.
 
 use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::polygon;
@@ -26,7 +27,8 @@ impl Case {
         DMat3::from_cols(self.rows[0], self.rows[1], across).transpose()
     }
 
-    /// What the lobe reflects of an ellipse by a polygon of its area, clipped at the surface where that is asked for.
+    /// What the lobe reflects of an ellipse by a polygon of its area, clipped at the surface where that is
+    /// asked for.
     fn truth(&self, ellipse: &Ellipse, both: bool) -> f64 {
         const COUNT: usize = 1024;
         let angle = TAU / COUNT as f64;

@@ -1,5 +1,5 @@
-//! Disks, spheres and cylinders through the whole chain, from a light in the world to radiance: against the reference, and
-//! against the oracle's fitted lobes.
+//! Disks, spheres and cylinders through the whole chain, from a light in the world to radiance: against the
+//! reference, and against the oracle's fitted lobes.
 
 use arealight::gpu::GpuShape;
 use arealight::{Effects, FormFactor, Horizon, LightShape, Quality, SpecularLobes};

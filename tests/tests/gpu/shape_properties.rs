@@ -1,4 +1,5 @@
-//! What must hold of ellipses and spheres whatever they are: invariances, inclusion, continuity, and any bits.
+//! What must hold of ellipses and spheres whatever they are: invariances, inclusion, continuity, and any
+//! bits.
 
 use arealight_cases::hard::ellipse::{FAMILIES, Family, rounded};
 use arealight_oracle::ellipse::{Ellipse, form_factor, vector_form_factor};
@@ -71,8 +72,8 @@ fn turning_scaling_and_other_axes_change_nothing() {
             })
             .collect();
         for (index, [a, b]) in pairs(&engine, &related).into_iter().enumerate() {
-            // Both are rounded, by up to 2^-24 of each component, which a near rim magnifies: the backward bound of each,
-            // and what that moves the value
+            // Both are rounded, by up to 2^-24 of each component, which a near rim magnifies: the backward
+            // bound of each, and what that moves the value
             let bound = 2.0 * 6e-7 + 2.0 * sensitivity(&cases[index]) * 2.0_f64.powi(-24);
             if kind == 3 {
                 twin += usize::from((a - b).abs() > bound);
@@ -176,8 +177,8 @@ fn nothing_jumps_past_the_horizon() {
     }
 }
 
-/// Where one formula gives way to another, nothing is seen of that: the small form begins where the longer axis is a
-/// fiftieth of the distance, and its series where half the arc is one radian.
+/// Where one formula gives way to another, nothing is seen of that: the small form begins where the longer
+/// axis is a fiftieth of the distance, and its series where half the arc is one radian.
 #[test]
 fn nothing_jumps_where_formulas_change() {
     let Some(engine) = TestEngine::new() else { return };
@@ -208,7 +209,8 @@ fn nothing_jumps_where_formulas_change() {
     println!("by size {by_size:.1e}, by arc {by_arc:.1e}");
     // The small form's 2 (1 / 50)^2 of the ellipse's 1e-5, with the clipped form's rounding
     assert!(by_size < 4e-8, "{by_size:e}");
-    // The series' and the closed form's precision of the distance's cube, of which half a millionth is rounding
+    // The series' and the closed form's precision of the distance's cube, of which half a millionth is
+    // rounding
     assert!(by_arc < 5e-6, "{by_arc:e}");
 }
 
@@ -231,14 +233,16 @@ fn inscribed_polygons_tend_to_it() {
         errors[errors.len() / 2]
     });
     println!("medians {median:?} of {}", cases.len());
-    // An inscribed polygon lacks 2 pi^2 / (3 n^2) of the area: 1.6e-3 and 2.5e-5 of form factors of some hundredths
+    // An inscribed polygon lacks 2 pi^2 / (3 n^2) of the area: 1.6e-3 and 2.5e-5 of form factors of some
+    // hundredths
     assert!(median[0] > 3e-6 && median[0] < 1e-3, "{median:?}");
     assert!(median[1] < median[0] / 40.0, "{median:?}");
     in_contact_it_is_all_there_is(&engine);
 }
 
-/// A disk of radius 1 at the height h over a point that is x from its axis leaves open no more than the directions below h / (1 - x),
-/// which have its square of the cosine; from beyond its rim it covers no more than those below h / (x - 1).
+/// A disk of radius 1 at the height h over a point that is x from its axis leaves open no more than the
+/// directions below h / (1 - x), which have its square of the cosine; from beyond its rim it covers no more
+/// than those below h / (x - 1).
 fn in_contact_it_is_all_there_is(engine: &TestEngine) {
     let mut random = Random::new(83);
     let mut cases = Vec::new();

@@ -55,7 +55,8 @@ fn hard_ellipses_are_as_good_as_their_rounding() {
 fn before_a_needles_tip_no_digit_cancels() {
     let Some(engine) = TestEngine::new() else { return };
     let family = Family::find("needle-tip").unwrap();
-    // With what a cone gave whose axes were taken from a difference: its entry along a needle is a difference of squares
+    // With what a cone gave whose axes were taken from a difference: its entry along a needle is a difference
+    // of squares
     let known = [(1, 3803, 1.208_563_9e-5), (2, 8754, 1.301_127_3e-4), (3, 3255, 1.911_504_3e-6)];
     let cases = known.map(|(seed, index, _)| family.case(index, seed));
     let mut comparison = Comparison::new("before a needle's tip");
@@ -104,8 +105,8 @@ fn the_published_disk_breaks() {
     }
 }
 
-/// What a light of this size sends from there at most: the area it shows, over pi times the squared distance, and with
-/// the highest elevation of any of its points.
+/// What a light of this size sends from there at most: the area it shows, over pi times the squared distance,
+/// and with the highest elevation of any of its points.
 fn most(ellipse: &Ellipse) -> f64 {
     let area = ellipse.axis_u.cross(ellipse.axis_v).length();
     let square = ellipse.center.length_squared();
@@ -315,8 +316,9 @@ fn spheres_in_cosine_space_are_their_silhouettes() {
         let found = f64::from(found[0]);
         let truth = sphere::transformed_form_factor(matrix, sphere);
         forward = forward.max((found - truth).abs());
-        // The silhouette is rounded before it is transformed, and the result again: the transform's product is as if each of
-        // its vectors had moved by 2^-22 of the product of lengths, the matrix's largest entry being about one
+        // The silhouette is rounded before it is transformed, and the result again: the transform's product
+        // is as if each of its vectors had moved by 2^-22 of the product of lengths, the matrix's largest
+        // entry being about one
         let disk = sphere.silhouette().unwrap();
         let ellipse = disk.transformed(matrix);
         let error = nearby_shape::distance(&ellipse, found, 1e-7);

@@ -31,7 +31,8 @@ fn with_sheen(random: &mut Random, index: usize) -> Surface {
     }
 }
 
-/// Points under polygons of 3 to 8 vertices anywhere: views at the normal, near it, anywhere, and grazing to 89.9 degrees and beyond.
+/// Points under polygons of 3 to 8 vertices anywhere: views at the normal, near it, anywhere, and grazing to
+/// 89.9 degrees and beyond.
 fn points(seed: u64) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     let one = |i: usize| {
@@ -49,8 +50,9 @@ fn points(seed: u64) -> Vec<EvalPoint> {
     (0..COUNT).map(one).collect()
 }
 
-/// What float32 may lose of the lobes: of the base, of a coat, and of sheen. Its exponential multiplies an exponent's rounding, which is
-/// that of sums of terms up to 120, and where the view grazes the albedo follows its cosine.
+/// What float32 may lose of the lobes: of the base, of a coat, and of sheen. Its exponential multiplies an
+/// exponent's rounding, which is that of sums of terms up to 120, and where the view grazes the albedo
+/// follows its cosine.
 fn bound(surface: &Surface) -> f64 {
     let coat = surface.coat.map_or(0.0, |coat| rounding(coat.alpha));
     (2.0 * rounding(surface.alpha) + coat + 1e-5) / 0.6
@@ -88,7 +90,8 @@ fn disks_spheres_and_tubes_light_sheen_as_their_float64_twins() {
             shape_lights(&mut random).map(|light| EvalPoint { surface, position, normal, view, light })
         })
         .collect();
-    // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to 2.9 multiply
+    // A curved outline's ends on a horizon: 1e-5 of a form factor (docs/shapes.md), which albedos of up to
+    // 2.9 multiply
     engine.assert_follows_shape_twin("sheen under shapes", &points, |given| bound(&given.surface) + 3e-5);
 }
 

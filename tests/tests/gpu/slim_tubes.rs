@@ -56,8 +56,9 @@ fn a_slim_tube_is_cut_at_a_slant() {
     assert!(across > COUNT / 2, "{across} noticed");
 }
 
-/// Cases of long batteries, with what they gave before: a foot taken from the nearer end, which is far off; a horizon between the
-/// ends of a line that was cut across; a polygon in the place of a line whose end is cut, 44 away.
+/// Cases of long batteries, with what they gave before: a foot taken from the nearer end, which is far off; a
+/// horizon between the ends of a line that was cut across; a polygon in the place of a line whose end is cut,
+/// 44 away.
 #[test]
 fn the_worst_tubes_of_long_batteries_are_as_promised() {
     let Some(engine) = TestEngine::new() else { return };

@@ -68,8 +68,8 @@ fn largest_error(stability: &Stability, method: &str, family: &str) -> f64 {
 fn the_yardsticks_are_what_they_are_named_for() {
     let Some(host) = device_or_skip() else { return };
     let stability = short(&host, |method| method.is_yardstick);
-    // Above the horizon a clipped sphere is a whole one, whose form factor is the vector's height: float32's rounding is left. The
-    // rational function that takes its place errs everywhere
+    // Above the horizon a clipped sphere is a whole one, whose form factor is the vector's height: float32's
+    // rounding is left. The rational function that takes its place errs everywhere
     assert!(largest_error(&stability, "sphere-horizon", "above") < 1e-6);
     assert!(largest_error(&stability, "clipless", "above") > 5e-3);
     // Across it what is clipped is right but for the edges' guard, 2e-4; what is not is far off
@@ -119,8 +119,8 @@ fn spoiled_results_are_found_out() {
     assert_eq!(broken(&|bits| bits | 0x8000_0000), (all, 0));
 }
 
-/// Cases of the long battery in which rounding puts an edge and the arc along the horizon on different sides of the point: the
-/// sum is then that of no polygon nearby, unless it is closed to the smaller one.
+/// Cases of the long battery in which rounding puts an edge and the arc along the horizon on different sides
+/// of the point: the sum is then that of no polygon nearby, unless it is closed to the smaller one.
 #[test]
 fn an_edge_through_the_point_is_closed_on_its_own_side() {
     let Some(host) = device_or_skip() else { return };
@@ -140,8 +140,9 @@ fn an_edge_through_the_point_is_closed_on_its_own_side() {
     }
 }
 
-/// What the last guard of the library is for: the sums of these polygons are NaN or infinite, as the results of a
-/// formula without a guard show, and the library's results, by their bits and before any clamp, are numbers.
+/// What the last guard of the library is for: the sums of these polygons are NaN or infinite, as the results
+/// of a formula without a guard show, and the library's results, by their bits and before any clamp, are
+/// numbers.
 #[test]
 fn the_last_guard_survives_the_compilers() {
     let Some(host) = device_or_skip() else { return };

@@ -1,5 +1,6 @@
-//! Surfaces that are hard on float32: nearly mirrors, grazing views, views along the normal, far from the world's origin,
-//! under lights of many vertices; against float64, with bounds by backward error (see `arealight_tests::lobe`).
+//! Surfaces that are hard on float32: nearly mirrors, grazing views, views along the normal, far from the
+//! world's origin, under lights of many vertices; against float64, with bounds by backward error (see
+//! `arealight_tests::lobe`).
 
 use arealight::{Effects, Horizon, LightTable};
 use arealight_engine::EvalPoint;
@@ -81,7 +82,8 @@ const FAMILIES: [(&str, Make); 6] = [
     }),
 ];
 
-/// Judges of all points with a table. The light is where the world says it is, in float64: packing is a part of it.
+/// Judges of all points with a table. The light is where the world says it is, in float64: packing is a part
+/// of it.
 fn judges(table: &LightTable, points: &[EvalPoint], given: &Cases, horizon: Horizon) -> Vec<Judge> {
     let judge = |(index, point): (usize, &EvalPoint)| {
         let lobe = Lobe::glossy(table, &given.cases[index]);

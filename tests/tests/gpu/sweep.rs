@@ -1,5 +1,5 @@
-//! A light sweeps through a floor, through a point that is shaded, and past the horizon, through the whole shade pass: each
-//! frame is what float64 says, and none jumps from the one before.
+//! A light sweeps through a floor, through a point that is shaded, and past the horizon, through the whole
+//! shade pass: each frame is what float64 says, and none jumps from the one before.
 
 use arealight::gpu::GpuLight;
 use arealight::plan::ShadeOptions;
@@ -18,8 +18,8 @@ static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
 
 const FRAMES: usize = 1000;
 
-/// The surfaces of a frame: one that the light passes through, one beside it, and one that is seen at a grazing angle with
-/// the light behind it; each nearly a mirror, and rough.
+/// The surfaces of a frame: one that the light passes through, one beside it, and one that is seen at a
+/// grazing angle with the light behind it; each nearly a mirror, and rough.
 const SURFACES: [(Vec3, f32); 6] = [
     (Vec3::new(0.0, 0.0, 0.0), 0.05),
     (Vec3::new(0.0, 0.0, 0.0), 0.5),
@@ -45,8 +45,8 @@ fn material(roughness: f32) -> Material {
     }
 }
 
-/// Where the light's middle is in a frame: from above the first surface through it, and down. On a grid, so that float32
-/// subtracts it without an error; the light stands still, and the surfaces move the other way.
+/// Where the light's middle is in a frame: from above the first surface through it, and down. On a grid, so
+/// that float32 subtracts it without an error; the light stands still, and the surfaces move the other way.
 fn place(frame: usize) -> Vec3 {
     let part = frame as f64 / (FRAMES - 1) as f64 * 2.0 - 1.0;
     let grid = |x: f64| ((x * 4096.0).round() / 4096.0) as f32;
@@ -222,7 +222,8 @@ fn check(concave: bool) {
             jumps.assert_all();
             assert!(later.failures() > FRAMES / 2, "the twin: {} noticed", later.failures());
         }
-        // The light does pass through the first surface: from one frame to the next it is gone, or seen from its back
+        // The light does pass through the first surface: from one frame to the next it is gone, or seen from
+        // its back
         let jump = |surface: usize| {
             let column = expected.iter().skip(surface).step_by(SURFACES.len());
             column.clone().zip(column.skip(1)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

@@ -23,7 +23,8 @@ fn split(column: u32, row: u32) -> [f32; 4] {
     [half(column), 1.0 - half(column), half(row), 1.0]
 }
 
-/// White; red on the left half, green on the right, and blue added to the upper half; and texels of 0 and 65,504 in turn.
+/// White; red on the left half, green on the right, and blue added to the upper half; and texels of 0 and
+/// 65,504 in turn.
 fn engine() -> Option<TestEngine> {
     let mut engine = TestEngine::new()?;
     let picture = |texel: &dyn Fn(u32, u32) -> [f32; 4]| -> Vec<[f32; 4]> {
@@ -63,7 +64,8 @@ fn rectangle(random: &mut Random, center: DVec3, size: f64) -> Vec<DVec3> {
     vec![center - u - v, center + u - v, center + u + v, center - u + v]
 }
 
-/// Points under rectangles, under polygons of up to seven vertices, and under such with a hole: over all angles, distances and roughnesses.
+/// Points under rectangles, under polygons of up to seven vertices, and under such with a hole: over all
+/// angles, distances and roughnesses.
 fn points(seed: u64, layer: u32, count: usize) -> Vec<EvalPoint> {
     let mut random = Random::new(seed);
     (0..count)
@@ -104,8 +106,8 @@ fn without_texture(points: &[EvalPoint]) -> Vec<EvalPoint> {
     points.iter().map(plain).collect()
 }
 
-/// Levels with textures; the dearest with the dearest of the other choices. A software driver takes a second for each
-/// pipeline, and there are four for a quality: of quads and of polygons, with and without images.
+/// Levels with textures; the dearest with the dearest of the other choices. A software driver takes a second
+/// for each pipeline, and there are four for a quality: of quads and of polygons, with and without images.
 fn qualities() -> [Quality; 4] {
     let level = |footprint| Quality { footprint, ..Quality::default() };
     let [round, ellipse, split] = FOOTPRINTS.map(level);
@@ -129,7 +131,8 @@ fn a_white_image_changes_nothing() {
         let mut comparison = Comparison::new(format!("{quality:?}"));
         let mut lit = 0;
         for (index, (with, without)) in with.iter().zip(&without).enumerate() {
-            // White is exact in binary16, at every level; the parts' form factors are rounded one by one, by 1e-6 each
+            // White is exact in binary16, at every level; the parts' form factors are rounded one by one, by
+            // 1e-6 each
             let parts = match quality.footprint {
                 Footprint::Round | Footprint::Ellipse => 0.0,
                 Footprint::Split => 16.0,
@@ -168,8 +171,9 @@ fn lookups_are_those_of_their_float64_twins() {
         let mut twin = 0;
         for (index, (point, answer)) in given.iter().zip(&answers).enumerate() {
             let expected = seen_color(point, &pyramid, Filter::Level(footprint));
-            // Sixteen bits a texel and levels' share and place to 1/256 between texels that differ by one: 1/256 of the
-            // light, twice; a footprint's axis turns freely where it is nearly round, which moves taps by what is left
+            // Sixteen bits a texel and levels' share and place to 1/256 between texels that differ by one:
+            // 1/256 of the light, twice; a footprint's axis turns freely where it is nearly round, which
+            // moves taps by what is left
             let whole =
                 seen_color(&without_texture(std::slice::from_ref(point))[0], &pyramid, Filter::Article).x;
             let bound = 1e-2 * whole + 2e-5;
@@ -228,8 +232,8 @@ fn twice_the_radiance_is_twice_the_answer() {
     }
 }
 
-/// A floor of roughness `alpha` under a screen that stands at y = 2 and shows its red half at x < 0, its blue half
-/// above; seen so that the mirror direction meets the screen at (x, z).
+/// A floor of roughness `alpha` under a screen that stands at y = 2 and shows its red half at x < 0, its blue
+/// half above; seen so that the mirror direction meets the screen at (x, z).
 fn screen(alpha: f64, x: f64, z: f64) -> EvalPoint {
     let corner = |x: f64, z: f64| DVec3::new(x, 2.0, z);
     // The front is towards the point: u runs to +x and v runs down
@@ -295,8 +299,8 @@ fn sweeps_have_no_seams() {
     const STEPS: u32 = 2000;
     let Some(engine) = engine() else { return };
     let share = |step: u32| f64::from(step) / f64::from(STEPS);
-    // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; the surface that rises past
-    // the light's plane
+    // Roughness from a mirror to the end; a hit point that crosses the image and leaves it; the surface that
+    // rises past the light's plane
     let roughness: Vec<EvalPoint> =
         (0..=STEPS).map(|step| screen((0.03 + 0.97 * share(step)).powi(2), 0.3, 1.0)).collect();
     let across: Vec<EvalPoint> = (0..=STEPS).map(|step| screen(0.2, 3.0 * share(step) - 1.5, 1.0)).collect();
@@ -312,14 +316,15 @@ fn sweeps_have_no_seams() {
         .collect();
     for footprint in FOOTPRINTS {
         let quality = Quality { footprint, ..Quality::default() };
-        // A thousandth of the way moves the answer by a few thousandths; a seam between levels or parts would be a step
-        // as large as the image's contrast
+        // A thousandth of the way moves the answer by a few thousandths; a seam between levels or parts would
+        // be a step as large as the image's contrast
         let bound = 0.01;
         let step = largest_step(&engine, &roughness, quality);
         assert!(step < bound, "{footprint:?}: roughness: {step}");
         let step = largest_step(&engine, &across, quality);
         assert!(step < bound, "{footprint:?}: across: {step}");
-        // Where the plane passes the point the light's side changes, and with it which points are lit: at one point only
+        // Where the plane passes the point the light's side changes, and with it which points are lit: at one
+        // point only
         let answers = engine.eval(&through, quality).unwrap();
         assert!(answers.iter().all(|answer| answer.is_finite() && answer.min_element() >= 0.0));
     }
@@ -340,8 +345,8 @@ fn a_light_that_fills_the_sky_gives_its_colors() {
     sky.light.texture = Some(LightTexture { layer: SPLIT, uvs });
     for footprint in FOOTPRINTS {
         let answer = engine.eval(&[sky.clone()], Quality { footprint, ..Quality::default() }).unwrap()[0];
-        // The point is under the middle: half of each. The middle of the image is bilinear between its halves; the fit of
-        // Lambert's lobe has no error
+        // The point is under the middle: half of each. The middle of the image is bilinear between its
+        // halves; the fit of Lambert's lobe has no error
         assert!((answer - Vec3::splat(0.5)).abs().max_element() < 0.01, "{footprint:?}: {answer}");
     }
 }
@@ -379,8 +384,8 @@ fn a_far_light_shows_its_mean() {
     for footprint in FOOTPRINTS {
         for surface in [lambert_surface(), glossy_surface(0.5)] {
             let ratio = far_light(&engine, &surface, footprint);
-            // Of an image whose halves are the same about its middle, the mean is seen exactly but for binary16's and the
-            // sampler's rounding
+            // Of an image whose halves are the same about its middle, the mean is seen exactly but for
+            // binary16's and the sampler's rounding
             assert!((ratio - Vec3::ONE).abs().max_element() < 4e-3, "{footprint:?}: {ratio}");
         }
     }

@@ -79,7 +79,8 @@ fn showing(points: &[EvalPoint], texture: Option<u32>) -> Vec<EvalPoint> {
     points.iter().map(|point| EvalPoint { light: light(&point.light), ..point.clone() }).collect()
 }
 
-/// One fetch; and four along an axis, of what both horizons leave. A software driver takes seconds for each pipeline.
+/// One fetch; and four along an axis, of what both horizons leave. A software driver takes seconds for each
+/// pipeline.
 fn qualities() -> [Quality; 2] {
     let four = Quality {
         form_factor: FormFactor::Difference,

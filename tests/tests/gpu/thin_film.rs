@@ -1,4 +1,5 @@
-//! Thin films that a pass knows: against the float64 twin, against films that a host put into reflectances, and in their image of a G-buffer.
+//! Thin films that a pass knows: against the float64 twin, against films that a host put into reflectances,
+//! and in their image of a G-buffer.
 
 use arealight::plan::{GBufferLayout, ShadeOptions};
 use arealight::{Effects, Quality, SpecularLobes};
@@ -18,7 +19,8 @@ fn by(specular_lobes: SpecularLobes) -> Quality {
     Quality { specular_lobes, ..Quality::default() }
 }
 
-/// A metal or a coupled dielectric below a film that covers it wholly or in part; every fourth below a coat, and every third metal reflecting more than once.
+/// A metal or a coupled dielectric below a film that covers it wholly or in part; every fourth below a coat,
+/// and every third metal reflecting more than once.
 fn with_film(random: &mut Random, index: usize) -> Surface {
     let is_metal = index.is_multiple_of(2);
     let mut draw = |from: f64, to: f64| random.between(from, to);

@@ -74,8 +74,8 @@ impl Pictures {
         self.counts.classes.iter().find(|(found, _)| *found == class).expect("every class is counted").1
     }
 
-    /// How many pixels differ by more than what the quality level promises of each light: some that are left out would be
-    /// rounded to more than nothing.
+    /// How many pixels differ by more than what the quality level promises of each light: some that are left
+    /// out would be rounded to more than nothing.
     fn different(&self, lights: &[Light]) -> usize {
         let radiance: f32 = lights.iter().map(|light| light.radiance.max_element()).sum();
         let pixels = self.plain.iter().zip(&self.tiled);
@@ -131,8 +131,8 @@ fn a_room_of_any_lights_differs_by_rounding_whether_its_lists_hold_them_or_not()
     assert!(found.counts.lights < all, "{:?}", found.counts);
 }
 
-/// Lights that are hard to classify about the floor of the sweep, y = 0: near it, on it, across it, below it, lights away, of
-/// no area, of both sides.
+/// Lights that are hard to classify about the floor of the sweep, y = 0: near it, on it, across it, below it,
+/// lights away, of no area, of both sides.
 fn hard_lights(center: DVec3) -> Vec<Light> {
     let square = |along: DVec3, across: DVec3, at: DVec3, two_sided| Light {
         name: format!("{at}"),
@@ -294,8 +294,8 @@ fn floor() -> (Scene, DVec3) {
     (scene, center)
 }
 
-/// The most that a pixel lost, in the sum of its channels, over what it kept. What float32 rounds of hundreds of lights, and pixels that
-/// nothing lights, do not count.
+/// The most that a pixel lost, in the sum of its channels, over what it kept. What float32 rounds of hundreds
+/// of lights, and pixels that nothing lights, do not count.
 fn lost(all: &[Vec4], kept: &[Vec4]) -> f64 {
     let sum = |pixel: &Vec4| f64::from(pixel.x) + f64::from(pixel.y) + f64::from(pixel.z);
     let pixels = all.iter().map(sum).zip(kept.iter().map(sum));

@@ -1,4 +1,5 @@
-//! Light that thin surfaces let through: a pass over the other side of a G-buffer, against eval, against none, by tiles, with shadows, and against Monte Carlo.
+//! Light that thin surfaces let through: a pass over the other side of a G-buffer, against eval, against
+//! none, by tiles, with shadows, and against Monte Carlo.
 
 use arealight::plan::{Output, ShadeOptions, ShadowFilter, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
@@ -187,7 +188,8 @@ fn the_reference_lets_as_much_through() {
                 renderer.each_pass(surfaces, each).map(|_| ())
             }))
         };
-        // The coupled lobe errs by .2 % and reflections off paper are faint; the noise of both, over 2,000 pixels, is below 1 %
+        // The coupled lobe errs by .2 % and reflections off paper are faint; the noise of both, over 2,000
+        // pixels, is below 1 %
         let ratio = ours(scene.effects()) / truth;
         assert!((ratio - 1.0).abs() < 0.02, "shadows {shadows}: {ratio}");
         // The twin: without what is let through most is missing

@@ -102,8 +102,8 @@ fn tubes_are_what_their_outlines_are() {
             let truth: Vec<_> =
                 tubes.iter().zip(&lobes).map(|(t, m)| transformed_form_factor(m, t)).collect();
             for level in [EXACT, DIFFERENCE] {
-                // A thousandth of the radius away, the center's rounding of 6e-8 of it is 6e-5 of the distance: of the form
-                // factor that is a tenth or less, as a rim's place is what matters
+                // A thousandth of the radius away, the center's rounding of 6e-8 of it is 6e-5 of the
+                // distance: of the form factor that is a tenth or less, as a rim's place is what matters
                 let bound = match (level, place) {
                     (_, Place::Near) => 1e-5,
                     _ => 2e-6,
@@ -141,9 +141,9 @@ fn thin_and_far_tubes_keep_relative_precision() {
                 let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0)) * lobe;
                 let whole = truth + transformed_form_factor(&mirror, &tube);
                 let thickness = tube.radius / distance(&tube);
-                // A line's own error is the thickness's square. What is no line is summed edge by edge: near by its error is absolute, of which the
-                // vertices' rounding leaves some 2^-27. Heights in the lobe's space are rounded to 2^-23 of the
-                // distance, of which they are a hundredth
+                // A line's own error is the thickness's square. What is no line is summed edge by edge: near
+                // by its error is absolute, of which the vertices' rounding leaves some 2^-27. Heights in the
+                // lobe's space are rounded to 2^-23 of the distance, of which they are a hundredth
                 let summed = if is_thin(&tube, &lobe) { 0.0 } else { 1.5e-8 / whole };
                 let bound = summed + 1e-4 + 10.0 * thickness * thickness;
                 if whole > 0.0 {
@@ -200,8 +200,8 @@ fn at_the_switch_nothing_jumps() {
         let jumps = found.chunks_exact(2).map(|pair| (pair[0] - pair[1]).abs());
         let (largest, light) = (jumps.fold(0.0, f64::max), found.iter().fold(0.0, |a: f64, b| a.max(*b)));
         println!("{ends:?}: {largest:.1e} of {light:.1e}");
-        // The line's error, some (3e-3)^2 of form factors of up to 3e-3, or a segment's, some 2^-17 of one of (1 / 45)^2; and the
-        // outline's rounding
+        // The line's error, some (3e-3)^2 of form factors of up to 3e-3, or a segment's, some 2^-17 of one of
+        // (1 / 45)^2; and the outline's rounding
         assert!(largest < 1e-6 && light > 1e-3, "{ends:?}: {largest:e}");
     }
 }
@@ -233,7 +233,8 @@ fn a_capsule_shrinks_to_a_sphere() {
     in_contact_a_tube_is_all_there_is(&engine);
 }
 
-/// A tube over a point sends no less than the sphere in it that is nearest, and no more than all there is: in contact that is the same.
+/// A tube over a point sends no less than the sphere in it that is nearest, and no more than all there is: in
+/// contact that is the same.
 fn in_contact_a_tube_is_all_there_is(engine: &TestEngine) {
     let mut random = Random::new(97);
     for ends in ENDS {
@@ -336,7 +337,8 @@ fn tubes_are_cut_by_the_surface_too() {
     assert!(cut > COUNT && hidden > COUNT / 4, "{cut} cut, {hidden} hidden");
 }
 
-/// Two tubes of whose arcs a lobe's horizon, or the surface's, leaves next to nothing: what is left is not all of the outline.
+/// Two tubes of whose arcs a lobe's horizon, or the surface's, leaves next to nothing: what is left is not
+/// all of the outline.
 #[test]
 fn little_that_is_left_of_an_arc_is_not_all_of_it() {
     let Some(engine) = TestEngine::new() else { return };

@@ -1,5 +1,5 @@
-//! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and orthographic cameras, with and without tiles,
-//! each pixel against the oracle.
+//! Which pixels a frame is, and from where it is seen: viewports, rectangles, half resolution and
+//! orthographic cameras, with and without tiles, each pixel against the oracle.
 
 use crate::recorder::field;
 use arealight::plan::{ShadeOptions, TileOptions};
@@ -218,7 +218,8 @@ fn dielectric() -> arealight_oracle::material::Surface {
     Material { dielectric_f0: Vec3::splat(0.04), dielectric_f90: 1.0, ..material() }.surface()
 }
 
-/// Twenty units away a depth of 24 bits is known to 4e-6 of them with this near plane, and radiance of 3 changes by as much at most.
+/// Twenty units away a depth of 24 bits is known to 4e-6 of them with this near plane, and radiance of 3
+/// changes by as much at most.
 const BOUND: f64 = 1e-4;
 
 /// Shots by their frames equal the oracle; frames as they would be by default do not.

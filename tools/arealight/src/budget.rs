@@ -31,7 +31,8 @@ pub struct BudgetArguments {
 }
 
 impl BudgetArguments {
-    /// The level for a frame on a device; none without a budget. A profile of another device is said to be one.
+    /// The level for a frame on a device; none without a budget. A profile of another device is said to be
+    /// one.
     ///
     /// # Errors
     /// A profile without a budget, or that cannot be read; a budget that no level keeps, with the nearest.

@@ -91,7 +91,8 @@ impl Canvas {
         });
     }
 
-    /// Writes a line of text from the bottom to the top, whose left is at `x`; aligned to the left is above `y`.
+    /// Writes a line of text from the bottom to the top, whose left is at `x`; aligned to the left is above
+    /// `y`.
     pub fn text_upwards(&mut self, (x, y): (i32, i32), text: &str, align: Align, colour: Colour) {
         write_line(text, align, |along, down, coverage| {
             self.blend(x + down, y - along, colour, coverage);

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// Colours of the map from the smallest difference to the largest, evenly spaced: dark blue, violet, red, orange, pale yellow.
+/// Colours of the map from the smallest difference to the largest, evenly spaced: dark blue, violet, red,
+/// orange, pale yellow.
 const COLORS: [[u8; 3]; 6] =
     [[0, 0, 20], [50, 15, 110], [140, 35, 130], [220, 70, 85], [250, 150, 70], [252, 253, 190]];
 

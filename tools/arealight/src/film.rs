@@ -10,7 +10,8 @@ use std::borrow::Cow;
 pub struct Palette {
     /// Colours, at most 255; one more says that a pixel is as it was.
     pub colors: u8,
-    /// The most that a channel is raised or lowered by a fixed pattern of 4 x 4 pixels, so that gradients have no bands. What stays as it was stays so.
+    /// The most that a channel is raised or lowered by a fixed pattern of 4 x 4 pixels, so that gradients
+    /// have no bands. What stays as it was stays so.
     pub dither: i32,
 }
 
@@ -29,8 +30,8 @@ fn dithered(frame: &Canvas, dither: i32) -> Vec<u8> {
     raised.collect()
 }
 
-/// Pictures of one size, each shown for `delay` hundredths of a second, again and again. Pixels that stay as they were are transparent, which is
-/// what keeps the file small.
+/// Pictures of one size, each shown for `delay` hundredths of a second, again and again. Pixels that stay as
+/// they were are transparent, which is what keeps the file small.
 ///
 /// # Errors
 /// [`EncodingError`] where a side is above 65,535 pixels.

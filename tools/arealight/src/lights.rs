@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 /// What a scene is lit by.
 #[derive(clap::Args, Clone, Copy, Debug)]
 pub struct LightArguments {
-    /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide; without it they are left out, but those whose
-    /// `extras.arealight.radius` says one
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, and show suns half a degree wide;
+    /// without it they are left out, but those whose `extras.arealight.radius` says one
     #[arg(long, value_name = "RADIUS", value_parser = parse_radius)]
     light_size: Option<f64>,
-    /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera sees, for models without lights
-    /// (`studio`)
+    /// What lights the scene: what the file has (`file`), or that and three softboxes around what the camera
+    /// sees, for models without lights (`studio`)
     #[arg(long, value_name = "RIG", default_value = "file")]
     lights: Rig,
 }
@@ -26,8 +26,8 @@ enum Rig {
 }
 
 impl LightArguments {
-    /// Reads a scene, or the demo's if there is none, says what of it is not shown, and finds the camera: that of a name, the file's first, or
-    /// one that frames the scene.
+    /// Reads a scene, or the demo's if there is none, says what of it is not shown, and finds the camera:
+    /// that of a name, the file's first, or one that frames the scene.
     pub fn load(
         self,
         path: Option<&Path>,

@@ -1,4 +1,5 @@
-//! What commands write: standard output, which may be a pipe that closes early, and files, which are whole or not there.
+//! What commands write: standard output, which may be a pipe that closes early, and files, which are whole or
+//! not there.
 
 use crate::failure::Failure;
 use arealight_scene::{Scene, Warning};
@@ -22,7 +23,8 @@ pub fn print(text: &str) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Prints to standard error what a scene's picture lacks, and what is not shown word for word: the file once, then a line for each kind.
+/// Prints to standard error what a scene's picture lacks, and what is not shown word for word: the file once,
+/// then a line for each kind.
 pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
     for (word, said) in [("warning", &scene.warnings), ("note", &scene.notes)] {
         match &Warning::grouped(said)[..] {
@@ -33,7 +35,8 @@ pub fn say_what_is_not_shown(scene: &Scene, path: &Path) {
     }
 }
 
-/// Sees to it that a file can be written, before long work. What is there stays as it is, and nothing new is left behind.
+/// Sees to it that a file can be written, before long work. What is there stays as it is, and nothing new is
+/// left behind.
 ///
 /// # Errors
 /// [`Failure::Output`] if it cannot.
@@ -49,7 +52,8 @@ pub fn is_stream(path: &Path) -> bool {
     path == Path::new(STREAM)
 }
 
-/// Says what was done: on standard output, or on standard error where the work's own output, at `path`, goes to standard output.
+/// Says what was done: on standard output, or on standard error where the work's own output, at `path`, goes
+/// to standard output.
 ///
 /// # Errors
 /// As [`print`].
@@ -61,7 +65,8 @@ pub fn say_beside(path: Option<&Path>, text: &str) -> Result<ExitCode, Failure> 
     print(text)
 }
 
-/// Writes a file: a reader sees what was there before or all of what is new, also if the disk is full or the program ends.
+/// Writes a file: a reader sees what was there before or all of what is new, also if the disk is full or the
+/// program ends.
 ///
 /// # Errors
 /// [`Failure::Output`] if it cannot be written. What was there stays then.

@@ -1,4 +1,5 @@
-//! From radiance to a file: supersampled radiance is resolved, and written as it is (EXR) or for a screen (PNG).
+//! From radiance to a file: supersampled radiance is resolved, and written as it is (EXR) or for a screen
+//! (PNG).
 
 use crate::failure::Failure;
 use crate::output;
@@ -32,15 +33,16 @@ pub enum Format {
 pub enum Exposure {
     /// Radiance is multiplied by 2^stops; within [`MAX_STOPS`].
     Stops(f32),
-    /// By so many stops that [`AUTO_PART`] of the samples that are lit and show no lamp have a luminance of at most [`AUTO_LUMINANCE`].
+    /// By so many stops that [`AUTO_PART`] of the samples that are lit and show no lamp have a luminance of
+    /// at most [`AUTO_LUMINANCE`].
     Auto,
 }
 
 /// The most stops, up or down: within what float32 radiance bears.
 pub const MAX_STOPS: f32 = 64.0;
 
-/// The part of the samples that is not brighter than [`AUTO_LUMINANCE`] in a picture that is exposed by itself: highlights, which are few,
-/// may be.
+/// The part of the samples that is not brighter than [`AUTO_LUMINANCE`] in a picture that is exposed by
+/// itself: highlights, which are few, may be.
 pub const AUTO_PART: f64 = 0.9;
 
 /// Where the tone map begins to roll off, nearly: most of the picture keeps its contrast.
@@ -64,8 +66,8 @@ fn luminance(color: Vec3) -> f32 {
 }
 
 impl Picture {
-    /// The stops of [`Exposure::Auto`]; 0 where nothing is lit. `emission` is what each sample has of lamps that the camera sees: those
-    /// samples do not count.
+    /// The stops of [`Exposure::Auto`]; 0 where nothing is lit. `emission` is what each sample has of lamps
+    /// that the camera sees: those samples do not count.
     pub fn auto_stops(&self, emission: &[Vec3]) -> f32 {
         let reflected = self.pixels.iter().zip(emission).filter(|(_, emission)| **emission == Vec3::ZERO);
         let luminances = reflected.map(|(radiance, _)| luminance(*radiance));
@@ -92,9 +94,10 @@ impl Picture {
         Self { width, height, pixels }
     }
 
-    /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending names:
-    /// `.exr` holds the mean radiance in float32, untouched by `stops`; `.png` is multiplied by 2^stops, tone-mapped sample
-    /// by sample (so that the edge of a bright light stays smooth), and encoded as sRGB.
+    /// Writes the picture, of `factor` × `factor` samples a pixel, in the format that the path's ending
+    /// names: `.exr` holds the mean radiance in float32, untouched by `stops`; `.png` is multiplied by
+    /// 2^stops, tone-mapped sample by sample (so that the edge of a bright light stays smooth), and encoded
+    /// as sRGB.
     pub fn save(&self, path: &Path, factor: u32, stops: f32) -> Result<(), Failure> {
         match Self::check_format(path)? {
             Format::Exr => self.resolve(factor, |radiance| radiance).save_exr(path),

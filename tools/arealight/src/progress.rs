@@ -1,4 +1,5 @@
-//! Progress on the error stream: a bar on a terminal; elsewhere, as in a log, a line now and then; nothing with `--quiet`.
+//! Progress on the error stream: a bar on a terminal; elsewhere, as in a log, a line now and then; nothing
+//! with `--quiet`.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle, TermLike};
 use std::io::{self, IsTerminal, Write};

@@ -9,7 +9,8 @@ use glam::DVec3;
 /// Parts smaller than this share of a light are left out: what rounding leaves where blockers touch.
 const LEAST_PART: f64 = 1e-13;
 
-/// A case for each visible part of its light; the case itself where nothing blocks it, and none where all is hidden.
+/// A case for each visible part of its light; the case itself where nothing blocks it, and none where all is
+/// hidden.
 pub fn parts(case: &SupportedCase) -> Vec<SupportedCase> {
     if case.blockers.is_empty() {
         return vec![case.clone()];

@@ -1,5 +1,6 @@
-//! What it takes a driver to compile the pipelines of a scene: the whole command, as a user runs it, on a picture of next to no pixels. The
-//! driver is the one that the loader finds, so that a second one is held to the same by `VK_ICD_FILENAMES`.
+//! What it takes a driver to compile the pipelines of a scene: the whole command, as a user runs it, on a
+//! picture of next to no pixels. The driver is the one that the loader finds, so that a second one is held to
+//! the same by `VK_ICD_FILENAMES`.
 
 #![cfg(target_os = "linux")]
 
@@ -21,7 +22,8 @@ struct Used {
 
 /// What a process that runs has used so far; `None` where it does not.
 fn used(process: u32) -> Option<Used> {
-    // After the name in parentheses: user and system time are the 12th and the 13th field, in hundredths of a second
+    // After the name in parentheses: user and system time are the 12th and the 13th field, in hundredths of a
+    // second
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |field: usize| fields.get(field)?.parse::<f64>().ok();

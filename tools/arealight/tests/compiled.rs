@@ -29,7 +29,8 @@ fn check(only: &str, file: &Path) -> Output {
     compile(&["--only", only, "--check", &file.display().to_string()])
 }
 
-/// Whether the compiler is the file's; where there is none or another, the test is skipped, unless a device is required.
+/// Whether the compiler is the file's; where there is none or another, the test is skipped, unless a device
+/// is required.
 fn is_compared(output: &Output) -> bool {
     if output.status.code() == Some(NO_COMPILER) {
         skip(&said(output));

@@ -84,12 +84,13 @@ fn each_method_meets_its_measure() {
     }
 }
 
-/// Shadows by exact visibility, of each family as RMSE over mean: the truth by both programs' cubatures; the fitted lobes, in float64 and by
-/// the GPU, within what the reference's own lobes of a fitted table give.
+/// Shadows by exact visibility, of each family as RMSE over mean: the truth by both programs' cubatures; the
+/// fitted lobes, in float64 and by the GPU, within what the reference's own lobes of a fitted table give.
 #[test]
 fn what_is_visible_of_lights_behind_triangles_shines() {
     let device = device();
-    // Of two lobes one case makes the last: a dielectric that is seen at 77 degrees. Without it they err less than one does
+    // Of two lobes one case makes the last: a dielectric that is seen at 77 degrees. Without it they err less
+    // than one does
     let [one, two] = ["one", "two"];
     for (method, lobes, bounds) in [
         ("truth", two, [1e-9, 1e-8, 1e-8]),
@@ -162,8 +163,8 @@ fn anisotropic_surfaces_are_answered_by_every_method() {
 #[test]
 fn layered_materials_are_answered_by_every_method() {
     let device = device();
-    // A layer's albedo is itself an integral, of sheen to 1e-4. Fitted lobes are held to the means below: where next to nothing is reflected they
-    // err by as much
+    // A layer's albedo is itself an integral, of sheen to 1e-4. Fitted lobes are held to the means below:
+    // where next to nothing is reflected they err by as much
     for (method, tolerance) in [("truth", "1e-4"), ("oracle", "1"), ("gpu", "1")] {
         if method == "gpu" && !device {
             continue;
@@ -200,7 +201,8 @@ fn layered_materials_are_answered_by_every_method() {
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// The reference's cases of GGX without a coat or sheen, with a thin film each: metals and coupled dielectrics.
+/// The reference's cases of GGX without a coat or sheen, with a thin film each: metals and coupled
+/// dielectrics.
 fn cases_with_films() -> Value {
     let mut cases = json(reference("materials.json"));
     let others = json(reference("cases.json"));

@@ -29,7 +29,8 @@ fn manifest(folder: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(folder.join("DIR/manifest.json")).unwrap()).unwrap()
 }
 
-/// Compares each file of a folder, and of those in it, with that of the same name in another. How many there are.
+/// Compares each file of a folder, and of those in it, with that of the same name in another. How many there
+/// are.
 fn compare_folders(folder: &Path, other: &Path) -> usize {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     entries
@@ -205,7 +206,8 @@ fn a_target_says_what_its_kernel_binds_and_how_that_is_laid_out() {
 #[test]
 fn hlsl_is_what_another_compiler_takes() {
     let folder = tempfile::tempdir().unwrap();
-    // Without sheen and anisotropy: glslang's HLSL has no functions that return arrays, of which naga makes tables of constants
+    // Without sheen and anisotropy: glslang's HLSL has no functions that return arrays, of which naga makes
+    // tables of constants
     let manifest = export_translated(folder.path(), "diffuse,glossy,polygon,two_sided,coat");
     let target = &manifest["targets"]["hlsl"];
     let path = folder.path().join("DIR").join(target["file"].as_str().unwrap());

@@ -67,7 +67,8 @@ fn a_minute_in_a_window_is_silent_and_shows_each_mode() {
     let frames = out.strip_suffix(" frames were shown\n").and_then(|count| count.parse::<u32>().ok());
     assert!(frames.is_some_and(|frames| frames > 20), "{out}{err}");
 
-    // Pictures of each mode were on the screen: the bar of the map of errors is in one of them, not in the first
+    // Pictures of each mode were on the screen: the bar of the map of errors is in one of them, not in the
+    // first
     let pictures: Vec<Vec<u8>> = seen.iter().map(|dump| Screen::pixels(dump, SIZE)).collect();
     assert!(pictures.len() > 12, "{} pictures were seen", pictures.len());
     let has_bar =

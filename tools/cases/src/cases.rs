@@ -147,7 +147,8 @@ pub struct CaseTexture {
     pub uv: Vec<DVec2>,
 }
 
-/// A case of a polygon light that can be answered: the inputs of [`arealight_oracle::shading`] and of the GPU's eval kernel.
+/// A case of a polygon light that can be answered: the inputs of [`arealight_oracle::shading`] and of the
+/// GPU's eval kernel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SupportedCase {
     /// The case's name.
@@ -299,8 +300,8 @@ impl Case {
     /// The case as something that can be answered now: a surface of its lobes under a polygon. See
     /// [`Case::supported_shape`] for other lights.
     ///
-    /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called for every
-    /// case that has one, so it should keep what it has loaded.
+    /// `load` gives the image of a path beside the file of cases, linear, or says why it cannot; it is called
+    /// for every case that has one, so it should keep what it has loaded.
     ///
     /// # Errors
     /// [`Unsupported`] with the reason, in words.
@@ -342,7 +343,8 @@ impl Case {
         })
     }
 
-    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as it is there.
+    /// The case as [`Case::supported`] has it, if its light is a disk, a sphere or a cylinder. `load` is as
+    /// it is there.
     ///
     /// # Errors
     /// [`Unsupported`] with the reason, in words.

@@ -1,5 +1,5 @@
-//! Cases to test and measure area lights with: files of shading points with their answers, and families of hard cases, made from a
-//! name and a number.
+//! Cases to test and measure area lights with: files of shading points with their answers, and families of
+//! hard cases, made from a name and a number.
 //!
 //! | module | holds |
 //! |---|---|

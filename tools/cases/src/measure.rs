@@ -12,7 +12,8 @@ pub struct Family {
     pub shape: &'static str,
     /// Whether the light has a texture.
     pub textured: bool,
-    /// `diffuse`, `rough diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled, `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
+    /// `diffuse`, `rough diffuse`, `ggx`, `ggx + diffuse`, `ggx over diffuse` where the two are coupled,
+    /// `anisotropic ggx`, `anisotropic ggx + diffuse` or `coat`.
     pub material: &'static str,
 }
 

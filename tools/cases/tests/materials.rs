@@ -75,7 +75,8 @@ fn noticed_by(tolerance: f64, cases: &[Known], change: impl Fn(&Surface) -> Surf
     cases.iter().filter(differs).count()
 }
 
-/// The mean error of a light of unit radiance, over cases and channels, and RMSE over mean, of the fitted lobes of changed surfaces.
+/// The mean error of a light of unit radiance, over cases and channels, and RMSE over mean, of the fitted
+/// lobes of changed surfaces.
 fn fitted(cases: &[Known], change: impl Fn(&Surface) -> Surface) -> (f64, f64) {
     fitted_on(Quality::default(), cases, change)
 }
@@ -196,7 +197,8 @@ fn the_truth_of_sheen_agrees_with_the_reference() {
 
 #[test]
 fn the_fitted_sheen_is_near_to_the_truth() {
-    // Twice what one lobe has that is fitted at each point, alone and above a base: .65e-3 and 3.7e-3; and twice what two have: .3e-3 and 2.0e-3
+    // Twice what one lobe has that is fitted at each point, alone and above a base: .65e-3 and 3.7e-3; and
+    // twice what two have: .3e-3 and 2.0e-3
     for (cases, bounds) in sheen().into_iter().zip([[1.3e-3, 0.6e-3], [7.4e-3, 4.0e-3]]) {
         for (specular_lobes, bound) in [SpecularLobes::One, SpecularLobes::Two].into_iter().zip(bounds) {
             let quality = Quality { specular_lobes, ..Quality::default() };

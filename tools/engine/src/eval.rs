@@ -71,7 +71,8 @@ impl Engine {
         })
     }
 
-    /// The answers of an eval kernel to `cases`, with the resources that are bound beside the cases and the results.
+    /// The answers of an eval kernel to `cases`, with the resources that are bound beside the cases and the
+    /// results.
     pub(crate) fn dispatch_cases(
         &self,
         kernel: &'static Kernel,
@@ -194,7 +195,8 @@ pub(crate) fn surface_case(surface: &Surface, normal: DVec3, view: DVec3, light:
     }
 }
 
-/// A direction of any length in float64, as a unit vector in float32, which has not the range for every length.
+/// A direction of any length in float64, as a unit vector in float32, which has not the range for every
+/// length.
 fn rounded(direction: DVec3) -> [f32; 3] {
     let largest = direction.abs().max_element();
     let scaled = if largest > 0.0 && largest.is_finite() { direction / largest } else { direction };

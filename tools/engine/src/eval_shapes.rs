@@ -17,7 +17,8 @@ const KINDS: [(u32, Effects); 3] = [
 ];
 
 impl Engine {
-    /// The radiance that each point sends to its viewer, W/(m² sr), by the GLSL library; zero where its light is a polygon or mesh.
+    /// The radiance that each point sends to its viewer, W/(m² sr), by the GLSL library; zero where its light
+    /// is a polygon or mesh.
     ///
     /// # Errors
     /// [`EngineError`] names a light that cannot be shaded, or says why the device cannot do it.

@@ -7,7 +7,8 @@ use ash::vk;
 
 /// The images of a G-buffer and the radiance image, all of one size.
 pub struct GBuffer {
-    /// Position relative to the origin; w is one more than the triangle's index, exactly, and 0 where there is no surface.
+    /// Position relative to the origin; w is one more than the triangle's index, exactly, and 0 where there
+    /// is no surface.
     pub position: Image,
     /// Normal and roughness.
     pub normal: Image,
@@ -46,8 +47,8 @@ impl GBuffer {
                 usage: vk::ImageUsageFlags::STORAGE | vk::ImageUsageFlags::SAMPLED,
             })
         };
-        // Normals in float32: in float16 a mirror shows their steps. Reflectances too, so that the usual one is what the
-        // shade kernel takes without reading it
+        // Normals in float32: in float16 a mirror shows their steps. Reflectances too, so that the usual one
+        // is what the shade kernel takes without reading it
         let (full, half) = (vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT);
         Ok(Self {
             position: image("position", full)?,
@@ -64,7 +65,8 @@ impl GBuffer {
         })
     }
 
-    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy, films and transmission are the last.
+    /// The images that describe surfaces, in the order of the bindings; those of coats, sheen, anisotropy,
+    /// films and transmission are the last.
     pub fn surfaces(&self) -> [&Image; 9] {
         let Self {
             position, normal, base_color, specular, coat, sheen, anisotropy, film, transmitted, ..

@@ -1,9 +1,10 @@
 //! The small engine that the tools, tests and benchmarks embed Arealight in: the first host of
 //! [`arealight_vk`], and an example of one.
 //!
-//! [`host`] finds Vulkan and owns a device, memory and submission. [`Engine`] holds a device and the light table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`]
-//! one under disks, spheres and tubes;
-//! [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte Carlo.
+//! [`host`] finds Vulkan and owns a device, memory and submission. [`Engine`] holds a device and the light
+//! table on it. [`Engine::eval`] shades a list of points, [`Engine::eval_shapes`] one under disks, spheres
+//! and tubes; [`SceneRenderer`] finds what a camera sees and shades it, by the fitted lobes or by Monte
+//! Carlo.
 
 mod eval;
 mod eval_shapes;
@@ -124,7 +125,8 @@ impl Engine {
         Ok(Self { table, light_table, lobe_horizons, textures: None, shade_passes, passes })
     }
 
-    /// With modules handed to the driver as they are: [`Context::with_whole_modules`]. Before anything is shaded.
+    /// With modules handed to the driver as they are: [`Context::with_whole_modules`]. Before anything is
+    /// shaded.
     #[must_use = "the engine is returned"]
     pub fn with_whole_modules(mut self) -> Self {
         self.passes = self.passes.with_whole_modules();

@@ -66,15 +66,16 @@ impl Passes {
         match made.entry((kernel.name, specialization.to_vec())) {
             Entry::Occupied(found) => Ok(Rc::clone(found.get())),
             Entry::Vacant(place) => {
-                // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where one timed
-                // out it is leaked. The host, which `Kept` holds, outlives it.
+                // SAFETY: Submissions are waited for, so no use is pending when the pass is dropped; where
+                // one timed out it is leaked. The host, which `Kept` holds, outlives it.
                 let pass = unsafe { ComputePass::new(&self.context, kernel, specialization) }?;
                 Ok(Rc::clone(place.insert(Rc::new(Kept::new(&self.host, pass)))))
             }
         }
     }
 
-    /// Makes all of these pipelines that are not made yet, on every processor. `progress` is called for each, from any thread.
+    /// Makes all of these pipelines that are not made yet, on every processor. `progress` is called for each,
+    /// from any thread.
     ///
     /// # Errors
     /// As [`Passes::pass`].
@@ -116,7 +117,8 @@ impl Passes {
     /// [`EngineError`] where a resource does not fit its binding, or memory is out.
     ///
     /// # Safety
-    /// The resources live until the last submission that uses the set was waited for; the pass is of this host.
+    /// The resources live until the last submission that uses the set was waited for; the pass is of this
+    /// host.
     pub unsafe fn bind(&self, pass: &ComputePass, resources: &[Resource]) -> Result<BoundSet, EngineError> {
         let pool = self.host.descriptor_pool(1, &pass.pool_sizes(1))?;
         // SAFETY: The layout is the pass's, and alive.

@@ -25,10 +25,11 @@ pub struct Reference {
     pub samples: u32,
     /// Another seed gives independent noise.
     pub seed: u32,
-    /// Whether the scene's triangles block light, but for [its lamps](arealight_scene::Triangle::lamp). Without, light passes through
-    /// everything, as in the shade pass.
+    /// Whether the scene's triangles block light, but for [its lamps](arealight_scene::Triangle::lamp).
+    /// Without, light passes through everything, as in the shade pass.
     pub shadows: bool,
-    /// Whether diffuse lobes get what the Fresnel term leaves, as in glTF; else the two are added, as without [`Effects::COUPLED`].
+    /// Whether diffuse lobes get what the Fresnel term leaves, as in glTF; else the two are added, as without
+    /// [`Effects::COUPLED`].
     pub coupled: bool,
 }
 
@@ -39,15 +40,15 @@ impl Default for Reference {
     }
 }
 
-/// Pairs of a pixel and a light that one submission shades at most, but for single rows of workgroups: a driver may reset a device whose
-/// submission takes over two seconds, in which one that does ten million pairs a second is done. That is a tenth of what integrated
-/// GPUs do.
+/// Pairs of a pixel and a light that one submission shades at most, but for single rows of workgroups: a
+/// driver may reset a device whose submission takes over two seconds, in which one that does ten million
+/// pairs a second is done. That is a tenth of what integrated GPUs do.
 const PAIRS_PER_SUBMISSION: u64 = 1 << 24;
 
 /// A scene on the device, with the images of one view of it.
 ///
-/// Call [`SceneRenderer::visibility`] first; then [`SceneRenderer::shade`] or [`SceneRenderer::reference`] adds
-/// reflected light to the emission that the camera sees directly.
+/// Call [`SceneRenderer::visibility`] first; then [`SceneRenderer::shade`] or [`SceneRenderer::reference`]
+/// adds reflected light to the emission that the camera sees directly.
 pub struct SceneRenderer<'a> {
     engine: &'a Engine,
     lights: LightSummary,
@@ -128,7 +129,8 @@ impl<'a> SceneRenderer<'a> {
         Ok(took)
     }
 
-    /// Adds the light that surfaces reflect, by the fitted lobes; `surfaces` is what they need ([`ShadeOptions::surfaces`]). GPU time, where the queue has timestamps.
+    /// Adds the light that surfaces reflect, by the fitted lobes; `surfaces` is what they need
+    /// ([`ShadeOptions::surfaces`]). GPU time, where the queue has timestamps.
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails.
@@ -154,8 +156,8 @@ impl<'a> SceneRenderer<'a> {
         Ok(total)
     }
 
-    /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of ours, and radiance is
-    /// added to one.
+    /// As [`SceneRenderer::shade`], with everything that a pass can be told: positions come from an image of
+    /// ours, and radiance is added to one.
     ///
     /// # Errors
     /// As [`SceneRenderer::shade`].
@@ -179,7 +181,8 @@ impl<'a> SceneRenderer<'a> {
         // doc end
     }
 
-    /// Submits the parts of a frame one after the other. The sum of their GPU times, where the queue has timestamps.
+    /// Submits the parts of a frame one after the other. The sum of their GPU times, where the queue has
+    /// timestamps.
     fn submit_parts(
         &self,
         parts: impl Iterator<Item = ShadeFrame>,
@@ -193,8 +196,8 @@ impl<'a> SceneRenderer<'a> {
         Ok(total)
     }
 
-    /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one to compare
-    /// with.
+    /// As [`SceneRenderer::shade`], by another kernel of the shade kernel's bindings and push constants: one
+    /// to compare with.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
@@ -235,7 +238,8 @@ impl<'a> SceneRenderer<'a> {
             sheen,
             anisotropy,
             film,
-            // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of these has others than lists
+            // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of
+            // these has others than lists
             Resource::buffer(self.light_buffer.handle()),
             self.g_buffer.no_stencil(),
             Resource::buffer(self.light_buffer.handle()),
@@ -250,8 +254,8 @@ impl<'a> SceneRenderer<'a> {
         })
     }
 
-    /// Adds the light that surfaces reflect, by Monte Carlo samples of the true BRDF. `progress` is told how many samples are done. GPU
-    /// time, where the queue has timestamps.
+    /// Adds the light that surfaces reflect, by Monte Carlo samples of the true BRDF. `progress` is told how
+    /// many samples are done. GPU time, where the queue has timestamps.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
@@ -320,9 +324,9 @@ impl<'a> SceneRenderer<'a> {
         })
     }
 
-    /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset the
-    /// device after two seconds; at least one for each pixel and light, however many there are. With shadows each sample is two rays, which
-    /// cost some eight times as much.
+    /// So many that a dispatch takes about a second on a CPU and far less on a GPU, whose driver may reset
+    /// the device after two seconds; at least one for each pixel and light, however many there are. With
+    /// shadows each sample is two rays, which cost some eight times as much.
     fn samples_a_dispatch(&self, shadows: bool) -> u32 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let light_samples = pixels * u64::from(self.lights.light_count + self.lights.shape_count).max(1);
@@ -345,7 +349,8 @@ impl<'a> SceneRenderer<'a> {
         self.shown = false;
     }
 
-    /// Shades in submissions of at most so many pairs of a pixel and a light, but for single rows of workgroups, instead of 2^24.
+    /// Shades in submissions of at most so many pairs of a pixel and a light, but for single rows of
+    /// workgroups, instead of 2^24.
     pub fn split(&mut self, most_pairs: u64) {
         self.most_pairs = most_pairs;
     }

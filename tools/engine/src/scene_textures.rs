@@ -4,7 +4,8 @@ use crate::{Engine, EngineError, SourceImage, SourceTexels};
 use arealight_scene::{LightTextureSource, Scene};
 
 impl Engine {
-    /// Loads what the lights of `scene` show, at most `largest` texels a side; nothing where no light is textured.
+    /// Loads what the lights of `scene` show, at most `largest` texels a side; nothing where no light is
+    /// textured.
     ///
     /// # Errors
     /// [`EngineError`] where an image cannot be loaded, or the device or its memory is too small.

@@ -73,8 +73,8 @@ impl TextureArray {
         self.source_of(layer, image, Rc::new(upload(&self.host, layer, image)?))
     }
 
-    /// Uploads images that are to replace the first layers. Those that have the same texels, in the same memory, are uploaded
-    /// once: a model's lights show hundreds of parts of one image.
+    /// Uploads images that are to replace the first layers. Those that have the same texels, in the same
+    /// memory, are uploaded once: a model's lights show hundreds of parts of one image.
     ///
     /// # Errors
     /// As [`TextureArray::source`].
@@ -120,8 +120,8 @@ impl TextureArray {
     /// [`EngineError`] where a layer is not there or given twice, or an image cannot be loaded.
     ///
     /// # Safety
-    /// `commands` is being recorded for this host, outside a render pass; the sources, which are of this array, live
-    /// until it was waited for.
+    /// `commands` is being recorded for this host, outside a render pass; the sources, which are of this
+    /// array, live until it was waited for.
     pub unsafe fn record(
         &self,
         commands: vk::CommandBuffer,

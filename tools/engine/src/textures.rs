@@ -53,8 +53,8 @@ impl SourceTexels<'_> {
 }
 
 impl Engine {
-    /// Loads images as the lights' textures, a layer each in this order, in place of those there were; with no image
-    /// there are none.
+    /// Loads images as the lights' textures, a layer each in this order, in place of those there were; with
+    /// no image there are none.
     ///
     /// # Errors
     /// [`EngineError`] where an image cannot be loaded, or the device or its memory is too small.
@@ -127,7 +127,8 @@ impl Engine {
         let (image, layout) = (textures.image().image(), vk::ImageLayout::GENERAL);
         self.host().submit(|commands| {
             let device = self.host().device();
-            // SAFETY: The image has been cleared, so that it is in this layout; the buffer has the level's size.
+            // SAFETY: The image has been cleared, so that it is in this layout; the buffer has the level's
+            // size.
             unsafe { device.cmd_copy_image_to_buffer(commands, image, layout, staging.handle(), &[region]) };
         })?;
         let halves: Vec<[u16; 4]> = staging.download()?;

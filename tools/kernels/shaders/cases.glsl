@@ -1,8 +1,8 @@
 #ifndef CASES_GLSL
 #define CASES_GLSL
 
-// A list of shading points, and where their radiance goes. Their lights' centers are relative to them. The including kernel
-// defines CASES_BINDING; the results are at the binding after it.
+// A list of shading points, and where their radiance goes. Their lights' centers are relative to them. The
+// including kernel defines CASES_BINDING; the results are at the binding after it.
 
 struct ArealightGpuCase {
     vec3 normal;

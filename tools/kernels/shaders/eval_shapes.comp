@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// eval.comp's twin for disks, spheres and tubes. The shapes' centers are relative to the shading point that they belong
-// to.
+// eval.comp's twin for disks, spheres and tubes. The shapes' centers are relative to the shading point that
+// they belong to.
 
 layout(local_size_x = 64) in;
 

@@ -2,10 +2,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The yardstick: integrates the true BRDF (Lambert + GGX, sheen and a coat above them) over the same lights by Monte Carlo, at the
-// same G-buffer as the shade kernel: without visibility, as that one, or with shadows. For each light one direction drawn from its area and
-// the sample's one direction drawn from the BRDF are combined by the balance heuristic (Veach and Guibas 1995); with shadows each of them is
-// a ray, and what is blocked adds nothing.
+// The yardstick: integrates the true BRDF (Lambert + GGX, sheen and a coat above them) over the same lights
+// by Monte Carlo, at the same G-buffer as the shade kernel: without visibility, as that one, or with shadows.
+// For each light one direction drawn from its area and the sample's one direction drawn from the BRDF are
+// combined by the balance heuristic (Veach and Guibas 1995); with shadows each of them is a ray, and what is
+// blocked adds nothing.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -126,10 +127,12 @@ CoatLobe load_coat_lobe(ArealightFrame frame, ArealightCoat coat, float base) {
     float share = arealight_coat_share(coat, dot(own.normal, view));
     float rest = (1.0 - share) * base;
     float probability = share > 0.0 ? clamp(share / (share + rest), 0.25, rest > 0.0 ? 0.75 : 1.0) : 0.0;
-    return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share, probability);
+    return CoatLobe(arealight_frame_matrix(own), vec3(own.sin_view, 0.0, own.cos_view), alpha, share,
+                    probability);
 }
 
-// Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen and on the other.
+// Where shadow rays start from a surface: off the triangle's own plane, on the side that is seen and on the
+// other.
 vec3[2] load_ray_origins(ArealightSurface surface, uint index) {
     if (SHADOWS == 0u) {
         return vec3[2](surface.position, surface.position);
@@ -138,7 +141,8 @@ vec3[2] load_ray_origins(ArealightSurface surface, uint index) {
     vec3 face = cross(triangle.p1 - triangle.p0, triangle.p2 - triangle.p0);
     vec3 normal = arealight_normalize_or(face, surface.normal);
     normal = dot(normal, surface.view) < 0.0 ? -normal : normal;
-    return vec3[2](arealight_ray_origin(surface.position, normal, 0.0), arealight_ray_origin(surface.position, -normal, 0.0));
+    return vec3[2](arealight_ray_origin(surface.position, normal, 0.0),
+                   arealight_ray_origin(surface.position, -normal, 0.0));
 }
 
 // Whether light arrives from a light's point, `offset` from the surface.
@@ -152,15 +156,18 @@ bool arrives(Lobes lobes, vec3 offset) {
     return arealight_bridge_blocker(origin, arealight_normalize_or(way, vec3(0.0)), distance) >= distance;
 }
 
-// Charlie's f cos for a colour of 1; 0 for light from below. The view's cosine is the frame's, from AREALIGHT_FORMULA_MIN_COS_VIEW on.
+// Charlie's f cos for a colour of 1; 0 for light from below. The view's cosine is the frame's, from
+// AREALIGHT_FORMULA_MIN_COS_VIEW on.
 float sheen_evaluate(vec3 view, vec3 light, float roughness) {
     if (light.z <= 0.0) {
         return 0.0;
     }
     vec3 half_vector = arealight_normalize_or(view + light, vec3(0.0, 0.0, 1.0));
     float exponent = 1.0 / (roughness * roughness);
-    float distribution = (2.0 + exponent) * pow(dot(half_vector.xy, half_vector.xy), 0.5 * exponent) / (2.0 * AREALIGHT_PI);
-    float masking = 1.0 + arealight_sheen_masking(view.z, roughness) + arealight_sheen_masking(light.z, roughness);
+    float distribution = (2.0 + exponent)
+        * pow(dot(half_vector.xy, half_vector.xy), 0.5 * exponent) / (2.0 * AREALIGHT_PI);
+    float masking = 1.0 + arealight_sheen_masking(view.z, roughness)
+        + arealight_sheen_masking(light.z, roughness);
     return distribution / (4.0 * view.z * masking);
 }
 
@@ -176,7 +183,8 @@ float sheen_true_albedo(vec3 view, float roughness) {
         float radius = sqrt(1.0 - z * z);
         for (int j = 0; j < AZIMUTHS; j++) {
             float phi = AREALIGHT_PI * (float(j) + 0.5) / float(AZIMUTHS);
-            sum += 3.0 * t * t * sheen_evaluate(view, vec3(radius * cos(phi), radius * sin(phi), z), roughness);
+            sum += 3.0 * t * t * sheen_evaluate(view, vec3(radius * cos(phi), radius * sin(phi), z),
+                                                roughness);
         }
     }
     return 2.0 * AREALIGHT_PI * sum / float(HEIGHTS * AZIMUTHS);
@@ -187,7 +195,8 @@ SheenLobe load_sheen_lobe(ArealightFrame frame, ArealightSheen sheen) {
         return SheenLobe(vec3(0.0), 1.0, 1.0);
     }
     float roughness = max(sheen.roughness, AREALIGHT_SHEEN_MIN_ROUGHNESS);
-    float albedo = sheen_true_albedo(vec3(frame.sin_view, 0.0, max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)), roughness);
+    float albedo = sheen_true_albedo(vec3(frame.sin_view, 0.0,
+                                          max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW)), roughness);
     return SheenLobe(sheen.color, roughness, max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0));
 }
 
@@ -195,32 +204,43 @@ Lobes load_lobes(ArealightSurface surface, vec3 ray_origins[2], vec3 transmitted
     ArealightFrame frame = arealight_surface_frame(surface.normal, surface.view);
     vec2 roughness = vec2(surface.anisotropy.roughness, surface.roughness);
     vec2 alpha = max(roughness * roughness, vec2(AREALIGHT_MIN_ALPHA));
-    vec2 axis = alpha.x == alpha.y ? vec2(1.0, 0.0) : arealight_surface_axis(frame, surface.anisotropy.tangent);
+    vec2 axis = alpha.x == alpha.y ? vec2(1.0, 0.0)
+        : arealight_surface_axis(frame, surface.anisotropy.tangent);
     float diffuse = dot(surface.diffuse_albedo, vec3(1.0 / 3.0));
     float glossy = dot(mix(surface.f0, vec3(surface.f90), 0.1), vec3(1.0 / 3.0));
     float let_through = dot(transmitted, vec3(1.0 / 3.0));
-    float transmission_probability = let_through > 0.0 ? clamp(let_through / (let_through + glossy + diffuse), 0.25, 0.75) : 0.0;
-    float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0) : 0.0;
-    return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame), vec3(frame.sin_view, 0.0, frame.cos_view),
-                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0, surface.f90, axis, alpha,
-                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse), load_sheen_lobe(frame, surface.sheen), surface.film,
+    float transmission_probability = let_through > 0.0
+        ? clamp(let_through / (let_through + glossy + diffuse), 0.25, 0.75) : 0.0;
+    float probability = glossy > 0.0 ? clamp(glossy / (glossy + diffuse), 0.25, diffuse > 0.0 ? 0.9 : 1.0)
+        : 0.0;
+    return Lobes(surface.position, ray_origins, arealight_frame_matrix(frame),
+                 vec3(frame.sin_view, 0.0, frame.cos_view),
+                 surface.diffuse_albedo, vec2(surface.interface_f0, surface.interface_f90), surface.f0,
+                     surface.f90, axis, alpha,
+                 probability, load_coat_lobe(frame, surface.coat, glossy + diffuse),
+                     load_sheen_lobe(frame, surface.sheen), surface.film,
                  transmitted, transmission_probability);
 }
 
 // A direction of the surface's frame in the frame of its GGX lobe, and back.
 vec3 to_axis(Lobes lobes, vec3 direction) {
-    return vec3(dot(lobes.axis, direction.xy), lobes.axis.x * direction.y - lobes.axis.y * direction.x, direction.z);
+    return vec3(dot(lobes.axis, direction.xy), lobes.axis.x * direction.y - lobes.axis.y * direction.x,
+                direction.z);
 }
 vec3 from_axis(Lobes lobes, vec3 direction) {
     return vec3(lobes.axis * direction.x + vec2(-lobes.axis.y, lobes.axis.x) * direction.y, direction.z);
 }
 
-// f cos of light from behind, which the interface reflects as much of as of that from the mirror image of its direction.
+// f cos of light from behind, which the interface reflects as much of as of that from the mirror image of its
+// direction.
 vec3 evaluate_transmitted(Lobes lobes, vec3 light) {
     vec3 mirrored = vec3(light.xy, -light.z);
     float above = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
-                      arealight_schlick_weight(lobes.view, arealight_normalize_or(lobes.view + mirrored, vec3(0.0, 0.0, 1.0))));
-    return lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0) * (COUPLED != 0u ? 1.0 - above : 1.0));
+                      arealight_schlick_weight(lobes.view,
+                                               arealight_normalize_or(lobes.view + mirrored,
+                                                                      vec3(0.0, 0.0, 1.0))));
+    return lobes.transmitted * (AREALIGHT_INVERSE_PI * max(mirrored.z, 0.0)
+                                * (COUPLED != 0u ? 1.0 - above : 1.0));
 }
 
 // f cos, all lobes.
@@ -232,10 +252,12 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     vec3 half_vector = arealight_normalize_or(lobes.view + light, vec3(0.0, 0.0, 1.0));
     vec3 f0 = lobes.f0;
     float f90 = lobes.f90;
-    float above_diffuse = mix(lobes.above_diffuse.x, lobes.above_diffuse.y, arealight_schlick_weight(lobes.view, half_vector));
+    float above_diffuse = mix(lobes.above_diffuse.x, lobes.above_diffuse.y,
+                              arealight_schlick_weight(lobes.view, half_vector));
     vec3 fresnel = vec3(1.0);
     if (arealight_is_film(lobes.film)) {
-        fresnel = arealight_thin_film_reflectance(lobes.film, f0, f90, clamp(dot(lobes.view, half_vector), 0.0, 1.0));
+        fresnel = arealight_thin_film_reflectance(lobes.film, f0, f90,
+                                                  clamp(dot(lobes.view, half_vector), 0.0, 1.0));
         above_diffuse = min(arealight_max_component(fresnel), 1.0);
         f0 = vec3(1.0);
         f90 = 1.0;
@@ -243,11 +265,13 @@ vec3 evaluate(Lobes lobes, vec3 light) {
     if (COUPLED != 0u) {
         diffuse *= 1.0 - above_diffuse;
     }
-    vec3 glossy = fresnel * arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha, f0, f90);
+    vec3 glossy = fresnel * arealight_ggx_evaluate(to_axis(lobes, lobes.view), to_axis(lobes, light),
+                                                   lobes.alpha, f0, f90);
     vec3 base = diffuse + glossy;
     if (lobes.sheen.color != vec3(0.0)) {
         vec3 view = vec3(lobes.view.xy, max(lobes.view.z, AREALIGHT_FORMULA_MIN_COS_VIEW));
-        base = base * lobes.sheen.base + lobes.sheen.color * sheen_evaluate(view, light, lobes.sheen.roughness);
+        base = base * lobes.sheen.base + lobes.sheen.color
+            * sheen_evaluate(view, light, lobes.sheen.roughness);
     }
     CoatLobe coat = lobes.coat;
     vec3 above = arealight_ggx_evaluate(coat.view, coat.to_coat * light, vec2(coat.alpha), vec3(1.0), 1.0);
@@ -260,7 +284,8 @@ float density(Lobes lobes, vec3 light) {
         return AREALIGHT_INVERSE_PI * -light.z * lobes.transmission_probability;
     }
     float diffuse = AREALIGHT_INVERSE_PI * max(light.z, 0.0);
-    float base = mix(diffuse, arealight_ggx_density(to_axis(lobes, lobes.view), to_axis(lobes, light), lobes.alpha), lobes.glossy_probability);
+    float base = mix(diffuse, arealight_ggx_density(to_axis(lobes, lobes.view), to_axis(lobes, light),
+                                                    lobes.alpha), lobes.glossy_probability);
     float above = arealight_ggx_density(lobes.coat.view, lobes.coat.to_coat * light, vec2(lobes.coat.alpha));
     return mix(base, above, lobes.coat.probability) * (1.0 - lobes.transmission_probability);
 }
@@ -298,7 +323,8 @@ struct LightPoint {
 
 // The normal of a triangle of a light: the light's, or of a mesh its own.
 vec3 triangle_normal(ArealightGpuLightSampling sampling, vec3 a, vec3 b, vec3 c) {
-    return sampling.normal == vec3(0.0) ? arealight_normalize_or(cross(b - a, c - a), vec3(0.0)) : sampling.normal;
+    return sampling.normal == vec3(0.0) ? arealight_normalize_or(cross(b - a, c - a), vec3(0.0))
+        : sampling.normal;
 }
 
 // Uniform by area.
@@ -318,8 +344,8 @@ LightPoint sample_point(ArealightGpuLightSampling sampling, inout RandomState ra
     return LightPoint(a * (1.0 - root) + b * (root - v) + c * v, triangle_normal(sampling, a, b, c));
 }
 
-// Whether a point of a light's plane, relative to its center, lies within its outline: the even-odd rule, along the two
-// axes in which the polygon is widest.
+// Whether a point of a light's plane, relative to its center, lies within its outline: the even-odd rule,
+// along the two axes in which the polygon is widest.
 bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
     vec3 size = abs(normal);
     uint axis_u = size.x >= size.y && size.x >= size.z ? 1u : 0u;
@@ -341,11 +367,12 @@ bool inside_outline(ArealightPolygonLight light, vec3 normal, vec3 point) {
 // The radiance of a light's point, relative to its center.
 vec3 light_radiance(ArealightPolygonLight light, vec3 point) {
     return light.image.layer == AREALIGHT_NO_IMAGE ? light.radiance
-                                                   : light.radiance * arealight_image_color(light.image, point);
+                                                   : light.radiance
+                                                       * arealight_image_color(light.image, point);
 }
 
-// The light's density in solid angle at a point of it, `offset` from the surface: distance^2 / (area |cosine|); 0 where it does
-// not emit towards the surface.
+// The light's density in solid angle at a point of it, `offset` from the surface: distance^2 / (area
+// |cosine|); 0 where it does not emit towards the surface.
 float light_density(ArealightPolygonLight light, float area, vec3 normal, vec3 offset) {
     float square = dot(offset, offset);
     float cosine = -dot(normal, offset) * inversesqrt(max(square, AREALIGHT_TINY));
@@ -380,7 +407,8 @@ vec3 estimate_by_brdf(Lobes lobes, vec3 direction, float by_brdf, ArealightPolyg
     }
     vec3 offset = ray * distance;
     float by_light = light_density(light, sampling.area, sampling.normal, offset);
-    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center) || !arrives(lobes, offset)) {
+    if (by_light <= 0.0 || !inside_outline(light, sampling.normal, offset - center) || !arrives(lobes,
+                                                                                                offset)) {
         return vec3(0.0);
     }
     return light_radiance(light, offset - center) * evaluate(lobes, direction) / (by_light + by_brdf);
@@ -412,7 +440,8 @@ vec3 estimate_mesh_by_brdf(Lobes lobes, vec3 direction, float by_brdf, Arealight
 }
 
 // As both estimates above, of a shape.
-vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShape shape, inout RandomState random) {
+vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShape shape,
+                    inout RandomState random) {
     vec3 sum = vec3(0.0);
     ShapeSample drawn = sample_shape(shape, lobes.position, random);
     vec3 towards = lobes.to_surface * arealight_normalize_or(drawn.offset, vec3(0.0));
@@ -425,7 +454,8 @@ vec3 estimate_shape(Lobes lobes, vec3 direction, float by_brdf, ArealightGpuShap
         vec3 ray = direction * lobes.to_surface;
         ShapeSample met = meet_shape(shape, lobes.position, ray);
         if (met.density > 0.0 && arrives(lobes, met.offset)) {
-            sum += shape_color(shape, lobes.position, ray) * evaluate(lobes, direction) / (met.density + by_brdf);
+            sum += shape_color(shape, lobes.position, ray)
+                * evaluate(lobes, direction) / (met.density + by_brdf);
         }
     }
     return shape.radiance * sum;

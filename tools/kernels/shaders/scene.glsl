@@ -124,7 +124,8 @@ struct ScenePoint {
     ArealightSheen sheen;
     ArealightAnisotropy anisotropy; // its roughness is 0 where there is none
     ArealightThinFilm film;
-    vec3 transmitted; // albedo of what is let through; the base colour of what is not metal is less by that part
+    // Albedo of what is let through; the base colour of what is not metal is less by that part
+    vec3 transmitted;
 };
 
 // The texel within the image, for texel coordinates from -1 to two repeats and one.
@@ -134,8 +135,8 @@ int wrap_texel(int texel, int size, bool mirrored) {
     return wrapped < size ? wrapped : period - 1 - wrapped;
 }
 
-// One axis of a texture coordinate, brought to where texel coordinates are exact: clamped to the image, or within
-// two repeats, which hold the period of a mirrored texture. NaN becomes zero.
+// One axis of a texture coordinate, brought to where texel coordinates are exact: clamped to the image, or
+// within two repeats, which hold the period of a mirrored texture. NaN becomes zero.
 float wrap_coordinate(float coordinate, bool clamped) {
     float wrapped = clamped ? clamp(coordinate, 0.0, 1.0) : coordinate - 2.0 * floor(0.5 * coordinate);
     return wrapped > 0.0 ? min(wrapped, 2.0) : 0.0;
@@ -164,7 +165,8 @@ vec4 sample_texture(uint index, vec2 uv) {
     vec2 weight = position - node;
     ivec2 texel = ivec2(node);
     vec4 top = mix(fetch_texel(image, texel), fetch_texel(image, texel + ivec2(1, 0)), weight.x);
-    vec4 bottom = mix(fetch_texel(image, texel + ivec2(0, 1)), fetch_texel(image, texel + ivec2(1, 1)), weight.x);
+    vec4 bottom = mix(fetch_texel(image, texel + ivec2(0, 1)), fetch_texel(image, texel + ivec2(1, 1)),
+                      weight.x);
     return mix(top, bottom, weight.y);
 }
 
@@ -178,11 +180,13 @@ vec4 vertex_color(ArealightGpuTriangle triangle, vec2 barycentric) {
     if ((triangle.flags & TRIANGLE_COLORS) == 0u) {
         return vec4(1.0);
     }
-    vec4 colors[3] = vec4[3](unpackUnorm4x8(triangle.color0), unpackUnorm4x8(triangle.color1), unpackUnorm4x8(triangle.color2));
+    vec4 colors[3] = vec4[3](unpackUnorm4x8(triangle.color0), unpackUnorm4x8(triangle.color1),
+                             unpackUnorm4x8(triangle.color2));
     for (int vertex = 0; vertex < 3; vertex++) {
         colors[vertex].rgb *= colors[vertex].rgb;
     }
-    return colors[0] * (1.0 - barycentric.x - barycentric.y) + colors[1] * barycentric.x + colors[2] * barycentric.y;
+    return colors[0] * (1.0 - barycentric.x - barycentric.y) + colors[1] * barycentric.x + colors[2]
+        * barycentric.y;
 }
 
 bool masked_out(BvhHit hit) {
@@ -211,9 +215,11 @@ TangentAxes tangent_axes(ArealightGpuTriangle triangle, vec2 barycentric, vec3 n
         return TangentAxes(vec3(0.0), vec3(0.0));
     }
     vec3 smooth_tangent = unpack_direction(triangle.tangent0) * (1.0 - barycentric.x - barycentric.y)
-                        + unpack_direction(triangle.tangent1) * barycentric.x + unpack_direction(triangle.tangent2) * barycentric.y;
+                        + unpack_direction(triangle.tangent1) * barycentric.x
+                            + unpack_direction(triangle.tangent2) * barycentric.y;
     vec3 tangent = arealight_normalize_or(smooth_tangent - normal * dot(normal, smooth_tangent), vec3(0.0));
-    return TangentAxes(tangent, cross(normal, tangent) * ((triangle.flags & TRIANGLE_MIRRORED) != 0u ? -1.0 : 1.0));
+    return TangentAxes(tangent, cross(normal, tangent)
+                       * ((triangle.flags & TRIANGLE_MIRRORED) != 0u ? -1.0 : 1.0));
 }
 
 // The shading normal bent by a tangent-space normal texture.
@@ -227,14 +233,16 @@ vec3 bend_normal(TangentAxes axes, uint normal_texture, float scale, vec3 normal
 }
 
 // KHR_materials_anisotropy: the texture's direction and the factor's rotation, and both strengths.
-ArealightAnisotropy scene_anisotropy(ArealightGpuMaterial material, TangentAxes axes, float roughness, vec2 uv) {
+ArealightAnisotropy scene_anisotropy(ArealightGpuMaterial material, TangentAxes axes, float roughness,
+                                     vec2 uv) {
     vec3 texel = vec3(1.0, 0.5, 1.0);
     if (material.anisotropy_texture != NO_TEXTURE) {
         texel = sample_texture(material.anisotropy_texture, uv).rgb;
     }
     vec2 direction = texel.rg * 2.0 - 1.0;
     vec2 turn = material.anisotropy_direction;
-    direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x * direction.y);
+    direction = vec2(turn.x * direction.x - turn.y * direction.y, turn.y * direction.x + turn.x
+                     * direction.y);
     float strength = material.anisotropy_strength * texel.b;
     vec3 along = axes.tangent * direction.x + axes.bitangent * direction.y;
     return ArealightAnisotropy(along, strength > 0.0 ? arealight_gltf_anisotropy(roughness, strength) : 0.0);
@@ -256,7 +264,8 @@ ScenePoint scene_point(BvhHit hit) {
     float side = hit.back ? -1.0 : 1.0;
     TangentAxes axes = tangent_axes(triangle, hit.barycentric, normal);
     point.normal = side * bend_normal(axes, material.normal_texture, material.normal_scale, normal, uv);
-    point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, material.coat_normal_scale, normal, uv);
+    point.coat.normal = side * bend_normal(axes, material.coat_normal_texture, material.coat_normal_scale,
+                                           normal, uv);
     point.coat.weight = material.coat * sample_texture(material.coat_texture, uv).r;
     point.coat.roughness = material.coat_roughness * sample_texture(material.coat_roughness_texture, uv).g;
     point.sheen.color = material.sheen_color * sample_texture(material.sheen_color_texture, uv).rgb;
@@ -268,17 +277,21 @@ ScenePoint scene_point(BvhHit hit) {
     point.metalness = material.metalness * metallic_roughness.b;
     point.roughness = material.roughness * metallic_roughness.g;
     point.anisotropy = scene_anisotropy(material, axes, point.roughness, uv);
-    // KHR_materials_specular: min(reflectance by index and colour, 1) times the weight, which is the grazing reflectance
+    // KHR_materials_specular: min(reflectance by index and colour, 1) times the weight, which is the grazing
+    // reflectance
     float specular_weight = sample_texture(material.specular_texture, uv).a;
     point.dielectric_f90 = material.dielectric_f90 * specular_weight;
-    point.dielectric_f0 = min(material.dielectric_f0 * specular_weight * sample_texture(material.specular_color_texture, uv).rgb,
+    point.dielectric_f0 = min(material.dielectric_f0 * specular_weight
+                              * sample_texture(material.specular_color_texture, uv).rgb,
                               vec3(point.dielectric_f90));
     point.film.weight = material.film_weight * sample_texture(material.film_texture, uv).r;
     point.film.ior = material.film_ior;
     point.film.thickness = mix(material.film_least_thickness, material.film_thickness,
                                sample_texture(material.film_thickness_texture, uv).g);
-    float transmission = material.transmission * sample_texture(material.transmission_texture, uv).a * (1.0 - point.metalness);
-    point.transmitted = transmission * material.transmission_color * sample_texture(material.transmission_color_texture, uv).rgb;
+    float transmission = material.transmission * sample_texture(material.transmission_texture, uv).a
+        * (1.0 - point.metalness);
+    point.transmitted = transmission * material.transmission_color
+        * sample_texture(material.transmission_color_texture, uv).rgb;
     point.base_color *= 1.0 - transmission;
     point.emission = material.emission * sample_texture(material.emission_texture, uv).rgb;
     return point;

@@ -2,8 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
-// The kernel shade for whole frames, with what WebGPU, Direct3D 12 and Metal bind alike: constants of a frame in a uniform block, images apart
-// from their sampler, radiance that is written and not read. It is frozen and translated by `arealight export --target`.
+// The kernel shade for whole frames, with what WebGPU, Direct3D 12 and Metal bind alike: constants of a frame
+// in a uniform block, images apart from their sampler, radiance that is written and not read. It is frozen
+// and translated by `arealight export --target`.
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -64,5 +65,6 @@ uint shape_at(LightList list, uint index) {
 
 void main() {
     uint quad_count = HAS_POLYGONS ? constants.quad_count : constants.light_count;
-    shade_pixel(ivec2(gl_GlobalInvocationID.xy), LightList(quad_count, constants.light_count, constants.shape_count));
+    shade_pixel(ivec2(gl_GlobalInvocationID.xy),
+                LightList(quad_count, constants.light_count, constants.shape_count));
 }

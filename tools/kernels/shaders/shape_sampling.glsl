@@ -1,7 +1,8 @@
 #ifndef SHAPE_SAMPLING_GLSL
 #define SHAPE_SAMPLING_GLSL
 
-// Drawing points of disks, spheres and tubes, and the density of such draws in solid angle: for the Monte Carlo reference.
+// Drawing points of disks, spheres and tubes, and the density of such draws in solid angle: for the Monte
+// Carlo reference.
 
 #include "random.glsl"
 #include "round_lights.glsl"
@@ -31,8 +32,8 @@ void make_basis(vec3 axis, out vec3 across, out vec3 up) {
     up = cross(axis, across);
 }
 
-// The density of directions drawn evenly from the cone that a sphere fills, `center` being from the shading point: that of all
-// directions from inside, where only a sphere of two sides shines.
+// The density of directions drawn evenly from the cone that a sphere fills, `center` being from the shading
+// point: that of all directions from inside, where only a sphere of two sides shines.
 float sphere_density(vec3 center, float radius, bool two_sided) {
     float square = radius * radius / dot(center, center);
     if (!(square < 1.0)) {
@@ -43,8 +44,8 @@ float sphere_density(vec3 center, float radius, bool two_sided) {
     return 0.5 * AREALIGHT_INVERSE_PI / height;
 }
 
-// How far a ray from the shading point goes to a sphere's surface, `center` being from there: into it, or out of it from inside. A ray that
-// misses it goes as far as it comes near.
+// How far a ray from the shading point goes to a sphere's surface, `center` being from there: into it, or out
+// of it from inside. A ray that misses it goes as far as it comes near.
 float sphere_distance(vec3 center, float radius, vec3 ray) {
     float approach = dot(center, ray);
     vec3 beside = center - approach * ray;
@@ -59,7 +60,8 @@ float ellipse_area(ArealightGpuShape shape) {
 // Areas of a tube's mantle and of both its ends.
 vec2 tube_areas(ArealightGpuShape shape) {
     float round = AREALIGHT_PI * shape.radius;
-    float ends = int(shape.detail) == AREALIGHT_TUBE_ROUND ? 4.0 : int(shape.detail) == AREALIGHT_TUBE_FLAT ? 2.0 : 0.0;
+    float ends = int(shape.detail) == AREALIGHT_TUBE_ROUND ? 4.0 : int(shape.detail) == AREALIGHT_TUBE_FLAT
+        ? 2.0 : 0.0;
     return round * vec2(4.0 * length(shape.axis_u), ends * shape.radius);
 }
 
@@ -125,8 +127,8 @@ ShapeSample sample_shape(ArealightGpuShape shape, vec3 position, inout RandomSta
     return sample_ellipse(shape, center, random);
 }
 
-// Below, what a ray from the shading point meets, with the density with which sample_shape draws that: 0 where it meets nothing that
-// shines. `ray` is a unit vector.
+// Below, what a ray from the shading point meets, with the density with which sample_shape draws that: 0
+// where it meets nothing that shines. `ray` is a unit vector.
 
 const ShapeSample NO_SHAPE = ShapeSample(vec3(0.0), 0.0);
 
@@ -203,7 +205,8 @@ ShapeSample meet_tube(ArealightGpuShape shape, vec3 center, vec3 ray) {
     return NO_SHAPE;
 }
 
-// What multiplies the radiance of a shape that a ray from the shading point meets: its image, if it shows one. The ray has any length.
+// What multiplies the radiance of a shape that a ray from the shading point meets: its image, if it shows
+// one. The ray has any length.
 vec3 shape_color(ArealightGpuShape shape, vec3 position, vec3 ray) {
     if (shape.kind != SHAPE_DISK || shape.detail == AREALIGHT_NO_IMAGE) {
         return vec3(1.0);

@@ -58,7 +58,8 @@ void main() {
     vec2 plane = (vec2(pixel) + 0.5) / vec2(size) * 2.0 - 1.0;
     vec3 across = plane.x * constants.right - plane.y * constants.up;
     bool parallel = constants.orthographic != 0u;
-    vec3 direction = arealight_normalize_or(parallel ? constants.forward : constants.forward + across, vec3(0.0, 0.0, -1.0));
+    vec3 direction = arealight_normalize_or(parallel ? constants.forward : constants.forward + across,
+                                            vec3(0.0, 0.0, -1.0));
     BvhHit hit = bvh_trace(parallel ? constants.camera + across : constants.camera, direction, 3e38, false);
 
     if (hit.triangle == BVH_NO_TRIANGLE) {
@@ -81,9 +82,12 @@ void main() {
     imageStore(out_specular, pixel, vec4(point.dielectric_f0, point.dielectric_f90));
     float below_coat = 1.0 - arealight_coat_share(point.coat, dot(point.coat.normal, direction));
     imageStore(out_radiance, pixel, vec4(point.emission * below_coat, 1.0));
-    imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness, to_octahedron(point.coat.normal)));
+    imageStore(out_coat, pixel, vec4(point.coat.weight, point.coat.roughness,
+                                     to_octahedron(point.coat.normal)));
     imageStore(out_sheen, pixel, vec4(point.sheen.color, point.sheen.roughness));
-    imageStore(out_anisotropy, pixel, vec4(to_octahedron(point.anisotropy.tangent), point.anisotropy.roughness, 0.0));
+    imageStore(out_anisotropy, pixel, vec4(to_octahedron(point.anisotropy.tangent),
+                                           point.anisotropy.roughness, 0.0));
     imageStore(out_film, pixel, vec4(point.film.weight, point.film.ior, point.film.thickness, 0.0));
-    imageStore(out_transmitted, pixel, vec4(point.transmitted * (below_coat * below_sheen(point, -direction)), 0.0));
+    imageStore(out_transmitted, pixel, vec4(point.transmitted * (below_coat * below_sheen(point, -direction)),
+                                            0.0));
 }

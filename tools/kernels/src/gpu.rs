@@ -11,7 +11,8 @@ pub struct ReferenceConstants {
     pub camera: [f32; 3],
     /// How many lights are shaded.
     pub light_count: u32,
-    /// The index of this dispatch's first sample: a pixel's random numbers depend on it, the pixel and `seed`.
+    /// The index of this dispatch's first sample: a pixel's random numbers depend on it, the pixel and
+    /// `seed`.
     pub first_sample: u32,
     /// Samples this dispatch adds.
     pub sample_count: u32,
@@ -140,13 +141,15 @@ pub struct GpuTriangle {
     pub v2: f32,
     /// [`GpuTriangle::LAMP`], [`GpuTriangle::TANGENTS`], [`GpuTriangle::MIRRORED`], [`GpuTriangle::COLORS`].
     pub flags: u32,
-    /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a sign.
+    /// Tangent at the first vertex: its place on the unfolded octahedron, of two numbers of 16 bits with a
+    /// sign.
     pub tangent0: u32,
     /// Tangent at the second vertex.
     pub tangent1: u32,
     /// Tangent at the third vertex.
     pub tangent2: u32,
-    /// What the base colour is multiplied with at the first vertex: square roots of linear red, green and blue, and alpha, in 255ths from the low byte on.
+    /// What the base colour is multiplied with at the first vertex: square roots of linear red, green and
+    /// blue, and alpha, in 255ths from the low byte on.
     pub color0: u32,
     /// At the second vertex.
     pub color1: u32,
@@ -251,11 +254,13 @@ pub struct GpuMaterial {
     pub reserved: [u32; 2],
 }
 
-/// How far an orthographic camera's position is, in lengths of the direction to it: directions to it differ by this part of a radian.
+/// How far an orthographic camera's position is, in lengths of the direction to it: directions to it differ
+/// by this part of a radian.
 const FAR_AWAY: f32 = 1e5;
 
 impl VisibilityConstants {
-    /// From clip space to positions. The depth is that of a far plane at infinity; of an orthographic camera, it grows with the distance.
+    /// From clip space to positions. The depth is that of a far plane at infinity; of an orthographic camera,
+    /// it grows with the distance.
     pub fn position_from_clip(&self) -> Mat4 {
         let [camera, right, up, forward] =
             [self.camera, self.right, self.up, self.forward].map(Vec3::from_array);
@@ -280,7 +285,8 @@ impl VisibilityConstants {
         if self.orthographic == 0 { Vec3::from_array(self.camera) } else { -Vec3::from_array(self.forward) }
     }
 
-    /// The camera's position, for kernels that know of no other cameras: an orthographic one is so far away that all directions to it are one.
+    /// The camera's position, for kernels that know of no other cameras: an orthographic one is so far away
+    /// that all directions to it are one.
     pub fn position(&self) -> Vec3 {
         Vec3::from_array(self.camera)
             + if self.orthographic == 0 { Vec3::ZERO } else { FAR_AWAY * self.seen_from() }
@@ -332,7 +338,8 @@ pub struct VisibilityConstants {
     pub camera: [f32; 3],
     /// 1: lines of sight are parallel; else 0.
     pub orthographic: u32,
-    /// From the middle of the image to its right edge, at distance 1 along `forward`; of an orthographic camera at any distance.
+    /// From the middle of the image to its right edge, at distance 1 along `forward`; of an orthographic
+    /// camera at any distance.
     pub right: [f32; 3],
     /// Zero.
     pub reserved1: u32,
@@ -340,7 +347,8 @@ pub struct VisibilityConstants {
     pub up: [f32; 3],
     /// Zero.
     pub reserved2: u32,
-    /// Unit viewing direction; of an orthographic camera as long as a perspective one that sees as much would be away.
+    /// Unit viewing direction; of an orthographic camera as long as a perspective one that sees as much would
+    /// be away.
     pub forward: [f32; 3],
     /// Zero.
     pub reserved3: u32,

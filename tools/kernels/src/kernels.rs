@@ -1,5 +1,5 @@
-//! The manifest of these kernels, as [`arealight::kernels`] has it: SPIR-V, bindings, constants and group size. A test reads the same
-//! facts back out of the SPIR-V.
+//! The manifest of these kernels, as [`arealight::kernels`] has it: SPIR-V, bindings, constants and group
+//! size. A test reads the same facts back out of the SPIR-V.
 
 use arealight::kernels::{
     Access, Binding, BindingKind, G_ANISOTROPY, G_BASE_COLOR, G_COAT, G_FILM, G_NORMAL, G_POSITION, G_SHEEN,
@@ -62,13 +62,15 @@ pub static EVAL_SHAPES: Kernel = Kernel {
     ],
 };
 
-/// [`arealight::kernels::SHADE`] for whole frames, which is translated to other shading languages: its bindings have the same numbers, the
-/// constants of a frame are a uniform block, images are apart from their sampler, and radiance is not read. No device runs it as it is.
+/// [`arealight::kernels::SHADE`] for whole frames, which is translated to other shading languages: its
+/// bindings have the same numbers, the constants of a frame are a uniform block, images are apart from their
+/// sampler, and radiance is not read. No device runs it as it is.
 pub static SHADE_PORTABLE: &[u8] = include_bytes!("../spirv/shade_portable.spv");
 
 /// Id of a specialisation constant of [`REFERENCE`]: 1 where the triangles of the scene block light, else 0.
 pub const SHADOWS: u32 = 100;
-/// Id of a specialisation constant of [`REFERENCE`]: 1 where diffuse lobes get what the Fresnel term leaves, as in glTF, else 0.
+/// Id of a specialisation constant of [`REFERENCE`]: 1 where diffuse lobes get what the Fresnel term leaves,
+/// as in glTF, else 0.
 pub const COUPLED: u32 = 101;
 
 /// The buffers of a scene: a hierarchy of its triangles, and what they look like.
@@ -122,7 +124,8 @@ pub static REFERENCE: Kernel = Kernel {
     constants: &[SHADOWS, COUPLED],
 };
 
-/// Finds the surface that each pixel sees, in a hierarchy of triangles, and writes a G-buffer. Push constants: [`crate::gpu::VisibilityConstants`].
+/// Finds the surface that each pixel sees, in a hierarchy of triangles, and writes a G-buffer. Push
+/// constants: [`crate::gpu::VisibilityConstants`].
 pub static VISIBILITY: Kernel = Kernel {
     name: "visibility",
     spirv: include_bytes!("../spirv/visibility.spv"),

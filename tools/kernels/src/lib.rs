@@ -1,5 +1,5 @@
-//! The kernels that only the tools, tests and benchmarks dispatch. An engine brings a G-buffer of its own and shades no lists of
-//! points, so that none of this is in the crates that it takes.
+//! The kernels that only the tools, tests and benchmarks dispatch. An engine brings a G-buffer of its own and
+//! shades no lists of points, so that none of this is in the crates that it takes.
 //!
 //! | kernel | does |
 //! |---|---|

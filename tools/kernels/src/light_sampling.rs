@@ -25,7 +25,8 @@ pub fn triangles(light: &Light) -> Vec<u32> {
     indices
 }
 
-/// Indices of an outline's vertices: triangles that cover it once, in its orientation; three a triangle. Empty for one without area.
+/// Indices of an outline's vertices: triangles that cover it once, in its orientation; three a triangle.
+/// Empty for one without area.
 pub fn triangles_of(outline: &[DVec3]) -> Vec<u32> {
     let normal = LightShape::Polygon(outline.to_vec()).area_vector().normalize_or_zero();
     if normal == DVec3::ZERO {

@@ -36,7 +36,8 @@ impl Called {
                 self.function.call1(py, (alpha, view.to_array(), light.to_array()))?.extract(py)?;
             if !(value >= 0.0 && value.is_finite()) {
                 let message = format!(
-                    "brdf: {value} for alpha {alpha}, view {view}, light {light}: must be finite and not negative"
+                    "brdf: {value} for alpha {alpha}, view {view}, light {light}: must be finite and not \
+                    negative"
                 );
                 return Err(PyValueError::new_err(message));
             }

@@ -100,7 +100,8 @@ impl Material {
         let material::Material { base_color, metalness, roughness, dielectric_f0, .. } = self.0;
         let [r, g, b] = base_color.to_array();
         format!(
-            "Material(base_color=({r}, {g}, {b}), metalness={metalness}, roughness={roughness}, dielectric_f0={})",
+            "Material(base_color=({r}, {g}, {b}), metalness={metalness}, roughness={roughness}, \
+            dielectric_f0={})",
             dielectric_f0.x
         )
     }

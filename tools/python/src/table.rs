@@ -78,7 +78,8 @@ impl Table {
 
 #[pymethods]
 impl Lobe {
-    /// The density of the lobe, a steradian, in a direction of the surface's frame: the view lies in its xz plane.
+    /// The density of the lobe, a steradian, in a direction of the surface's frame: the view lies in its xz
+    /// plane.
     fn density(&self, direction: Triple) -> PyResult<f64> {
         let direction = crate::direction(direction, "direction")?;
         let inverse = DMat3::from_cols_array_2d(&self.inverse).transpose();

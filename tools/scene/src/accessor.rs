@@ -14,8 +14,8 @@ struct Elements {
     normalized: bool,
 }
 
-/// Vectors of `N` floats (of 16, a matrix's columns): float components as they are, normalised integers as fractions, others as whole numbers (`KHR_mesh_quantization`).
-/// None is NaN or infinite.
+/// Vectors of `N` floats (of 16, a matrix's columns): float components as they are, normalised integers as
+/// fractions, others as whole numbers (`KHR_mesh_quantization`). None is NaN or infinite.
 pub(crate) fn floats<const N: usize>(
     document: &Document,
     accessor: usize,

@@ -84,7 +84,8 @@ pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), Scene
     Ok(())
 }
 
-/// A node's scale as the extension has it, with unit vectors to the light's right, up and front: right-angled, also under shear.
+/// A node's scale as the extension has it, with unit vectors to the light's right, up and front:
+/// right-angled, also under shear.
 struct Placing {
     scale: f64,
     right: DVec3,

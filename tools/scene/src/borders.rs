@@ -4,8 +4,8 @@ use arealight::{Light, LightShape};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// The closed loops along which a set of triangles ends, each with the triangles on its left. None where a loop touches
-/// another or itself.
+/// The closed loops along which a set of triangles ends, each with the triangles on its left. None where a
+/// loop touches another or itself.
 pub(crate) fn borders(triangles: impl Iterator<Item = [u32; 3]>) -> Option<Vec<Vec<u32>>> {
     let edges: Vec<[u32; 2]> = triangles.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
     let known: std::collections::HashSet<[u32; 2]> = edges.iter().copied().collect();
@@ -31,8 +31,8 @@ pub(crate) fn borders(triangles: impl Iterator<Item = [u32; 3]>) -> Option<Vec<V
     Some(loops)
 }
 
-/// One outline around what several loops border, of which one goes around counter-clockwise as seen from the side that `normal`
-/// points to, and the others are holes. None where that is not so.
+/// One outline around what several loops border, of which one goes around counter-clockwise as seen from the
+/// side that `normal` points to, and the others are holes. None where that is not so.
 pub(crate) fn with_holes(loops: Vec<Vec<DVec3>>, normal: DVec3) -> Option<Vec<DVec3>> {
     let shapes = loops.into_iter().map(LightShape::Polygon);
     let (mut outlines, holes): (Vec<_>, Vec<_>) =

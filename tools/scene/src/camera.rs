@@ -76,7 +76,8 @@ impl Camera {
         camera
     }
 
-    /// A pinhole of a field of view of a right angle. `forward` is unit; `up` need not be at a right angle to it.
+    /// A pinhole of a field of view of a right angle. `forward` is unit; `up` need not be at a right angle to
+    /// it.
     pub(crate) fn looking(name: String, position: DVec3, forward: DVec3, up: DVec3) -> Self {
         let right = forward.cross(up).normalize_or(forward.any_orthonormal_vector());
         let up = right.cross(forward);
@@ -106,8 +107,8 @@ impl Camera {
         }
     }
 
-    /// How far away a pinhole camera with the field of view of [`Camera::framing`] is that sees as much as an orthographic one; of a
-    /// pinhole 1.
+    /// How far away a pinhole camera with the field of view of [`Camera::framing`] is that sees as much as an
+    /// orthographic one; of a pinhole 1.
     fn distance(&self) -> f64 {
         if self.orthographic { self.half_height / FRAMING_HALF_HEIGHT } else { 1.0 }
     }
@@ -123,8 +124,8 @@ impl Camera {
         Self { position, orthographic: false, half_height: FRAMING_HALF_HEIGHT, ..self }
     }
 
-    /// Where the ray through a point of the image starts, and its unit direction: (-1, -1) is the lower left corner, (1, 1) the
-    /// upper right one, of an image of `aspect`.
+    /// Where the ray through a point of the image starts, and its unit direction: (-1, -1) is the lower left
+    /// corner, (1, 1) the upper right one, of an image of `aspect`.
     pub fn ray(&self, [x, y]: [f64; 2], aspect: f64) -> [DVec3; 2] {
         let across = self.right * (self.half_height * aspect * x) + self.up * (self.half_height * y);
         if self.orthographic {

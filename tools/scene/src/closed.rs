@@ -4,8 +4,9 @@ use crate::{Bounds, weld};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Which triangles belong to a connected part that is closed (each edge is shared by exactly two of its triangles, which run along it in
-/// opposite directions) and faces outwards (its signed volume is positive). `rounding` is how far positions may be off in any case.
+/// Which triangles belong to a connected part that is closed (each edge is shared by exactly two of its
+/// triangles, which run along it in opposite directions) and faces outwards (its signed volume is positive).
+/// `rounding` is how far positions may be off in any case.
 pub(crate) fn closed(positions: &[DVec3], triangles: &[[u32; 3]], rounding: f64) -> Vec<bool> {
     let corners = welded(positions, triangles, rounding);
     let parts = connected(&corners);

@@ -1,5 +1,5 @@
-//! `EXT_meshopt_compression`, and `KHR_meshopt_compression`: buffer views whose data are there compressed alone become as if they had been
-//! stored plainly.
+//! `EXT_meshopt_compression`, and `KHR_meshopt_compression`: buffer views whose data are there compressed
+//! alone become as if they had been stored plainly.
 
 use crate::SceneError;
 use crate::document::Document;
@@ -18,7 +18,8 @@ pub(crate) const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_com
 /// What a file's views may be together, in bytes.
 const MOST_BYTES: u64 = 1 << 31;
 
-/// The most bytes that one becomes: of vertices that are all alike, a block of 256 takes a byte for each word of a vertex.
+/// The most bytes that one becomes: of vertices that are all alike, a block of 256 takes a byte for each word
+/// of a vertex.
 const MOST_PER_BYTE: u64 = 1024;
 
 /// What the extension says of a view.

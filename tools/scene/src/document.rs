@@ -190,7 +190,8 @@ impl Document {
                 }
             }
         }
-        // Check every index and enumeration; a missing minimum or maximum does no harm, and an accessor without a view is of zeros, or compressed
+        // Check every index and enumeration; a missing minimum or maximum does no harm, and an accessor
+        // without a view is of zeros, or compressed
         let mut first = None;
         let report = &mut |path: &dyn Fn() -> json::Path, error: json::validation::Error| {
             let field = path();

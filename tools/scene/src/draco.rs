@@ -1,4 +1,5 @@
-//! `KHR_draco_mesh_compression`: primitives whose data are there in Draco's form alone become as if they had been stored plainly.
+//! `KHR_draco_mesh_compression`: primitives whose data are there in Draco's form alone become as if they had
+//! been stored plainly.
 
 use crate::document::Document;
 use crate::scene::MAX_TRIANGLES;

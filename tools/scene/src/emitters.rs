@@ -12,7 +12,8 @@ use arealight::{Light, LightShape};
 use glam::Vec3;
 use std::ops::Range;
 
-/// Adds the lights that a node's mesh is, instance by instance, and says which of the scene's triangles look like each.
+/// Adds the lights that a node's mesh is, instance by instance, and says which of the scene's triangles look
+/// like each.
 pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, mesh: &[Instance]) {
     let closed = closed_parts(&loader.scene, mesh);
     for (instance, closed) in mesh.iter().zip(&closed) {
@@ -41,8 +42,9 @@ fn add_instance(
     first..loader.scene.lights.len()
 }
 
-/// Which triangles of a mesh's instances are of closed parts, each by itself or together with the others, whatever those are made of. Where
-/// alpha makes holes there is no inside, and without an emitter of two sides nobody asks: none.
+/// Which triangles of a mesh's instances are of closed parts, each by itself or together with the others,
+/// whatever those are made of. Where alpha makes holes there is no inside, and without an emitter of two
+/// sides nobody asks: none.
 fn closed_parts(scene: &Scene, mesh: &[Instance]) -> Vec<Vec<bool>> {
     let material = |instance: &Instance| &scene.materials[instance.material as usize];
     let is_whole = |instance: &Instance| material(instance).alpha_cutoff.is_none();
@@ -109,8 +111,8 @@ pub(crate) fn add_bare(scene: &mut Scene, first: usize) {
     scene.lamps.extend(bare);
 }
 
-/// Adds an instance's flat parts as lights: those of its closed parts as one-sided ones whatever the material says, for nobody sees their
-/// inside.
+/// Adds an instance's flat parts as lights: those of its closed parts as one-sided ones whatever the material
+/// says, for nobody sees their inside.
 fn add_sides(loader: &mut Loader, node: &PlacedNode, instance: &Instance, is_closed: &[bool]) {
     let material = &loader.scene.materials[instance.material as usize];
     let (two_sided, masked) = (material.double_sided, material.alpha_cutoff.is_some());

@@ -6,7 +6,8 @@ use crate::{SceneError, compressed_views};
 use gltf::json;
 use std::collections::BTreeSet;
 
-/// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a material has it.
+/// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a
+/// material has it.
 const READ: [&str; 20] = [
     "EXT_lights_area",
     "EXT_mesh_gpu_instancing",
@@ -30,7 +31,8 @@ const READ: [&str; 20] = [
     "KHR_xmp_json_ld",
 ];
 
-/// What a scene is shown without, with a warning, also where a file requires it; and every other `KHR_materials` extension.
+/// What a scene is shown without, with a warning, also where a file requires it; and every other
+/// `KHR_materials` extension.
 const COSTS_LOOKS: [&str; 8] = [
     "EXT_lights_ies",
     "EXT_lights_image_based",
@@ -55,7 +57,8 @@ pub(crate) fn check_required(file: &str, required: &[String]) -> Result<(), Scen
     }
 }
 
-/// Makes textures that are WebP alone refer to that image, and refuses data that are only in an extension that is not read.
+/// Makes textures that are WebP alone refer to that image, and refuses data that are only in an extension
+/// that is not read.
 pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError> {
     let file = document.file.clone();
     let refused = |field: String, name: &str| {

@@ -184,7 +184,8 @@ fn pack(triangle: &Triangle, origin: DVec3) -> GpuTriangle {
     }
 }
 
-/// A unit direction's place on the unfolded octahedron, as two numbers of 16 bits with a sign (`unpackSnorm2x16`). Source: Cigolle et al. 2014.
+/// A unit direction's place on the unfolded octahedron, as two numbers of 16 bits with a sign
+/// (`unpackSnorm2x16`). Source: Cigolle et al. 2014.
 fn pack_direction(direction: Vec3) -> u32 {
     let size = direction.abs().element_sum();
     if size.is_nan() || size <= 0.0 {

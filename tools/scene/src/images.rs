@@ -99,8 +99,8 @@ pub(crate) fn linear_mean(image: &Image) -> DVec3 {
     sum / image.texels.len().max(1) as f64
 }
 
-/// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and of
-/// alpha, over two by two.
+/// The image with half the texels a side, rounded down but not to zero; each is the mean of linear light, and
+/// of alpha, over two by two.
 pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
     let linear: [f64; 256] = std::array::from_fn(|byte| {
         let value = byte as f64 / 255.0;
@@ -126,7 +126,8 @@ pub(crate) fn halved(image: &Image, srgb: bool) -> Image {
     Image { name: format!("{}, smaller", image.name), width, height, texels: texels.collect() }
 }
 
-/// The linear colour of `image`, read by `texture`, at finite coordinates; bilinear, decoded before it is filtered.
+/// The linear colour of `image`, read by `texture`, at finite coordinates; bilinear, decoded before it is
+/// filtered.
 pub(crate) fn sample(image: &Image, texture: Texture, uv: DVec2) -> DVec3 {
     let size = DVec2::new(f64::from(image.width), f64::from(image.height));
     let position = uv * size - 0.5;

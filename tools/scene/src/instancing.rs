@@ -11,7 +11,8 @@ const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// The most nodes and instances a scene may have, where it has instances; a file beyond is refused.
 const MAX_INSTANCES: usize = 1 << 20;
 
-/// From each instance's space to the node's, where `placed` are there already; none where the node's mesh is there once.
+/// From each instance's space to the node's, where `placed` are there already; none where the node's mesh is
+/// there once.
 pub(crate) fn instances(
     document: &Document,
     index: usize,

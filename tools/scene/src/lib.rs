@@ -8,18 +8,22 @@
 //! # What becomes a light
 //! - Flat geometry with an emissive material: coplanar neighbours merge into one outline, so a quad is one
 //!   light of four vertices. Its radiance is emissiveFactor × `KHR_materials_emissive_strength`, as numbers
-//!   in W/(m² sr). A double-sided material makes a two-sided light, but for the
-//!   parts of a mesh that are closed and face outwards: nobody sees their inside, and each is one-sided. An emissiveTexture is shown where it is mapped onto
-//!   the outline by one affine map: a part of it is a layer of the light textures ([`Scene::light_textures`]), and
-//!   where the mapping has a seam, another light begins. Parts that are black are no lights.
-//! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in nits /
-//!   [`LUMENS_PER_WATT`].
-//! - A mesh on the joints of a skin shines where they are, and one of `EXT_mesh_gpu_instancing` once an instance.
-//! - Emissive meshes whose node has a word for what they stand for: `"extras": { "arealight": { "shape": "sphere", "radius": 0.5 } }`.
-//!   The mesh is drawn, and a [`Light`](arealight::Light) of that shape lights. Shapes are `disk` (which faces
-//!   +Y), `sphere`, `cylinder`, `pipe` (a cylinder without caps) and `capsule`, about the node's origin and its Y axis,
-//!   each with a `radius`, and the last three with the `height` of their straight part, in the node's space. A disk may be
-//!   scaled at will; a sphere and a capsule stay what they are under a uniform scale, a cylinder as long as it stays round.
+//!   in W/(m² sr). A double-sided material makes a two-sided light, but for the parts of a mesh that are
+//!   closed and face outwards: nobody sees their inside, and each is one-sided. An emissiveTexture is shown
+//!   where it is mapped onto the outline by one affine map: a part of it is a layer of the light textures
+//!   ([`Scene::light_textures`]), and where the mapping has a seam, another light begins. Parts that are
+//!   black are no lights.
+//! - `EXT_lights_area` rectangles and disks, which have no visible geometry: radiance = colour × intensity in
+//!   nits / [`LUMENS_PER_WATT`].
+//! - A mesh on the joints of a skin shines where they are, and one of `EXT_mesh_gpu_instancing` once an
+//!   instance.
+//! - Emissive meshes whose node has a word for what they stand for:
+//!   `"extras": { "arealight": { "shape": "sphere", "radius": 0.5 } }`. The mesh is drawn, and a
+//!   [`Light`](arealight::Light) of that shape lights. Shapes are `disk` (which faces +Y), `sphere`,
+//!   `cylinder`, `pipe` (a cylinder without caps) and `capsule`, about the node's origin and its Y axis, each
+//!   with a `radius`, and the last three with the `height` of their straight part, in the node's space. A
+//!   disk may be scaled at will; a sphere and a capsule stay what they are under a uniform scale, a cylinder
+//!   as long as it stays round.
 //!
 //! # Spaces
 //! Positions are world positions in `f64`, in the file's unit of length (glTF: metres), right-handed, +Y up.

@@ -1,11 +1,11 @@
 //! What textured lights show: rectangles of images, each a layer of the light textures.
 //!
-//! A light's texture coordinates lie within a layer, so the box around them, in the image's coordinates, is loaded into
-//! one. Lights that show the same box share it.
+//! A light's texture coordinates lie within a layer, so the box around them, in the image's coordinates, is
+//! loaded into one. Lights that show the same box share it.
 //!
-//! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out. Only an
-//! image that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each would be many
-//! times its size.
+//! A box of its own also keeps a blurred light to its own colours: what lies beside it in an atlas stays out.
+//! Only an image that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each
+//! would be many times its size.
 
 use crate::images::halved;
 use crate::load::Loader;
@@ -17,28 +17,30 @@ use arealight::{Light, LightShape, LightTexture, TexturePart};
 use glam::DVec2;
 use std::collections::{HashMap, HashSet};
 
-/// The most light textures a scene has; further lights have the mean colour of what they show. As many layers as every
-/// Vulkan device can have in an image.
+/// The most light textures a scene has; further lights have the mean colour of what they show. As many layers
+/// as every Vulkan device can have in an image.
 pub const MAX_LIGHT_TEXTURES: usize = 256;
 
-/// The most texels that [`Scene::light_texture_size`] allows for all layers: half a gibibyte at eight bytes each.
+/// The most texels that [`Scene::light_texture_size`] allows for all layers: half a gibibyte at eight bytes
+/// each.
 pub const MAX_LIGHT_TEXELS: u64 = 1 << 26;
 
-/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean colour. At
-/// 1024 texels a layer, sixteen are left for each repeat.
+/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean
+/// colour. At 1024 texels a layer, sixteen are left for each repeat.
 pub const MAX_REPEATS: f64 = 64.0;
 
-/// An image that is shown in more pieces than these, whose areas add up to at least half of it, is loaded whole.
+/// An image that is shown in more pieces than these, whose areas add up to at least half of it, is loaded
+/// whole.
 const FEW_PIECES: usize = 4;
 
 /// A layer of the light textures: a rectangle of a texture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneLightTexture {
-    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has been
-    /// scaled down.
+    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has
+    /// been scaled down.
     pub texture: u32,
-    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1], where the
-    /// texture's wrap modes say what there is.
+    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1],
+    /// where the texture's wrap modes say what there is.
     pub low: DVec2,
     /// Width and height, in the texture's coordinates; both are positive.
     pub size: DVec2,
@@ -75,8 +77,8 @@ impl Scene {
     }
 
     /// A size for all layers of the light textures: as many texels as the most detailed one has, but at most
-    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] in all. None if there are no
-    /// light textures.
+    /// `largest` a side (1024 is enough for most scenes) and [`MAX_LIGHT_TEXELS`] in all. None if there are
+    /// no light textures.
     pub fn light_texture_size(&self, largest: u32) -> Option<PyramidSize> {
         let largest = largest.clamp(PyramidSize::SMALLEST, PyramidSize::LARGEST);
         let sources = (0..self.light_textures.len()).filter_map(|layer| self.light_texture_source(layer));
@@ -109,12 +111,13 @@ pub(crate) struct TexturedLight {
     pub surface: usize,
     /// Index into [`Scene::textures`].
     pub texture: u32,
-    /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's first.
+    /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's
+    /// first.
     pub uvs: Vec<DVec2>,
 }
 
-/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot be
-/// seen, nor, in small images, a thousandth of the image.
+/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot
+/// be seen, nor, in small images, a thousandth of the image.
 pub(crate) fn tolerance(scene: &Scene, texture: u32) -> DVec2 {
     let image = &scene.images[scene.textures[texture as usize].image as usize];
     (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))
@@ -177,7 +180,8 @@ fn shown_in_many_pieces(shown: &[Shown]) -> HashSet<u32> {
     pieces.into_iter().filter(|(_, areas)| many(areas)).map(|(texture, _)| texture).collect()
 }
 
-/// Gives layers whose image is larger than a device loads ([`TexturePart`] has the limits) an image of fewer texels.
+/// Gives layers whose image is larger than a device loads ([`TexturePart`] has the limits) an image of fewer
+/// texels.
 fn scale_down(scene: &mut Scene) {
     // By texture and how often it is halved
     let mut known: HashMap<(u32, u32), u32> = HashMap::new();

@@ -27,8 +27,8 @@ impl LitTexels {
         Self { width, height, sums }
     }
 
-    /// Whether bilinear samples between the texture coordinates `low` and `high` are all black. What is outside of
-    /// the image stands for all of it.
+    /// Whether bilinear samples between the texture coordinates `low` and `high` are all black. What is
+    /// outside of the image stands for all of it.
     pub fn is_black(&self, low: DVec2, high: DVec2) -> bool {
         let texels = |low: f64, high: f64, side: usize| {
             let last = side as f64;

@@ -23,7 +23,8 @@ pub(crate) struct Loader {
     pub images: Vec<Option<u32>>,
     /// The lights that a texture shines through, until all are known.
     pub textured: Vec<TexturedLight>,
-    /// The [`nodes::PlacedNode::number`] whose mesh was last found to stand for a shape, and what it shines with.
+    /// The [`nodes::PlacedNode::number`] whose mesh was last found to stand for a shape, and what it shines
+    /// with.
     pub shaped: Option<(usize, Vec3)>,
 }
 
@@ -105,7 +106,8 @@ fn warn_of_what_is_ignored(loader: &mut Loader) {
 }
 
 /// What is said of a scene without lights.
-pub(crate) const NO_LIGHTS: &str = "has no area lights (emissive faces or EXT_lights_area): surfaces are black (--lights studio adds softboxes)";
+pub(crate) const NO_LIGHTS: &str = "has no area lights (emissive faces or EXT_lights_area): surfaces are \
+black (--lights studio adds softboxes)";
 
 fn warn_of_what_is_missing(loader: &mut Loader) {
     let place = "scene";

@@ -40,7 +40,8 @@ pub(crate) struct Primitive {
     influences: Option<Vec<skins::Influence>>,
     /// Indices of vertices that exist.
     triangles: Vec<[u32; 3]>,
-    /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says what they are.
+    /// Of each triangle's corners, [`tangents::read`]; empty where no material needs them, or nothing says
+    /// what they are.
     tangents: Vec<[Vec4; 3]>,
 }
 

@@ -19,7 +19,8 @@ struct Reference {
     light: usize,
 }
 
-/// Each node with the light that it refers to, and the light's place; `reference` is what the node has of the extension of this name.
+/// Each node with the light that it refers to, and the light's place; `reference` is what the node has of the
+/// extension of this name.
 ///
 /// # Errors
 /// [`SceneError`] names the field where the extension or a light is missing, or is not what it should be.

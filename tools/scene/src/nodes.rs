@@ -74,7 +74,8 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
         };
         match instancing::instances(document, index, node, placed.len())? {
             None => placed.push(once),
-            // The node itself is there once, with its camera and its light; its mesh is where the instances are
+            // The node itself is there once, with its camera and its light; its mesh is where the instances
+            // are
             Some(instances) => {
                 let first = placed.len() + 1;
                 let instance = |(at, local): (usize, DAffine3)| PlacedNode {

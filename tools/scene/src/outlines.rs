@@ -3,11 +3,11 @@
 //! A flat part grows triangle by triangle from its largest one, and its outline stays a simple loop all the
 //! way: a triangle that would close a ring around a hole, or make the loop touch itself, waits, and what
 //! still waits at the end starts a polygon of its own. A part without holes always becomes one polygon
-//! (planar discs can be shelled from any start). A part with holes becomes one, too, whose outline goes around the holes
-//! by bridges; only where its borders touch is it several.
+//! (planar discs can be shelled from any start). A part with holes becomes one, too, whose outline goes
+//! around the holes by bridges; only where its borders touch is it several.
 //!
-//! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the mapping
-//! bends, another part begins.
+//! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the
+//! mapping bends, another part begins.
 
 use crate::Bounds;
 use crate::borders::{borders, with_holes};
@@ -27,8 +27,8 @@ const SHARED: usize = 4;
 /// The polygons that a set of triangles is.
 #[derive(Debug, Default)]
 pub(crate) struct Outlines {
-    /// In the orientation of the triangles; without vertices in the middle of straight edges. One that goes around holes passes
-    /// each bridge to them twice.
+    /// In the orientation of the triangles; without vertices in the middle of straight edges. One that goes
+    /// around holes passes each bridge to them twice.
     pub polygons: Vec<Vec<DVec3>>,
     /// Texture coordinates of the polygons' vertices; empty if none were given.
     pub uvs: Vec<Vec<DVec2>>,
@@ -189,7 +189,8 @@ impl Mesh {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
-    /// The triangles that are connected to `seed`, in its plane, and mapped as it is; they are marked with `number`.
+    /// The triangles that are connected to `seed`, in its plane, and mapped as it is; they are marked with
+    /// `number`.
     fn flat_part(
         &self,
         seed: usize,
@@ -219,8 +220,8 @@ impl Mesh {
         members
     }
 
-    /// The outline around `members`, a connected flat part, and around its holes. None if it has no holes, or its borders
-    /// touch.
+    /// The outline around `members`, a connected flat part, and around its holes. None if it has no holes, or
+    /// its borders touch.
     fn outline_with_holes(&self, members: &[usize], normal: DVec3, flat: f64) -> Option<Vec<DVec3>> {
         let loops = borders(members.iter().map(|&member| self.triangles[member]))?;
         if loops.len() < 2 {

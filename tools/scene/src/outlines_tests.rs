@@ -313,8 +313,8 @@ fn a_fan_is_one_outline_however_it_is_turned() {
         (0..count as u32).map(|i| [0, i + 1, (i + 1) % count as u32 + 1]).collect();
     let merged = mapped(&positions, &triangles, |p| (turn.inverse() * p).truncate() * 0.5 + 0.5);
     assert_eq!((merged.polygons.len(), merged.seams), (1, false));
-    // The twin: a mapping along the edge and out from the middle bends everywhere; a few neighbours are within the
-    // tolerance
+    // The twin: a mapping along the edge and out from the middle bends everywhere; a few neighbours are
+    // within the tolerance
     let cone = |p: DVec3| {
         let p = (turn.inverse() * p).truncate();
         DVec2::new(p.to_angle(), p.length())

@@ -1,4 +1,5 @@
-//! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small spheres and disks of the same intensity.
+//! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
+//! spheres and disks of the same intensity.
 
 use crate::SceneError;
 use crate::area_lights::LUMENS_PER_WATT;
@@ -38,10 +39,12 @@ pub(crate) const NAME: &str = "KHR_lights_punctual";
 /// The sun's angular radius, in radians: half of 0.533 degrees.
 const SUN_RADIUS: f64 = 4.65e-3;
 
-/// How far away a sun is, in diagonals of the scene: its direction differs by less than its radius from end to end.
+/// How far away a sun is, in diagonals of the scene: its direction differs by less than its radius from end
+/// to end.
 const SUN_DISTANCE: f64 = 1000.0;
 
-/// Adds the punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius` says, else `size`, in metres.
+/// Adds the punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius`
+/// says, else `size`, in metres.
 pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode], size: Option<f64>) -> Result<(), SceneError> {
     let lights = node_lights::referenced(&loader.document, NAME, nodes, |node| node.punctual_light.as_ref())?;
     for (node, place, light) in lights {
@@ -83,7 +86,8 @@ fn make(
         }
         "spot" => {
             let text = format!(
-                "spots are disks with a radius of {radius} m, whose light falls off with the cosine and ends at no cone"
+                "spots are disks with a radius of {radius} m, whose light falls off with the cosine and ends \
+                at no cone"
             );
             loader.warn(NAME, text);
             (disk(center, front(node)?, radius), of_intensity)

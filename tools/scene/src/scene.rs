@@ -17,7 +17,8 @@ pub const MAX_COORDINATE: f64 = 1e15;
 /// What a file leaves open.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LoadOptions {
-    /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without they are left out, with a warning.
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without
+    /// they are left out, with a warning.
     pub light_size: Option<f64>,
 }
 
@@ -68,14 +69,17 @@ pub struct Triangle {
     pub normals: [Vec3; 3],
     /// Texture coordinates; zero where the file has none. (0, 0) is the image's upper left corner.
     pub uvs: [Vec2; 3],
-    /// Unit tangents, the direction of growing u, in xyz, and in w, 1 or -1, the side of the bitangent, `cross(normal, tangent) w`. Zero where no
-    /// material needs them, or nothing in the file says what they are.
+    /// Unit tangents, the direction of growing u, in xyz, and in w, 1 or -1, the side of the bitangent,
+    /// `cross(normal, tangent) w`. Zero where no material needs them, or nothing in the file says what they
+    /// are.
     pub tangents: [Vec4; 3],
-    /// What the base colour is multiplied with at each vertex: the square roots of linear red, green and blue, which keep dark colours apart, and alpha, in 255ths.
+    /// What the base colour is multiplied with at each vertex: the square roots of linear red, green and
+    /// blue, which keep dark colours apart, and alpha, in 255ths.
     pub colors: [[u8; 4]; 3],
     /// Index into [`Scene::materials`].
     pub material: u32,
-    /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is where the lamp is, nor another's.
+    /// It is what one of [`Scene::lights`] looks like. A lamp blocks no light: neither its own, which is
+    /// where the lamp is, nor another's.
     pub lamp: bool,
 }
 
@@ -101,7 +105,8 @@ pub struct SceneMaterial {
     pub metallic_roughness_texture: Option<u32>,
     /// Of a linear texture: alpha times the dielectric's reflectances, normal and grazing.
     pub specular_texture: Option<u32>,
-    /// Of an sRGB texture times the dielectric's reflectance at normal incidence, which it cuts off at that at grazing incidence.
+    /// Of an sRGB texture times the dielectric's reflectance at normal incidence, which it cuts off at that
+    /// at grazing incidence.
     pub specular_color_texture: Option<u32>,
     /// Of a linear texture of tangent-space normals.
     pub normal_texture: Option<u32>,
@@ -113,7 +118,8 @@ pub struct SceneMaterial {
     pub coat_texture: Option<u32>,
     /// Of a linear texture: green times the coat's roughness.
     pub coat_roughness_texture: Option<u32>,
-    /// Of a linear texture of the coat's tangent-space normals. Without one the coat is as the geometry is, whatever bends the base.
+    /// Of a linear texture of the coat's tangent-space normals. Without one the coat is as the geometry is,
+    /// whatever bends the base.
     pub coat_normal_texture: Option<u32>,
     /// Scale of its x and y.
     pub coat_normal_scale: f32,
@@ -121,7 +127,8 @@ pub struct SceneMaterial {
     pub sheen_color_texture: Option<u32>,
     /// Of a linear texture: alpha times the sheen's roughness.
     pub sheen_roughness_texture: Option<u32>,
-    /// How much longer highlights are along the direction of anisotropy, in [0, 1]: `anisotropyStrength`. 0 for none.
+    /// How much longer highlights are along the direction of anisotropy, in [0, 1]: `anisotropyStrength`. 0
+    /// for none.
     pub anisotropy_strength: f32,
     /// That direction's angle from the tangent towards the bitangent, radians.
     pub anisotropy_rotation: f32,
@@ -129,7 +136,8 @@ pub struct SceneMaterial {
     pub anisotropy_texture: Option<u32>,
     /// Of a linear texture: red times the film's weight.
     pub film_texture: Option<u32>,
-    /// Of a linear texture whose green says how thick the film is: from the least thickness to the film's own.
+    /// Of a linear texture whose green says how thick the film is: from the least thickness to the film's
+    /// own.
     pub film_thickness_texture: Option<u32>,
     /// The film's thickness where that texture is 0, in nanometres.
     pub film_least_thickness: f32,

@@ -44,8 +44,8 @@ pub(crate) fn said(extras: &gltf::json::Extras) -> Option<Value> {
     extras.get("arealight").cloned()
 }
 
-/// Adds the shape that a node's word says its emissive mesh is; false where there is no such word, or none that holds, and the
-/// mesh is what it is.
+/// Adds the shape that a node's word says its emissive mesh is; false where there is no such word, or none
+/// that holds, and the mesh is what it is.
 pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -> bool {
     let Some(said) = &node.shape else { return false };
     let place = format!("light '{}' (node {})", instance.name, node.index);
@@ -96,8 +96,8 @@ pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -
     }
 }
 
-/// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture coordinates of the image's box around
-/// it: its corners, the first one first. Or why there is none.
+/// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture
+/// coordinates of the image's box around it: its corners, the first one first. Or why there is none.
 fn upright(
     shape: &LightShape,
     instance: &Instance,
@@ -178,7 +178,8 @@ fn tube(world: &DAffine3, radius: f64, height: f64, ends: TubeEnds) -> Result<Li
     Ok(LightShape::Tube { p0, p1, radius: radius * x.length(), ends })
 }
 
-/// Whether the axes are perpendicular and the first `equal` of them of one length, to what `f32` transforms are precise to.
+/// Whether the axes are perpendicular and the first `equal` of them of one length, to what `f32` transforms
+/// are precise to.
 fn is_rotation_and_scale(axes: [DVec3; 3], equal: usize) -> bool {
     const TOLERANCE: f64 = 1e-4;
     let lengths = axes.map(DVec3::length);

@@ -65,7 +65,8 @@ impl Rectangle {
         Key::of(self.texture, self.low, self.high - self.low)
     }
 
-    /// The mean linear colour over the light (over the rectangle, where the light is a disk, or too thin for samples).
+    /// The mean linear colour over the light (over the rectangle, where the light is a disk, or too thin for
+    /// samples).
     pub fn mean(&self, scene: &Scene) -> DVec3 {
         let (image, texture) = read(scene, self.texture);
         let size = self.high - self.low;
@@ -166,7 +167,8 @@ fn read(scene: &Scene, texture: u32) -> (&Image, Texture) {
     (&scene.images[texture.image as usize], texture)
 }
 
-/// The two points of a polygon that are farthest apart, or almost, and its breadth across the line through them.
+/// The two points of a polygon that are farthest apart, or almost, and its breadth across the line through
+/// them.
 fn extent(points: &[DVec2]) -> ([DVec2; 2], f64) {
     let farthest = |from: DVec2| {
         points.iter().copied().max_by(|a, b| a.distance(from).total_cmp(&b.distance(from))).unwrap_or(from)
@@ -179,7 +181,8 @@ fn extent(points: &[DVec2]) -> ([DVec2; 2], f64) {
     ([start, end], most - least)
 }
 
-/// Moves coordinates by whole periods of what is repeated, and out of a mirror image, to start within the image.
+/// Moves coordinates by whole periods of what is repeated, and out of a mirror image, to start within the
+/// image.
 fn bring_home(uvs: &mut [DVec2], wrap: [Wrap; 2]) {
     for (axis, wrap) in wrap.into_iter().enumerate() {
         let along = || uvs.iter().map(|uv| uv[axis]);

@@ -1,7 +1,7 @@
 //! Skins: meshes that hang on joints.
 //!
-//! A skinned mesh is where its joints are, each vertex at the weighted mean of the places that up to four of them put it at; the mesh's own
-//! node says nothing of it (glTF 2.0, 3.7.3.3).
+//! A skinned mesh is where its joints are, each vertex at the weighted mean of the places that up to four of
+//! them put it at; the mesh's own node says nothing of it (glTF 2.0, 3.7.3.3).
 
 use crate::load::Loader;
 use crate::nodes::PlacedNode;
@@ -45,8 +45,8 @@ pub(crate) fn read(
     Ok(Some(joints.iter().zip(&weights).map(influence).collect()))
 }
 
-/// From the mesh's space at binding to the world, for each joint of a node's skin, which is that number in the file. None if the skin's joints are
-/// not all in `worlds`, the places of the scene's nodes.
+/// From the mesh's space at binding to the world, for each joint of a node's skin, which is that number in
+/// the file. None if the skin's joints are not all in `worlds`, the places of the scene's nodes.
 pub(crate) fn pose(
     loader: &mut Loader,
     worlds: &HashMap<usize, DAffine3>,

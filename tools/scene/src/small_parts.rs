@@ -1,8 +1,8 @@
-//! Surfaces of many textured parts, as those of scanned or sculpted models: their small parts show one colour each. However faint, none is left out: of a
-//! point that touches it, it may be all the light.
+//! Surfaces of many textured parts, as those of scanned or sculpted models: their small parts show one colour
+//! each. However faint, none is left out: of a point that touches it, it may be all the light.
 //!
-//! A flat part of a bent surface is a light with an image of its own. A model of 15,000 triangles has thousands of
-//! them, each a few texels: what they show together is in their colours already.
+//! A flat part of a bent surface is a light with an image of its own. A model of 15,000 triangles has
+//! thousands of them, each a few texels: what they show together is in their colours already.
 
 use crate::light_textures::TexturedLight;
 use crate::shown::Shown;
@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 /// A surface of more lit parts than these has its small parts simplified.
 const MANY_PARTS: usize = 64;
 
-/// A part is small below this share of its surface's diagonal, if it also has less than [`SMALL_FLUX`] of its light.
+/// A part is small below this share of its surface's diagonal, if it also has less than [`SMALL_FLUX`] of its
+/// light.
 const SMALL_DIAGONAL: f64 = 0.1;
 const SMALL_FLUX: f64 = 0.01;
 

@@ -1,4 +1,5 @@
-//! A photographer's light for models that bring none: three softboxes around what is shown, placed as the camera sees it.
+//! A photographer's light for models that bring none: three softboxes around what is shown, placed as the
+//! camera sees it.
 
 use crate::emitters::add_bare;
 use crate::load::NO_LIGHTS;
@@ -43,16 +44,17 @@ const SOFTBOXES: [Softbox; 3] = [
     },
 ];
 
-/// How far from the middle of the scene the softboxes are, in halves of its diagonal: beyond 1 they are outside of all that is there.
+/// How far from the middle of the scene the softboxes are, in halves of its diagonal: beyond 1 they are
+/// outside of all that is there.
 const DISTANCE: f64 = 2.2;
 
 /// How much of the way from a camera within the scene to the edge of it: the walls of a room are there.
 const WITHIN: f64 = 0.6;
 
 impl Scene {
-    /// Adds three softboxes, one-sided rectangles that are not drawn: a key from the camera's left, a fill from its right, and a rim from
-    /// behind, each facing the middle of [`Scene::bounds`], outside of them; or within, where the camera is, facing what is before it.
-    /// A scene without any extent stays as it is.
+    /// Adds three softboxes, one-sided rectangles that are not drawn: a key from the camera's left, a fill
+    /// from its right, and a rim from behind, each facing the middle of [`Scene::bounds`], outside of them;
+    /// or within, where the camera is, facing what is before it. A scene without any extent stays as it is.
     ///
     /// # Errors
     /// [`LightFault`] where the scene is so large, or so far from the origin, that they cannot be shaded.
@@ -106,7 +108,8 @@ fn frame(camera: &Camera) -> [DVec3; 3] {
 /// How far it is from a point in a box to its edge.
 fn way_out(bounds: Bounds, from: DVec3, direction: DVec3) -> f64 {
     let edge = DVec3::select(direction.cmpge(DVec3::ZERO), bounds.max, bounds.min);
-    // Along an axis that the direction does not have, the edge is infinitely far; never is 0 divided by 0, for the point is within
+    // Along an axis that the direction does not have, the edge is infinitely far; never is 0 divided by 0,
+    // for the point is within
     ((edge - from) / direction).abs().min_element()
 }
 

@@ -18,8 +18,8 @@ pub(crate) struct Vertices<'a> {
     pub triangles: &'a [[u32; 3]],
 }
 
-/// The tangents of each triangle's corners, none where nothing says what they are: in xyz the direction of growing u, unit, and in w the
-/// side of the bitangent, `cross(normal, tangent) w`. In the mesh's space.
+/// The tangents of each triangle's corners, none where nothing says what they are: in xyz the direction of
+/// growing u, unit, and in w the side of the bitangent, `cross(normal, tangent) w`. In the mesh's space.
 pub(crate) fn read(
     loader: &Loader,
     source: &json::mesh::Primitive,

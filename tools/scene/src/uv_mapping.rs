@@ -1,7 +1,8 @@
 //! Where a material's textures lie on its meshes: which texture coordinates, and `KHR_texture_transform`.
 //!
-//! A mesh is drawn with one mapping for all textures of its material, which files nearly always have. Where they differ the first
-//! texture's is drawn, with a warning; what a mesh lights is by its emissive texture's own.
+//! A mesh is drawn with one mapping for all textures of its material, which files nearly always have. Where
+//! they differ the first texture's is drawn, with a warning; what a mesh lights is by its emissive texture's
+//! own.
 
 use glam::{DVec2, Vec2};
 use gltf::json;

@@ -7,7 +7,8 @@ use std::collections::HashMap;
 /// rounding of transforms.
 const WELD: f64 = 1e-6;
 
-/// How far vertices may be apart to be one: `size` is the diagonal of all, `rounding` how far positions may be off in any case.
+/// How far vertices may be apart to be one: `size` is the diagonal of all, `rounding` how far positions may
+/// be off in any case.
 pub(crate) fn tolerance(size: f64, rounding: f64) -> f64 {
     size * WELD + rounding
 }

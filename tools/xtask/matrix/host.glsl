@@ -2,10 +2,9 @@
 #extension GL_GOOGLE_include_directive : require
 
 // A host of the GLSL library, in every way that the matrix asks for by macros:
-//   COMPUTE            a compute shader, else a fragment shader
-//   COMBINED           combined image samplers, else images and samplers apart
-//   SPECIALIZED        the library's options are specialisation constants, else what the command line says, or the defaults
-//   WITHOUT_<bridge>   the host forgot that bridge
+//   COMPUTE a compute shader, else a fragment shader COMBINED combined image samplers, else images and
+//   samplers apart SPECIALIZED the library's options are specialisation constants, else what the command line
+//   says, or the defaults WITHOUT_<bridge> the host forgot that bridge
 
 #if SPECIALIZED
 layout(constant_id = 0) const bool DIFFUSE = true;
@@ -102,14 +101,16 @@ layout(location = 0) flat in int item;
 layout(location = 0) out vec4 result;
 #endif
 
-// A surface and lights of whatever numbers the buffer holds: none may be a literal, or the compiler leaves code out.
+// A surface and lights of whatever numbers the buffer holds: none may be a literal, or the compiler leaves
+// code out.
 vec3 shade(int first) {
     ArealightSurface surface;
     surface.position = numbers[first].xyz;
     surface.normal = numbers[first + 1].xyz;
     surface.view = numbers[first + 2].xyz;
     surface.roughness = numbers[first + 3].x;
-    arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a, numbers[first + 5].rgb,
+    arealight_surface_from_metalness(surface, numbers[first + 4].rgb, numbers[first + 4].a,
+                                     numbers[first + 5].rgb,
                                      numbers[first + 5].a);
     surface.coat = ArealightCoat(numbers[first + 14].xyz, numbers[first + 14].w, numbers[first + 3].y);
     surface.anisotropy = ArealightAnisotropy(numbers[first + 14].xyz, numbers[first + 3].z);
@@ -126,9 +127,11 @@ vec3 shade(int first) {
     bool two_sided = counts.z != 0u;
     vec3 sum = vec3(0.0);
 #if AREALIGHT_QUADS
-    ArealightQuad quad = ArealightQuad(numbers[first + 9].xyz, numbers[first + 10].xyz, numbers[first + 11].xyz,
+    ArealightQuad quad = ArealightQuad(numbers[first + 9].xyz, numbers[first + 10].xyz,
+                                       numbers[first + 11].xyz,
                                        numbers[first + 12].xyz);
-    sum += arealight_radiance(point, ArealightQuadLight(radiance, center, numbers[first + 13].xyz, quad, two_sided));
+    sum += arealight_radiance(point, ArealightQuadLight(radiance, center, numbers[first + 13].xyz, quad,
+                                                        two_sided));
 #endif
 #if AREALIGHT_POLYGONS
     ArealightPolygonLight polygon;
@@ -139,7 +142,8 @@ vec3 shade(int first) {
     polygon.vertex_count = counts.y;
     polygon.two_sided = two_sided;
 #if AREALIGHT_LIGHT_TEXTURES
-    polygon.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz, numbers[first + 12].xyz,
+    polygon.image = ArealightImage(counts.w, numbers[first + 10].xyz, numbers[first + 11].xyz,
+                                   numbers[first + 12].xyz,
                                    numbers[first + 13].xy, numbers[first + 13].zw);
     polygon.is_quad = two_sided;
 #endif

@@ -1,13 +1,15 @@
 //! `dependencies`: the product builds, and its tests run, without the laboratory.
 //!
-//! Two rules for every dependency that a manifest under `crates/` states, optional ones and those of tests and build scripts too:
+//! Two rules for every dependency that a manifest under `crates/` states, optional ones and those of tests
+//! and build scripts too:
 //! - it is on a package under `crates/`, or on one from outside this repository;
 //! - a crate that an engine takes depends on none that is for fitting a BRDF.
 //!
-//! Tests are no exception. A published crate carries its tests and names what they depend on, so that an unpublished tool would keep
-//! it from being published; and who changes a crate can run its tests without building a renderer. A test that needs more than
-//! `crates/` lies in `tests/`, or with the tool that it needs. Tests may use crates in the rules' direction: the oracle's and the
-//! fit's use `arealight-table`, for the built-in table.
+//! Tests are no exception. A published crate carries its tests and names what they depend on, so that an
+//! unpublished tool would keep it from being published; and who changes a crate can run its tests without
+//! building a renderer. A test that needs more than `crates/` lies in `tests/`, or with the tool that it
+//! needs. Tests may use crates in the rules' direction: the oracle's and the fit's use `arealight-table`, for
+//! the built-in table.
 
 use crate::TaskError;
 use crate::cargo::metadata;
@@ -74,7 +76,8 @@ impl Workspace {
         for package in self.product() {
             if !listed().any(|name| *name == package.name) {
                 wrong.push(format!(
-                    "{}: is it for engines or for fitting? tools/xtask/src/dependencies.rs lists it under neither",
+                    "{}: is it for engines or for fitting? tools/xtask/src/dependencies.rs lists it under \
+                    neither",
                     package.name
                 ));
             }
@@ -100,7 +103,8 @@ impl Workspace {
             .then(|| format!("{}: {kind} dependency on {}, which engines do not take", names.0, names.1))
     }
 
-    /// Where a dependency lies in this repository, if it does. One that a manifest would take from a registry counts by its name.
+    /// Where a dependency lies in this repository, if it does. One that a manifest would take from a registry
+    /// counts by its name.
     fn place<'a>(&'a self, dependency: &'a Dependency) -> Option<&'a Path> {
         let member = || self.packages.iter().find(|package| package.name == dependency.name);
         dependency.path.as_deref().or_else(|| member()?.manifest_path.parent())

@@ -1,5 +1,5 @@
-//! `header`: the header of the C library, made from the crate's source by cbindgen, with the layout of each struct as
-//! assertions of the C compiler.
+//! `header`: the header of the C library, made from the crate's source by cbindgen, with the layout of each
+//! struct as assertions of the C compiler.
 
 use crate::TaskError;
 use arealight_capi as capi;

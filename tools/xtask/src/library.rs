@@ -9,7 +9,8 @@ use std::path::Path;
 pub struct Library {
     /// Names without ending, and texts.
     pub files: Vec<(String, String)>,
-    /// Macros that a host may define, with their defaults: those which a file defines as a number where the host has not.
+    /// Macros that a host may define, with their defaults: those which a file defines as a number where the
+    /// host has not.
     pub options: Vec<(String, u32)>,
 }
 

@@ -1,4 +1,5 @@
-//! `links`: every link of a document leads to a file and a heading that are there, and every page of docs/ is in docs/SUMMARY.md.
+//! `links`: every link of a document leads to a file and a heading that are there, and every page of docs/ is
+//! in docs/SUMMARY.md.
 
 use crate::TaskError;
 use std::collections::BTreeSet;

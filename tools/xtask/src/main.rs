@@ -57,9 +57,11 @@ enum Task {
     Quotes(quotes::Arguments),
     /// Check that every link of a document leads somewhere, and that docs/SUMMARY.md has every page.
     Links,
-    /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer Rust.
+    /// Pack every crate that is published, and check that it is whole and that no dependency wants a newer
+    /// Rust.
     Packages,
-    /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines on those for fitting.
+    /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines
+    /// on those for fitting.
     Dependencies,
     /// Check that what others made comes from the registry, under licences that allow what ours do
     Licences,

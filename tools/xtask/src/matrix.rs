@@ -1,8 +1,9 @@
 //! `matrix`: the exported GLSL library through two compilers, as hosts of every kind would compile it.
 //!
-//! The kinds are stages (fragment, compute), images and samplers (apart, combined), and each option of the library, alone and with
-//! every kind of light. They are read from the library itself, so that a new one is in the matrix from its first day. Every module
-//! goes through spirv-val. Cases that must fail, and say why, show that the matrix can.
+//! The kinds are stages (fragment, compute), images and samplers (apart, combined), and each option of the
+//! library, alone and with every kind of light. They are read from the library itself, so that a new one is
+//! in the matrix from its first day. Every module goes through spirv-val. Cases that must fail, and say why,
+//! show that the matrix can.
 
 use crate::TaskError;
 use crate::library::Library;
@@ -147,7 +148,8 @@ fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
     variants
 }
 
-/// Whether an option decides which bridges a host has to define: those are 0 or 1, not constants of a pipeline.
+/// Whether an option decides which bridges a host has to define: those are 0 or 1, not constants of a
+/// pipeline.
 fn has_bridges(option: &str) -> bool {
     let name = option.trim_start_matches("AREALIGHT_");
     ["LIGHT_TEXTURES", "QUADS", "POLYGONS", "MESHES", "DISKS", "SPHERES", "TUBES"].contains(&name)

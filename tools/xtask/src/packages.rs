@@ -1,4 +1,5 @@
-//! `packages`: what would be published is whole, and nothing that it is built from asks for a newer Rust than is promised.
+//! `packages`: what would be published is whole, and nothing that it is built from asks for a newer Rust than
+//! is promised.
 
 use crate::TaskError;
 use crate::cargo::{cargo, metadata};
@@ -71,7 +72,8 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
     let version = cargo(root, &["--version"])?;
     if minor_version(&version).is_some_and(|minor| minor < CARGO) {
         println!(
-            "packages were not checked: that takes cargo 1.{CARGO} or newer, which packs crates that depend on each other, and \
+            "packages were not checked: that takes cargo 1.{CARGO} or newer, which packs crates that depend \
+            on each other, and \
              this is {}. Building takes no more than the Rust that Cargo.toml states",
             version.trim()
         );
@@ -81,8 +83,8 @@ pub fn run(root: &Path) -> Result<bool, TaskError> {
     let published: Vec<&Package> = metadata.published().collect();
     let mut wrong = metadata.too_new();
 
-    // Pack all at once, since they depend on each other; what is not committed counts too. A lock file of each package would be
-    // resolved anew, from a registry that may be out of reach
+    // Pack all at once, since they depend on each other; what is not committed counts too. A lock file of
+    // each package would be resolved anew, from a registry that may be out of reach
     let mut arguments =
         vec!["package", "--no-verify", "--allow-dirty", "--locked", "--quiet", "--exclude-lockfile"];
     for package in &published {

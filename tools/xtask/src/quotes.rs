@@ -1,8 +1,10 @@
-//! `quotes`: the code that documents show is taken from files that are compiled and run, so that it cannot rot.
+//! `quotes`: the code that documents show is taken from files that are compiled and run, so that it cannot
+//! rot.
 //!
-//! In a document, `<!-- from PATH -->` stands on the line before a fenced block that shows a file (from the checkout's
-//! root), and `<!-- from PATH: NAME -->` before one that shows a part of it: the lines between a comment `// doc: NAME`
-//! (or `# doc: NAME`) and the next `// doc end`, with their common indentation taken away.
+//! In a document, `<!-- from PATH -->` stands on the line before a fenced block that shows a file (from the
+//! checkout's root), and `<!-- from PATH: NAME -->` before one that shows a part of it: the lines between a
+//! comment `// doc: NAME` (or `# doc: NAME`) and the next `// doc end`, with their common indentation taken
+//! away.
 
 use crate::TaskError;
 use std::path::{Path, PathBuf};
@@ -77,7 +79,8 @@ struct Quoted {
     count: usize,
 }
 
-/// Renews the quotations of a document. The error is a place in it with what is wrong: `LINE: error: MESSAGE`.
+/// Renews the quotations of a document. The error is a place in it with what is wrong:
+/// `LINE: error: MESSAGE`.
 fn requote(document: &str, read: impl Fn(&str) -> Option<String>) -> Result<Quoted, String> {
     let mut quoted = Quoted { text: String::with_capacity(document.len()), count: 0 };
     let mut lines = document.lines().enumerate();

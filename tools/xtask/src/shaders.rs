@@ -15,8 +15,9 @@ struct KernelSet {
     modules: &'static str,
 }
 
-/// What the crate `arealight` embeds, what only the tools, the benchmarks and the tests run, the GLSL library's example, whose statistics
-/// the benchmarks read, the wrong-doers that the engine's tests must catch, and what the example hosts draw with.
+/// What the crate `arealight` embeds, what only the tools, the benchmarks and the tests run, the GLSL
+/// library's example, whose statistics the benchmarks read, the wrong-doers that the engine's tests must
+/// catch, and what the example hosts draw with.
 const SETS: [KernelSet; 7] = [
     KernelSet { sources: "shaders/kernels", modules: "crates/arealight/spirv" },
     KernelSet { sources: "tools/kernels/shaders", modules: "tools/kernels/spirv" },
@@ -30,9 +31,10 @@ const SETS: [KernelSet; 7] = [
 /// Compile the kernels to the SPIR-V that is checked in.
 ///
 /// Each of shaders/kernels/*.comp becomes crates/arealight/spirv/*.spv, and manifest.json beside them records
-/// the sources' hash, the module's hash and the compiler. Likewise tools/kernels/shaders into tools/kernels/spirv, benches/kernels into
-/// benches/spirv, shaders/examples into benches/spirv/examples, tests/kernels into tests/spirv, and tools/engine/tests/canary;
-/// examples/rust/shaders into examples/rust/spirv, of which shaders of other stages (*.vert, *.frag) keep that ending in their names.
+/// the sources' hash, the module's hash and the compiler. Likewise tools/kernels/shaders into
+/// tools/kernels/spirv, benches/kernels into benches/spirv, shaders/examples into benches/spirv/examples,
+/// tests/kernels into tests/spirv, and tools/engine/tests/canary; examples/rust/shaders into
+/// examples/rust/spirv, of which shaders of other stages (*.vert, *.frag) keep that ending in their names.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Kernels, by file name without its ending; all when none is named.

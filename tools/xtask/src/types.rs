@@ -3,7 +3,8 @@
 use crate::TaskError;
 use std::path::Path;
 
-/// The most public types of the crate `arealight`, errors included. A type more needs a reason, and often replaces another.
+/// The most public types of the crate `arealight`, errors included. A type more needs a reason, and often
+/// replaces another.
 const MOST: usize = 47;
 
 /// What declares a type.
@@ -36,8 +37,8 @@ fn public_types(folder: &Path) -> Result<Vec<String>, TaskError> {
     Ok(types)
 }
 
-/// The names of the public types that a file declares, those of a macro's body (`bitflags!`) among them. Associated types are no
-/// types of their own, and have no `pub`.
+/// The names of the public types that a file declares, those of a macro's body (`bitflags!`) among them.
+/// Associated types are no types of their own, and have no `pub`.
 fn declared(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| {
         let (keyword, rest) = line.trim_start().strip_prefix("pub ")?.split_once(' ')?;
@@ -63,8 +64,10 @@ mod tests {
 
     #[test]
     fn every_kind_of_type_counts_and_nothing_else() {
-        let text = "pub struct A(u32);\npub enum B {\n    pub union C {}\npub trait D: Sized {\npub type E<T> = [T; 2];\n\
-                    struct Hidden;\npub(crate) struct Inner;\n/// pub struct Comment\npub fn f() {}\npub use other::F;\n";
+        let text = "pub struct A(u32);\npub enum B {\n    pub union C {}\npub trait D: Sized {\npub type \
+        E<T> = [T; 2];\n\
+                    struct Hidden;\npub(crate) struct Inner;\n/// pub struct Comment\npub fn f() {}\npub use \
+                    other::F;\n";
         assert_eq!(declared(text).collect::<Vec<_>>(), ["A", "B", "C", "D", "E"]);
     }
 }

@@ -40,8 +40,8 @@ pub fn random_quads(count: usize, seed: u64) -> Vec<Quad> {
     (0..count).map(|i| random_quad(&mut random, Family::ALL[i % 3])).collect()
 }
 
-/// Draws `count` quads for lobes that are nearly a mirror's: roughness 0.01 to 0.15, 1 to 30 lobe widths (alpha)
-/// wide, near the mirror direction. The same seed gives the same quads everywhere.
+/// Draws `count` quads for lobes that are nearly a mirror's: roughness 0.01 to 0.15, 1 to 30 lobe widths
+/// (alpha) wide, near the mirror direction. The same seed gives the same quads everywhere.
 pub fn near_mirror_quads(count: usize, seed: u64) -> Vec<Quad> {
     let mut random = Random::new(seed);
     (0..count).map(|_| near_mirror_quad(&mut random)).collect()

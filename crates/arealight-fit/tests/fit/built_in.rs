@@ -57,8 +57,8 @@ fn its_albedos_are_true_at_its_nodes() {
     }
 }
 
-/// The largest errors of a table's albedo and of that of Schlick's weight, at nodes and between them, over every
-/// roughness and view.
+/// The largest errors of a table's albedo and of that of Schlick's weight, at nodes and between them, over
+/// every roughness and view.
 fn largest_albedo_errors(table: &LightTable) -> [f64; 2] {
     let steps = |i: u32| f64::from(i) / 126.0;
     let mut roughnesses: Vec<f64> = (0..=126).map(|i| steps(i).max(0.01)).collect();

@@ -31,8 +31,9 @@ fn difference(a: &Formula, b: &Formula) -> f64 {
 #[test]
 fn it_is_what_the_fitter_makes_of_the_built_in_table() {
     let fitted = formula::fit(&GgxBrdf, &ggx()).unwrap();
-    // To all six digits on the machine that made it. Another one's sines may move a node across a probe's edge; if that
-    // happened at every texel, as it does when entries are off by 1e-6, coefficients would change by 1e-5
+    // To all six digits on the machine that made it. Another one's sines may move a node across a probe's
+    // edge; if that happened at every texel, as it does when entries are off by 1e-6, coefficients would
+    // change by 1e-5
     assert!(difference(&fitted, &Formula::GGX) < 1e-4, "{fitted:?}");
 }
 

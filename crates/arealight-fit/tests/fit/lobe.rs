@@ -44,7 +44,8 @@ proptest! {
             // Central differences: off by their step squared
             let difference = (moved(STEP) - moved(-STEP)) / (2.0 * STEP);
             let scale = density + gradient[i].abs();
-            prop_assert!((difference - gradient[i]).abs() < 1e-5 * scale, "{} {} {:?}", i, difference, gradient);
+            prop_assert!((difference - gradient[i]).abs() < 1e-5 * scale, "{} {} \
+            {:?}", i, difference, gradient);
         }
     }
 }

@@ -83,8 +83,8 @@ fn a_transformed_cosine_is_found_again() {
         for u in [[0.1, 0.1], [0.5, 0.4], [0.5, 0.9], [0.9, 0.6]] {
             let direction = expected.sample(u);
             let ratio = found.density(direction) / expected.density(direction);
-            // What the probes hardly determine is held to the guess from the row before. And this lobe reflects
-            // below the surface, as no BRDF does: which part, the nodes know to 1e-2 only
+            // What the probes hardly determine is held to the guess from the row before. And this lobe
+            // reflects below the surface, as no BRDF does: which part, the nodes know to 1e-2 only
             assert!((ratio - 1.0).abs() < 0.02, "{roughness} {cos_view} {u:?}: {found:?} {expected:?}");
         }
     }
@@ -143,7 +143,8 @@ fn a_small_table_is_nearly_as_good() {
 fn float16_costs_nothing() {
     let half = |texels: &[[f32; 4]]| -> Vec<[f32; 4]> {
         let largest = texels.iter().flatten().fold(0.0_f32, |m, q| m.max(q.abs()));
-        // The last row of nearly smooth surfaces, which is divided by alpha; far from the largest number all the same
+        // The last row of nearly smooth surfaces, which is divided by alpha; far from the largest number all
+        // the same
         assert!(largest < 2000.0, "{largest}");
         texels.iter().map(|texel| texel.map(|q| f16::from_f32(q).to_f32())).collect()
     };
@@ -173,7 +174,8 @@ fn near_mirrors_are_no_exception() {
         let smallest = degrees.to_radians().cos();
         cases.iter().filter(|case| case.quad.cos_view > smallest).cloned().collect()
     };
-    // Two lobes are no better here than one: what they lose is between nodes, of which a table has twice as many by default
+    // Two lobes are no better here than one: what they lose is between nodes, of which a table has twice as
+    // many by default
     for (level, mean_more, max_more) in [(ONE, 1.0, 1.0), (TWO, 2.0, 2.5)] {
         for (degrees, mean, max) in [(60.0, 2e-4, 5e-3), (85.0, 6e-4, 0.02)] {
             let (mean, max) = (mean_more * mean, max_more * max);

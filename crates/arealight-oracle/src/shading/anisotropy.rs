@@ -1,8 +1,9 @@
 //! The fitted lobes of an anisotropic GGX distribution, in float64: the twin of `lobes/anisotropy.glsl`.
 //!
-//! Microsurfaces are stretches of one another, so that the visible normals of an anisotropic lobe at a view are those of an isotropic
-//! one at a stretched view (Heitz 2018). The matrix of the isotropic lobe, taken there, is brought over by the linear map that takes the
-//! directions which nine of these normals reflect in the one to those of the other, by least squares.
+//! Microsurfaces are stretches of one another, so that the visible normals of an anisotropic lobe at a view
+//! are those of an isotropic one at a stretched view (Heitz 2018). The matrix of the isotropic lobe, taken
+//! there, is brought over by the linear map that takes the directions which nine of these normals reflect in
+//! the one to those of the other, by least squares.
 
 use super::fitted_sample;
 use crate::ggx::AnisotropicGgx;
@@ -84,7 +85,8 @@ impl View {
         }
     }
 
-    /// The slopes of one of the visible normals of alpha 1: at (`across`, `along`) on the disk that they are seen on, seen from here.
+    /// The slopes of one of the visible normals of alpha 1: at (`across`, `along`) on the disk that they are
+    /// seen on, seen from here.
     fn visible_slopes(&self, across: f64, along: f64) -> DVec2 {
         let share = 0.5 + 0.5 * self.cos;
         let along = (1.0 - share) * (1.0 - across * across).sqrt() + share * along;
@@ -93,8 +95,8 @@ impl View {
         flat / (along * self.sin + out * self.cos).max(1e-4)
     }
 
-    /// The direction that a surface of these slopes reflects, in the frame of the mirror direction: across it within the plane of
-    /// incidence, and perpendicular to that, both over `scale`; and along it.
+    /// The direction that a surface of these slopes reflects, in the frame of the mirror direction: across it
+    /// within the plane of incidence, and perpendicular to that, both over `scale`; and along it.
     fn reflected(&self, slopes: DVec2, scale: f64) -> DVec3 {
         let (along, across) = (self.azimuth.dot(slopes), self.azimuth.perp_dot(slopes));
         let weight = 2.0 / (1.0 + slopes.length_squared());
@@ -106,8 +108,9 @@ impl View {
     }
 }
 
-/// The map of directions that a surface of these alphas reflects to those of an isotropic one, whose view is `own`, each in its mirror
-/// frame. Its determinant is above 0: the normals lie symmetrically about the plane of incidence.
+/// The map of directions that a surface of these alphas reflects to those of an isotropic one, whose view is
+/// `own`, each in its mirror frame. Its determinant is above 0: the normals lie symmetrically about the plane
+/// of incidence.
 fn reflected_map(view: &View, own: &View, alpha: DVec2, reference: f64, scale: f64) -> DMat3 {
     let (mut both, mut rest) = (DMat3::ZERO, DMat3::ZERO);
     for (across, along) in (0..NORMALS).map(visible_normal) {
@@ -122,8 +125,8 @@ fn reflected_map(view: &View, own: &View, alpha: DVec2, reference: f64, scale: f
     DMat3::IDENTITY + rest * both.inverse()
 }
 
-/// In the middle of the disk, and eight around it: fewer, or in squares, would turn with the view's azimuth, so that what is reflected
-/// would jump at the normal.
+/// In the middle of the disk, and eight around it: fewer, or in squares, would turn with the view's azimuth,
+/// so that what is reflected would jump at the normal.
 fn visible_normal(index: usize) -> (f64, f64) {
     let (near, far) = (NORMAL_RADIUS * FRAC_1_SQRT_2, NORMAL_RADIUS);
     [

@@ -10,10 +10,11 @@ use arealight::table::share_above_surface;
 use arealight::{LightTable, Quality, SpecularLobes};
 use glam::{DMat3, DVec3};
 
-/// What a coated surface reflects: `uncoated` says what a surface without a coat does, with its normal and a direction to the viewer.
+/// What a coated surface reflects: `uncoated` says what a surface without a coat does, with its normal and a
+/// direction to the viewer.
 ///
-/// A coat is such a surface itself: GGX about its own normal, without Fresnel term where it isn't by albedo. A view from below the base counts as grazing,
-/// for the coat too.
+/// A coat is such a surface itself: GGX about its own normal, without Fresnel term where it isn't by albedo.
+/// A view from below the base counts as grazing, for the coat too.
 pub(super) fn layered<E>(
     surface: &Surface,
     normal: DVec3,

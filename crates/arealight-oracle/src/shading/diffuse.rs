@@ -10,8 +10,8 @@ use arealight::{LightTable, Quality};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// What the interface leaves of a diffuse lobe's light, from a direction of the surface frame: 1 without one. `by_albedo` is
-/// what [`albedo_part`] says.
+/// What the interface leaves of a diffuse lobe's light, from a direction of the surface frame: 1 without one.
+/// `by_albedo` is what [`albedo_part`] says.
 pub(super) fn part(surface: &Surface, by_albedo: f64, view: DVec3, direction: DVec3) -> f64 {
     match surface.interface {
         None => 1.0,
@@ -43,7 +43,8 @@ pub(super) fn albedo_part(surface: &Surface, frame: &SurfaceFrame, settings: &Se
     }
 }
 
-/// The diffuse lobe of a surface, the twin of `arealight_surface_diffuse_lobe`: M⁻¹ of the surface frame, and the albedo, a channel.
+/// The diffuse lobe of a surface, the twin of `arealight_surface_diffuse_lobe`: M⁻¹ of the surface frame, and
+/// the albedo, a channel.
 pub(super) fn lobe(
     quality: Quality,
     table: &LightTable,
@@ -112,8 +113,8 @@ fn exact_single(cosine: f64, roughness: f64) -> f64 {
     (1.0 + roughness * grazing / PI) / (1.0 + C1 * roughness)
 }
 
-/// EON over a white Lambert lobe of the same cosine, a channel: directions of the surface frame. Source: Portsmouth, Kutz, Hill 2025,
-/// equations 10 to 22.
+/// EON over a white Lambert lobe of the same cosine, a channel: directions of the surface frame. Source:
+/// Portsmouth, Kutz, Hill 2025, equations 10 to 22.
 pub(super) fn rough(albedo: DVec3, roughness: f64, view: DVec3, light: DVec3) -> DVec3 {
     if roughness == 0.0 {
         return albedo;

@@ -1,5 +1,5 @@
-//! What a lobe sees of an image by a few lookups in its pyramid: the float64 twins of `footprint.glsl`, and the filter of
-//! Heitz et al. 2016 as a yardstick.
+//! What a lobe sees of an image by a few lookups in its pyramid: the float64 twins of `footprint.glsl`, and
+//! the filter of Heitz et al. 2016 as a yardstick.
 
 use super::shown::box_coordinate;
 use crate::polygon::vector_form_factor;
@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3};
 /// How an image is looked up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
-    /// Heitz et al. 2016: once, at the foot of the perpendicular to the image's plane, with the plane's distance `r` as the
-    /// only measure of the blur, `r / sqrt(2 A)`.
+    /// Heitz et al. 2016: once, at the foot of the perpendicular to the image's plane, with the plane's
+    /// distance `r` as the only measure of the blur, `r / sqrt(2 A)`.
     Article,
     /// A quality level.
     Level(Footprint),
@@ -33,9 +33,9 @@ pub struct LobeSpaceLight {
     pub convex_quad: bool,
 }
 
-/// The lobe's integral of the image over the light, signed as form factors are. `lookup` gives the image at a texture
-/// coordinate, blurred by a standard deviation in units of the root of the box's area, in a metric in which texels are as
-/// long in both directions: [`crate::texture::Pyramid::blurred`].
+/// The lobe's integral of the image over the light, signed as form factors are. `lookup` gives the image at a
+/// texture coordinate, blurred by a standard deviation in units of the root of the box's area, in a metric in
+/// which texels are as long in both directions: [`crate::texture::Pyramid::blurred`].
 pub fn filtered(filter: Filter, light: &LobeSpaceLight, lookup: impl Fn(DVec2, f64) -> DVec3) -> DVec3 {
     let whole = Part { low: DVec2::ZERO, high: DVec2::ONE, parts: 1.0 };
     let lookup = |place: DVec2, sigma: f64| lookup(light.map.low + light.map.size * place, sigma);
@@ -61,12 +61,13 @@ pub fn filtered(filter: Filter, light: &LobeSpaceLight, lookup: impl Fn(DVec2, f
     }
 }
 
-/// The constants of a footprint. Found by search over the poses of `tests/oracle/footprints.rs`, through the pyramid.
+/// The constants of a footprint. Found by search over the poses of `tests/oracle/footprints.rs`, through the
+/// pyramid.
 struct Shape {
     /// The lobe's bump: its variance is the squared distance to the point seen, over this.
     bump: f64,
-    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even spread is 12; a
-    /// whole light's image is mirrored at its ends, so that a wider blur is more even.
+    /// Where the light or its part ends: the inverse of the largest variance, in its size. That of an even
+    /// spread is 12; a whole light's image is mirrored at its ends, so that a wider blur is more even.
     end: f64,
     /// How much blurrier taps are than they are apart.
     overlap: f64,

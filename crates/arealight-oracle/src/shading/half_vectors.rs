@@ -1,8 +1,9 @@
 //! GGX integrated over half vectors, in float64: the twin of `lobes/half_vectors.glsl`.
 //!
-//! The visible normals of GGX are a clamped cosine about the stretched view (Heitz 2018), so that the normals which mirror a light to the viewer are
-//! integrated in closed form once their outline is known. An edge of a light is an arc of directions; its half vectors are an arc of a conic, which is
-//! drawn by chords. What is left beside, masking and the Fresnel term, is taken at the mean of these normals.
+//! The visible normals of GGX are a clamped cosine about the stretched view (Heitz 2018), so that the normals
+//! which mirror a light to the viewer are integrated in closed form once their outline is known. An edge of a
+//! light is an arc of directions; its half vectors are an arc of a conic, which is drawn by chords. What is
+//! left beside, masking and the Fresnel term, is taken at the mean of these normals.
 
 use super::{faces_origin, fitted_sample};
 use crate::formula::MIN_COS_VIEW;
@@ -15,13 +16,15 @@ use arealight::{LightTable, Quality, TableSample};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than this cosine.
+/// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than this
+/// cosine.
 const BENT: f64 = 0.7;
 
 /// How often, at most.
 const MOST_HALVINGS: u32 = 5;
 
-/// How many times the reflectance of the mean normal the mean reflectance may be: more than it is of any lobe with an F0 from .04 on.
+/// How many times the reflectance of the mean normal the mean reflectance may be: more than it is of any lobe
+/// with an F0 from .04 on.
 const MOST_OF_MEAN: f64 = 2.0;
 
 /// What two chords of a conic lack, over the triangle that they make with the third.
@@ -39,15 +42,16 @@ pub(super) struct HalfVectors {
     f0: DVec3,
     f90: f64,
     film: Option<ThinFilm>,
-    /// How much more a light counts than its mean normal says, over its share of the visible normals: of light from everywhere what makes the albedo.
+    /// How much more a light counts than its mean normal says, over its share of the visible normals: of
+    /// light from everywhere what makes the albedo.
     gain: DVec3,
     /// What is reflected of light from everywhere, at most.
     albedo: DVec3,
 }
 
 impl HalfVectors {
-    /// Of a surface's specular lobe; `sample` has its albedos. Of a film each light sees what facets of one angle reflect, and light from everywhere what
-    /// Schlick's term does that stands for it.
+    /// Of a surface's specular lobe; `sample` has its albedos. Of a film each light sees what facets of one
+    /// angle reflect, and light from everywhere what Schlick's term does that stands for it.
     pub fn of_surface(surface: &Surface, frame: &SurfaceFrame, sample: &TableSample) -> Self {
         let (axis, alpha) = match AnisotropicGgx::of(surface, frame) {
             None => (DVec2::X, DVec2::splat(surface.alpha)),
@@ -99,7 +103,8 @@ impl HalfVectors {
         (self.view * self.alpha.extend(1.0)).normalize_or(DVec3::Z)
     }
 
-    /// What the facet of this normal, where alpha is 1, reflects to the viewer, with masking of the light: a channel.
+    /// What the facet of this normal, where alpha is 1, reflects to the viewer, with masking of the light: a
+    /// channel.
     fn reflectance(&self, normal: DVec3) -> DVec3 {
         let stretch = self.alpha.extend(1.0);
         let half = (normal * stretch).normalize_or(DVec3::Z);
@@ -116,7 +121,8 @@ impl HalfVectors {
         shadowing.min(1.0) * fresnel
     }
 
-    /// What they reflect of a polygon of unit radiance in the surface frame, a channel; a polygon that is seen from its back counts if `two_sided`.
+    /// What they reflect of a polygon of unit radiance in the surface frame, a channel; a polygon that is
+    /// seen from its back counts if `two_sided`.
     pub fn reflected(&self, vertices: &[DVec3], two_sided: bool) -> DVec3 {
         let in_axes: Vec<DVec3> = vertices.iter().map(|vertex| self.to_axes * *vertex).collect();
         let outline: Vec<DVec3> =
@@ -161,7 +167,8 @@ impl HalfVectors {
 /// How many times the smaller alpha the larger one may be: `LEAST_ROUGHNESS_RATIO` of the fitted lobes.
 const MOST_ASPECT: f64 = 400.0;
 
-/// The points between which a conic is halved where both halves are alike: those of its control polygon, and the shoulder between them.
+/// The points between which a conic is halved where both halves are alike: those of its control polygon, and
+/// the shoulder between them.
 fn shoulder([first, control, last]: [DVec3; 3]) -> [DVec3; 3] {
     let ratio = (last.length() / first.length().max(1e-30)).sqrt();
     let part = 1.0 / (1.0 + ratio);
@@ -187,7 +194,8 @@ mod tests {
     use super::*;
     use crate::shading::surface_sample;
 
-    /// The least and the most that light from everywhere counts over its mean normal, for every alpha and view.
+    /// The least and the most that light from everywhere counts over its mean normal, for every alpha and
+    /// view.
     fn means(f0: f64) -> [f64; 2] {
         let table = arealight_table::ggx();
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

@@ -80,8 +80,8 @@ impl Pose {
     }
 }
 
-/// `count` poses in which the lobe sees the light's front well enough for an error to be seen: a thousandth of its energy.
-/// Another seed gives others.
+/// `count` poses in which the lobe sees the light's front well enough for an error to be seen: a thousandth
+/// of its energy. Another seed gives others.
 pub fn poses(family: Family, count: usize, seed: u64, table: &LightTable) -> Vec<Pose> {
     let mut random = Stream::from_seed((seed << 8) + family as u64 + 1);
     let mut poses = Vec::with_capacity(count);
@@ -205,8 +205,9 @@ impl Bar {
         found.rmse <= self.rmse && found.median <= self.median
     }
 
-    /// That of a level on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient` and `noise`. There is
-    /// none at the horizon, where what is seen of a light changes within a footprint, and none for a yardstick.
+    /// That of a level on a family, with pictures such as [`crate::texture::Texture::checker`], `gradient`
+    /// and `noise`. There is none at the horizon, where what is seen of a light changes within a footprint,
+    /// and none for a yardstick.
     pub fn of(filter: Filter, family: Family) -> Option<Self> {
         let Filter::Level(level) = filter else { return None };
         let [sharp, rough, diffuse] = match level {

@@ -1,4 +1,5 @@
-//! Light that the specular lobe's facets reflect more than once, in float64: the twin of `arealight_rescattered`.
+//! Light that the specular lobe's facets reflect more than once, in float64: the twin of
+//! `arealight_rescattered`.
 
 use crate::material::Surface;
 use arealight::TableSample;

@@ -17,9 +17,10 @@ use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of `arealight_radiance`, as
-/// [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With [`Horizon::Both`] outlines are polygons of
-/// many sides, which are off by 1e-6. None for polygons and meshes.
+/// Outgoing radiance by the fitted table, with Lambert's lobe exact: the float64 twin of
+/// `arealight_radiance`, as [`super::ltc_on`] is of polygons. `light` is relative to the shading point. With
+/// [`Horizon::Both`] outlines are polygons of many sides, which are off by 1e-6. None for polygons and
+/// meshes.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn shape_ltc_on(
@@ -56,11 +57,11 @@ pub fn shape_ltc_on(
     Some(light.radiance.as_dvec3() * layered(quality, table, surface, &frame, parts, (lobe, of_coat)))
 }
 
-/// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons. `light` is relative to the
-/// shading point.
+/// Outgoing radiance of a shape by adaptive cubature of the true BRDF, as [`super::truth`] is of polygons.
+/// `light` is relative to the shading point.
 ///
-/// A silhouette is drawn as polygons of 48, 96 and 192 sides a rim, and what they lack is extrapolated away; [`Truth::error`] has
-/// what the last step changed, too. None for polygons and meshes.
+/// A silhouette is drawn as polygons of 48, 96 and 192 sides a rim, and what they lack is extrapolated away;
+/// [`Truth::error`] has what the last step changed, too. None for polygons and meshes.
 ///
 /// `normal` and `view` have any length above zero; a view below the surface counts as grazing.
 pub fn shape_truth(
@@ -102,8 +103,9 @@ fn uncoated_truth(
     })
 }
 
-/// The light with its disk, sphere or tube relative to a shading point, as [`shape_ltc_on`] and [`shape_truth`] take it. Polygons and meshes stay as
-/// they are: [`RelativeLight`](super::RelativeLight) is theirs.
+/// The light with its disk, sphere or tube relative to a shading point, as [`shape_ltc_on`] and
+/// [`shape_truth`] take it. Polygons and meshes stay as they are: [`RelativeLight`](super::RelativeLight) is
+/// theirs.
 pub fn shape_seen_from(light: &Light, point: DVec3) -> Light {
     let moved = |p: DVec3| p - point;
     let shape = match light.shape.clone() {
@@ -219,7 +221,8 @@ fn outline_of_its_area(ellipse: &Ellipse, count: usize) -> Vec<DVec3> {
     grown.polygon(count)
 }
 
-/// A disk textured with `texture`, as a polygon of its area; what they differ in is 1e-5 of what it sends. None for other shapes.
+/// A disk textured with `texture`, as a polygon of its area; what they differ in is 1e-5 of what it sends.
+/// None for other shapes.
 pub fn textured_ellipse(light: &Light, texture: Arc<Texture>) -> Option<RelativeLight> {
     const COUNT: usize = 64;
     let LightShape::Disk { center, axis_u, axis_v } = light.shape else { return None };

@@ -11,8 +11,8 @@ use arealight::table::share_above_surface;
 use glam::{DMat3, DVec3};
 use std::slice;
 
-/// What a surface with sheen reflects, `base` being what the lobes below do: Charlie, and the base times what its albedo at the view
-/// leaves.
+/// What a surface with sheen reflects, `base` being what the lobes below do: Charlie, and the base times what
+/// its albedo at the view leaves.
 pub(super) fn sheen_truth(
     sheen: &Sheen,
     view: DVec3,
@@ -41,8 +41,8 @@ pub(super) struct SheenLight {
     pub left_below: f64,
 }
 
-/// The twin of `arealight_sheen_layer`. `lobe` is the form factor of the light in the cosine space of a lobe, a channel, of which a part lies above the
-/// surface.
+/// The twin of `arealight_sheen_layer`. `lobe` is the form factor of the light in the cosine space of a lobe,
+/// a channel, of which a part lies above the surface.
 pub(super) fn with_sheen(
     sheen: &Sheen,
     lobes: SpecularLobes,

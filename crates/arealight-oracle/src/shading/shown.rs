@@ -53,8 +53,8 @@ impl ShownImage {
         self.texture.sample(self.map.low + self.map.size * place)
     }
 
-    /// The outline of a light, in parts on which the image does not bend: an integrand that holds it is smooth there. An
-    /// image of more texels than `most` is left whole.
+    /// The outline of a light, in parts on which the image does not bend: an integrand that holds it is
+    /// smooth there. An image of more texels than `most` is left whole.
     pub(crate) fn region(&self, vertices: &[DVec3], most: usize) -> Region {
         let outline: Vec<DVec2> = vertices.iter().map(|vertex| box_coordinate(&self.map, *vertex)).collect();
         let texels = self.texture.width() * self.texture.height();
@@ -97,8 +97,9 @@ impl Piece {
     }
 }
 
-/// Calls `visit` with each part of an outline, in box coordinates, that one piece of the texture covers: the piece, the
-/// part's convex outline, and 1 or -1. The outline is a sum of signed triangles, so that concave ones need no care.
+/// Calls `visit` with each part of an outline, in box coordinates, that one piece of the texture covers: the
+/// piece, the part's convex outline, and 1 or -1. The outline is a sum of signed triangles, so that concave
+/// ones need no care.
 pub(crate) fn for_each_piece(
     image: &ShownImage,
     outline: &[DVec2],

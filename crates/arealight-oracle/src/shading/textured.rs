@@ -1,8 +1,8 @@
 //! The integral of an image times a linearly transformed cosine over a polygon.
 //!
-//! Between the texels' centres an image is bilinear, and away from the shading point so is nearly everything else: every
-//! such piece is halved until it is small for its distance, and integrated by a rule that is exact for polynomials. What a
-//! horizon or the outline cuts becomes triangles.
+//! Between the texels' centres an image is bilinear, and away from the shading point so is nearly everything
+//! else: every such piece is halved until it is small for its distance, and integrated by a rule that is
+//! exact for polynomials. What a horizon or the outline cuts becomes triangles.
 
 use super::shown::{ShownImage, box_coordinate, clip, for_each_piece, point, transformed};
 use crate::cubature::DEGREE_8;
@@ -10,13 +10,15 @@ use arealight::TextureMap;
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
-/// The signed integral of a linearly transformed cosine times the image over a planar polygon, a channel. With a white
-/// image it is [`crate::polygon::transformed_form_factor`].
+/// The signed integral of a linearly transformed cosine times the image over a planar polygon, a channel.
+/// With a white image it is [`crate::polygon::transformed_form_factor`].
 ///
-/// `inverse` is M⁻¹; `vertices` and the image are in the surface frame. It is clipped at the horizon of cosine space, and
-/// with `both_horizons` at the surface's too. Non-finite input and an image without area give zero.
+/// `inverse` is M⁻¹; `vertices` and the image are in the surface frame. It is clipped at the horizon of
+/// cosine space, and with `both_horizons` at the surface's too. Non-finite input and an image without area
+/// give zero.
 ///
-/// The error is below 1e-5 of the integral of a white image as bright as the brightest texel, and mostly 1e-7.
+/// The error is below 1e-5 of the integral of a white image as bright as the brightest texel, and mostly
+/// 1e-7.
 pub fn transformed_image_integral(
     inverse: &DMat3,
     vertices: &[DVec3],
@@ -59,8 +61,8 @@ pub fn transformed_image_integral(
 /// Halvings of each axis after which a piece is taken as it is.
 const DEPTH: u32 = 24;
 
-/// A piece is small if its diagonal is at most this share of its distance: the rule of four points then errs by 1e-4 of
-/// the piece, and few pieces are that near.
+/// A piece is small if its diagonal is at most this share of its distance: the rule of four points then errs
+/// by 1e-4 of the piece, and few pieces are that near.
 const SMALL_RECTANGLE: f64 = 0.2;
 
 /// The same for triangles, with a rule of degree 8.

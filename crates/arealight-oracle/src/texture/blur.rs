@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 /// Where the Gaussian is cut off, in standard deviations: 1e-15 of it is beyond.
 const REACH: f64 = 8.0;
 
-/// The Gaussian blur of a bilinear texture that is mirrored at its edges without end, at a grid of coordinates.
+/// The Gaussian blur of a bilinear texture that is mirrored at its edges without end, at a grid of
+/// coordinates.
 ///
 /// The weights of the texels are integrals of the Gaussian times a texel's tent, to 1e-12.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,8 +18,8 @@ pub struct Blur {
 }
 
 impl Blur {
-    /// The blur at each pair of `us` and `vs`, with standard deviations `sigma` in texture coordinates. Zero or less
-    /// does not blur.
+    /// The blur at each pair of `us` and `vs`, with standard deviations `sigma` in texture coordinates. Zero
+    /// or less does not blur.
     pub fn new(texture: &Texture, us: &[f64], vs: &[f64], sigma: DVec2) -> Self {
         let columns: Vec<_> = us.iter().map(|u| Weights::new(*u, sigma.x, texture.width())).collect();
         // Along the rows first
@@ -50,7 +51,8 @@ impl Blur {
 }
 
 impl Texture {
-    /// The texture at a coordinate, blurred with a Gaussian of standard deviations `sigma` in texture coordinates.
+    /// The texture at a coordinate, blurred with a Gaussian of standard deviations `sigma` in texture
+    /// coordinates.
     pub fn blurred(&self, uv: DVec2, sigma: DVec2) -> DVec3 {
         // Fold columns as they come: the grid's way would fold all rows
         let columns = Weights::new(uv.x, sigma.x, self.width());

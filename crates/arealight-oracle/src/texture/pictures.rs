@@ -13,8 +13,8 @@ impl Texture {
         Self { width, height, texels }
     }
 
-    /// A board of `fields` × `fields` fields, nearly black and white with a tinge of colour: hard edges, and as much
-    /// contrast in every direction.
+    /// A board of `fields` × `fields` fields, nearly black and white with a tinge of colour: hard edges, and
+    /// as much contrast in every direction.
     pub fn checker(width: usize, height: usize, fields: usize) -> Self {
         Self::from_fn(width, height, |column, row| {
             let field = column * fields / width + row * fields / height;
@@ -22,7 +22,8 @@ impl Texture {
         })
     }
 
-    /// Red rises to the right, green downwards, blue falls along the diagonal: where a blur is displaced it shows.
+    /// Red rises to the right, green downwards, blue falls along the diagonal: where a blur is displaced it
+    /// shows.
     pub fn gradient(width: usize, height: usize) -> Self {
         Self::from_fn(width, height, |column, row| {
             let (u, v) = ((column as f64 + 0.5) / width as f64, (row as f64 + 0.5) / height as f64);
@@ -30,8 +31,8 @@ impl Texture {
         })
     }
 
-    /// Noise whose amplitude falls as one over the frequency, as that of photographs does; mean one half, at least 0.
-    /// The same seed gives the same picture everywhere.
+    /// Noise whose amplitude falls as one over the frequency, as that of photographs does; mean one half, at
+    /// least 0. The same seed gives the same picture everywhere.
     pub fn noise(width: usize, height: usize, seed: u64) -> Self {
         // A sum of waves whose frequencies are spread evenly over the octaves has that spectrum
         const WAVES: usize = 192;
@@ -61,8 +62,8 @@ impl Texture {
         })
     }
 
-    /// A bright disk, a twentieth of the picture across and off its middle, on a faint ground: what is hardest, for a
-    /// lobe that looks beside it sees nothing, and one that looks at it everything.
+    /// A bright disk, a twentieth of the picture across and off its middle, on a faint ground: what is
+    /// hardest, for a lobe that looks beside it sees nothing, and one that looks at it everything.
     pub fn spot(width: usize, height: usize) -> Self {
         Self::from_fn(width, height, |column, row| {
             let (u, v) = ((column as f64 + 0.5) / width as f64, (row as f64 + 0.5) / height as f64);
@@ -71,7 +72,8 @@ impl Texture {
         })
     }
 
-    /// A bright frame, a sixteenth of the picture wide, around a dark middle: who sees too much of the edge is far too bright.
+    /// A bright frame, a sixteenth of the picture wide, around a dark middle: who sees too much of the edge
+    /// is far too bright.
     pub fn framed(width: usize, height: usize) -> Self {
         Self::from_fn(width, height, |column, row| {
             let near_edge = |index: usize, count: usize| 16 * index.min(count - 1 - index) < count;

@@ -38,8 +38,8 @@ impl Pyramid {
         &self.levels[(level as usize).min(self.levels.len() - 1)]
     }
 
-    /// A trilinear lookup at a texture coordinate, as samplers do it: clamped at the edges, which within the image is as if it
-    /// were mirrored; between two levels by the fraction of `level`.
+    /// A trilinear lookup at a texture coordinate, as samplers do it: clamped at the edges, which within the
+    /// image is as if it were mirrored; between two levels by the fraction of `level`.
     pub fn lookup(&self, uv: DVec2, level: f64) -> DVec3 {
         let level = level.max(0.0).min(self.levels.len() as f64 - 1.0);
         let sharper = level as u32;
@@ -47,9 +47,9 @@ impl Pyramid {
         near.lerp(far, level.fract())
     }
 
-    /// The lookup that stands for a Gaussian blur of standard deviation `sigma`, in texture coordinates of a light that
-    /// shows `shown` of the image and whose metric makes a texel as long in both directions: `sigma` is in units of
-    /// the square root of the shown area.
+    /// The lookup that stands for a Gaussian blur of standard deviation `sigma`, in texture coordinates of a
+    /// light that shows `shown` of the image and whose metric makes a texel as long in both directions:
+    /// `sigma` is in units of the square root of the shown area.
     pub fn blurred(&self, uv: DVec2, sigma: f64, shown: DVec2) -> DVec3 {
         let [width, height] = self.size.extent(0).map(f64::from);
         let texels = (width * shown.x * height * shown.y).sqrt();

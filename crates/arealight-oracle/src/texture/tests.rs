@@ -67,7 +67,8 @@ fn smaller_ones_are_means_under_a_tent() {
 fn a_blur_is_the_integral_of_the_gaussian() {
     let texture = random_texture(6, 4);
     for (u, v, sigma) in [(0.3, 0.6, 0.03), (0.02, 0.9, 0.2), (1.1, 0.5, 0.35), (0.4, 0.4, 0.002)] {
-        // A midpoint rule over eight deviations; beyond the kinks its error falls with the square of the step: 1e-5
+        // A midpoint rule over eight deviations; beyond the kinks its error falls with the square of the
+        // step: 1e-5
         let steps = 1200;
         let (mut sum, mut weight) = (DVec3::ZERO, 0.0);
         let place = |i: usize| ((i as f64 + 0.5) / steps as f64 * 2.0 - 1.0) * 8.0;

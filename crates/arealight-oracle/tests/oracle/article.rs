@@ -1,5 +1,5 @@
-//! Steps that Heitz et al. 2016 and the article of docs/traceability.md derive on the way, and that no function of
-//! its own implements.
+//! Steps that Heitz et al. 2016 and the article of docs/traceability.md derive on the way, and that no
+//! function of its own implements.
 
 use crate::common::{direction, matrix, star, view_angle, view_at};
 use arealight::table::{inverse_from_texel, mirror_frame};
@@ -150,7 +150,8 @@ proptest! {
         let first = vertices.iter().zip(vertices.iter().cycle().skip(1));
         let not_unit: f64 = first.map(|(a, b)| arccosine(a.dot(*b)) * a.cross(*b).z).sum();
         let seen = sum.abs() > 1e-3;
-        prop_assert!(!seen || (not_unit - sum).abs() > 1e-9, "the twin: vertices must be brought to length one");
+        prop_assert!(!seen || (not_unit - sum).abs() > 1e-9, "the twin: vertices must be brought to length \
+        one");
     }
 }
 
@@ -169,7 +170,8 @@ fn at_grazing_the_last_entry_vanishes_and_the_middle_one_does_not() {
     }
 }
 
-/// Equations 32 to 37: the clamped cosine on a plane parallel to the surface, as a density over the plane's area.
+/// Equations 32 to 37: the clamped cosine on a plane parallel to the surface, as a density over the plane's
+/// area.
 #[test]
 fn the_lobe_on_a_parallel_plane_is_a_bump() {
     let height = 0.7;
@@ -177,7 +179,8 @@ fn the_lobe_on_a_parallel_plane_is_a_bump() {
         let square = x * x + y * y + height * height;
         height * height / (PI * square * square)
     };
-    // Its integral over a rectangle is the rectangle's form factor: the midpoint rule errs by the cell's square
+    // Its integral over a rectangle is the rectangle's form factor: the midpoint rule errs by the cell's
+    // square
     let cells = 400;
     let side = |i: u32| (f64::from(i) + 0.5) / f64::from(cells);
     let mut sum = 0.0;

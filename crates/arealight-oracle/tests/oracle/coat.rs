@@ -39,8 +39,8 @@ fn a_white_surface_below_a_coat_sends_no_more_than_it_gets() {
             let quality = Quality { horizon, ..Quality::default() };
             let sent = from_everywhere(|light| ltc_on(quality, &TABLE, &surface, DVec3::Z, view, light)).x;
             assert!(sent <= 1.0 + 1e-9, "{horizon:?}, {coat:?}, {view}: {sent}");
-            // What the coat keeps from the base it reflects itself, but for what its roughness loses, and what it would send below
-            // the surface
+            // What the coat keeps from the base it reflects itself, but for what its roughness loses, and
+            // what it would send below the surface
             assert!(sent >= 1.0 - share - 1e-9, "{horizon:?}, {coat:?}, {view}: {sent}");
         }
     }

@@ -85,7 +85,8 @@ pub fn box_around(low: DVec3, high: DVec3) -> Vec<[DVec3; 4]> {
     faces
 }
 
-/// The answer to light of unit radiance from every direction: the sum over the faces of a box about the point.
+/// The answer to light of unit radiance from every direction: the sum over the faces of a box about the
+/// point.
 pub fn from_everywhere(answer: impl FnMut(&RelativeLight) -> DVec3) -> DVec3 {
     let faces = box_around(DVec3::new(-1.0, -2.0, -0.5), DVec3::new(3.0, 0.7, 1.5)).into_iter();
     let light = |face: [DVec3; 4]| RelativeLight {

@@ -46,11 +46,13 @@ proptest! {
     fn inscribed_polygons_tend_to_it(ellipse in ellipse()) {
         prop_assume!(nearness(&ellipse) > 0.05);
         let at = |count| polygon::form_factor(&ellipse.polygon(count));
-        // An inscribed polygon lacks a part of 2 pi^2 / (3 n^2) of the area, so does one twice as fine a quarter of that
+        // An inscribed polygon lacks a part of 2 pi^2 / (3 n^2) of the area, so does one twice as fine a
+        // quarter of that
         let (coarse, fine) = (at(512), at(1024));
         let limit = fine + (fine - coarse) / 3.0;
         let closed = form_factor(&ellipse);
-        // The next order, n^-4, with what a light 0.05 away makes of it; where an edge meets the horizon it is n^-3
+        // The next order, n^-4, with what a light 0.05 away makes of it; where an edge meets the horizon it
+        // is n^-3
         prop_assert!((closed - limit).abs() < 2e-6, "{closed:e} and {limit:e}");
         prop_assert!(closed.abs() >= fine.abs() - 1e-12, "an inscribed polygon sends no more");
     }
@@ -111,7 +113,8 @@ fn contact_tends_to_what_it_must() {
         let (d2, h2) = (0.36, height * height);
         let expected = 0.5 * (1.0 - (d2 + h2 - 1.0) / ((d2 + h2 + 1.0).powi(2) - 4.0 * d2).sqrt());
         assert!((form_factor(&disk) - expected).abs() < 1e-14, "{height}: {}", form_factor(&disk));
-        // An upright disk at whose middle the surface stands covers half of its sky, but for what is seen beside it
+        // An upright disk at whose middle the surface stands covers half of its sky, but for what is seen
+        // beside it
         let disk = Ellipse::disk(DVec3::X * height, -DVec3::X, 1.0);
         assert!((form_factor(&disk) - 0.5).abs() < height, "{height}: {}", form_factor(&disk));
     }

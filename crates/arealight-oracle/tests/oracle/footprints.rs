@@ -1,5 +1,5 @@
-//! Every level of the footprint against the integral of image times lobe, by families of poses, all in float64.
-//! `arealight bench textures` does the same on a device.
+//! Every level of the footprint against the integral of image times lobe, by families of poses, all in
+//! float64. `arealight bench textures` does the same on a device.
 //!
 //! `cargo test --release -p arealight-oracle --test oracle footprints -- --nocapture` prints them.
 

@@ -1,4 +1,5 @@
-//! GGX over half vectors: how near it is to the true BRDF under lamps, beside the fitted lobes, and what it promises beside.
+//! GGX over half vectors: how near it is to the true BRDF under lamps, beside the fitted lobes, and what it
+//! promises beside.
 
 use crate::common::{from_everywhere, view_at};
 use arealight::{LightTable, Quality, SpecularLobes};
@@ -60,7 +61,8 @@ fn lamps(seed: u64, surface: impl Fn(&mut dyn FnMut(f64, f64) -> f64) -> Surface
         .collect()
 }
 
-/// Root of the mean square of the error over the mean of the truth, of one specular lobe, of two, and over half vectors.
+/// Root of the mean square of the error over the mean of the truth, of one specular lobe, of two, and over
+/// half vectors.
 fn errors(shown: &[Shown]) -> [f64; 3] {
     let truths: Vec<DVec3> = shown.iter().map(Shown::truth).collect();
     let mean = truths.iter().map(|t| t.element_sum()).sum::<f64>() / (3 * truths.len()) as f64;
@@ -88,7 +90,8 @@ fn lamps_err_a_fraction_of_what_fitted_lobes_err() {
     let dielectric =
         |draw: &mut dyn FnMut(f64, f64) -> f64| Surface { f0: DVec3::splat(0.04), ..metal(draw(0.03, 1.0)) };
     for (name, shown, [bound, fitted]) in [
-        // Bounds are 1.2 times what was measured. Of dielectrics a few rough ones that graze make all of the error
+        // Bounds are 1.2 times what was measured. Of dielectrics a few rough ones that graze make all of the
+        // error
         ("metals", lamps(1, |draw| metal(draw(0.03, 1.0))), [0.026, 0.02]),
         ("brushed metals", lamps(2, brushed), [0.029, 0.15]),
         ("dielectrics", lamps(3, dielectric), [0.158, 0.1]),

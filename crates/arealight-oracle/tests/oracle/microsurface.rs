@@ -1,4 +1,5 @@
-//! Light that facets reflect more than once: random walks against known albedos, and what is added for it against random walks.
+//! Light that facets reflect more than once: random walks against known albedos, and what is added for it
+//! against random walks.
 
 use arealight::{LightTable, Quality};
 use arealight_oracle::ggx::Ggx;

@@ -1,4 +1,5 @@
-//! The prefilter's levels and its trilinear lookup against a direct Gaussian, and a chain of boxes beside them.
+//! The prefilter's levels and its trilinear lookup against a direct Gaussian, and a chain of boxes beside
+//! them.
 
 use arealight::PyramidSize;
 use arealight::pyramid::WIDEST_BLUR;
@@ -7,13 +8,13 @@ use glam::{DVec2, DVec3};
 
 const SIDE: usize = 256;
 
-/// The pictures with the most error, RMS over mean, that is allowed to lookups in the mean over all blurs, and to any one
-/// level.
+/// The pictures with the most error, RMS over mean, that is allowed to lookups in the mean over all blurs,
+/// and to any one level.
 fn pictures() -> [(&'static str, Texture, [f64; 2]); 4] {
     [
         ("checker", Texture::checker(SIDE, SIDE, 4), [0.02, 0.02]),
-        // Twice the edges: half of the error comes from between level 0 and level 1, where even the best share of each
-        // leaves 2.2 % in the mean over all blurs
+        // Twice the edges: half of the error comes from between level 0 and level 1, where even the best
+        // share of each leaves 2.2 % in the mean over all blurs
         ("fine checker", Texture::checker(SIDE, SIDE, 8), [0.025, 0.0225]),
         ("gradient", Texture::gradient(SIDE, SIDE), [0.01, 0.01]),
         ("noise", Texture::noise(SIDE, SIDE, 1), [0.035, 0.035]),

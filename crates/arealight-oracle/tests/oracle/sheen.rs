@@ -141,7 +141,8 @@ fn a_white_base_below_sheen_sends_what_it_gets() {
                 let quality = Quality { horizon, ..Quality::default() };
                 let view = view_at(theta);
                 let sent = from_everywhere(|light| ltc_on(quality, &TABLE, &base, DVec3::Z, view, light));
-                // Charlie itself sends more than it gets where its albedo is above 1: nothing is left for the base
+                // Charlie itself sends more than it gets where its albedo is above 1: nothing is left for the
+                // base
                 let albedo = SheenLobe::one(roughness, theta.cos()).albedo;
                 let left = (1.0 - albedo).max(0.0);
                 let expected = DVec3::splat(left) + sheen.color * albedo;
@@ -149,7 +150,8 @@ fn a_white_base_below_sheen_sends_what_it_gets() {
                     (sent - expected).abs().max_element() < 1e-9,
                     "{roughness} {theta} {horizon:?}: {sent}"
                 );
-                // In the channel that sheen is white in energy is conserved, in others some is lost, as the extension has it
+                // In the channel that sheen is white in energy is conserved, in others some is lost, as the
+                // extension has it
                 assert!(sent.z <= sent.x, "{sent}");
             }
         }

@@ -18,7 +18,8 @@ proptest! {
     #[test]
     fn a_sphere_looks_like_its_silhouette(sphere in sphere()) {
         let (closed, disk) = (form_factor(&sphere), transformed_form_factor(&DMat3::IDENTITY, &sphere));
-        // Both are of relative precision but for the disk's clipped form, whose terms are of the order of its size
+        // Both are of relative precision but for the disk's clipped form, whose terms are of the order of its
+        // size
         prop_assert!((closed - disk).abs() < 1e-14, "{closed:e} and {disk:e}");
         let silhouette = sphere.silhouette().expect("outside");
         let contour = ellipse::contour_form_factor(&silhouette);
@@ -33,13 +34,15 @@ proptest! {
         let radius = log.exp();
         let center = DVec3::new(angle.cos(), angle.sin(), height * radius);
         let sphere = Sphere { center, radius };
-        // A small sphere on the horizon is a segment of a disk: F = r^3 (M1 - z M0) / pi with z its height over r
+        // A small sphere on the horizon is a segment of a disk: F = r^3 (M1 - z M0) / pi with z its height
+        // over r
         let z = center.z / radius;
         let (sine, angle) = ((1.0 - z * z).sqrt(), (1.0 - z * z).sqrt().atan2(-z));
         let expected = radius.powi(3) * (2.0 / 3.0 * sine.powi(3) + z * (angle + z * sine)) / std::f64::consts::PI;
         // The sky's curvature
         let bound = 4.0 * radius * radius + 1e-13;
-        prop_assert!((form_factor(&sphere) / expected - 1.0).abs() < bound, "{:e}, {expected:e}", form_factor(&sphere));
+        prop_assert!((form_factor(&sphere) / expected - 1.0).abs() < bound, "{:e}, \
+        {expected:e}", form_factor(&sphere));
     }
 }
 

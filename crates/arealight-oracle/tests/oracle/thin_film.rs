@@ -1,4 +1,5 @@
-//! Thin films under lights: half vectors, which know the angle of the facets that show a light, and fitted lobes, which do not, beside cubature.
+//! Thin films under lights: half vectors, which know the angle of the facets that show a light, and fitted
+//! lobes, which do not, beside cubature.
 
 use crate::common::{from_everywhere, square_points, view_at};
 use arealight::{LightTable, Quality, SpecularLobes};
@@ -32,7 +33,8 @@ impl Case {
     }
 }
 
-/// Squares of unit radiance that face a point, as many degrees across as twice this many, within the lobes of metals or of dielectrics without a diffuse lobe.
+/// Squares of unit radiance that face a point, as many degrees across as twice this many, within the lobes of
+/// metals or of dielectrics without a diffuse lobe.
 fn cases(is_metal: bool, count: usize, degrees: [f64; 2]) -> Vec<Case> {
     let mut random = Stream::from_seed(if is_metal { 3 } else { 4 });
     square_points(count)
@@ -85,8 +87,8 @@ fn error(cases: &[Case], truths: &[DVec3], answer: impl Fn(&Case) -> DVec3) -> f
 
 #[test]
 fn lights_show_a_film_at_their_own_facets_angle() {
-    // Of the mean, by half vectors, and by half vectors with the reflectances that stand for the film: .016 and .027 were found on dielectrics, .008 and .020
-    // on metals. Two fitted lobes have .025 and .021
+    // Of the mean, by half vectors, and by half vectors with the reflectances that stand for the film: .016
+    // and .027 were found on dielectrics, .008 and .020 on metals. Two fitted lobes have .025 and .021
     for (is_metal, most) in [(false, 0.018), (true, 0.009)] {
         let cases = cases(is_metal, 240, LAMPS);
         let settings = Settings { relative_tolerance: 1e-3, max_evaluations: 100_000 };
@@ -99,7 +101,8 @@ fn lights_show_a_film_at_their_own_facets_angle() {
         let stand_in = error(&|case| half_vectors(&case.without_film()));
         let none = error(&|case| half_vectors(&case.without(|surface| Surface { film: None, ..surface })));
         println!(
-            "metal {is_metal}: {found:.4}, with the stand-in {stand_in:.4}, one lobe {one:.4}, two {two:.4}, no film {none:.4}"
+            "metal {is_metal}: {found:.4}, with the stand-in {stand_in:.4}, one lobe {one:.4}, two {two:.4}, \
+            no film {none:.4}"
         );
         assert!(found < most && found < 0.7 * two.min(one), "{is_metal}: {found} {one} {two}");
         // The twins: reflectances that stand for the film, and none

@@ -63,7 +63,8 @@ proptest! {
             let error = |count| arealight_oracle::polygon::form_factor(&tube.outline(count)).abs() - limit;
             // Inscribed outlines send less, by 1 / count^2
             prop_assert!(error(8) <= 1e-9 && error(8).abs() < 0.05, "{tube:?}: {}", error(8));
-            prop_assert!(error(64).abs() <= error(8).abs() / 30.0 + 1e-6, "{tube:?}: {} of {}", error(64), error(8));
+            prop_assert!(error(64).abs() <= error(8).abs() / 30.0 + 1e-6, "{tube:?}: {} of \
+            {}", error(64), error(8));
         }
     }
 

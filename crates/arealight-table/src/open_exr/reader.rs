@@ -208,8 +208,8 @@ impl<const N: usize> Texels<N> {
         }
     }
 
-    /// Copies a block's scan lines, if it is one of this layer's, and says whether it is. One that does not fit the layer is passed over,
-    /// and its lines are found missing in the end.
+    /// Copies a block's scan lines, if it is one of this layer's, and says whether it is. One that does not
+    /// fit the layer is passed over, and its lines are found missing in the end.
     fn insert(&mut self, block: &UncompressedBlock) -> bool {
         if block.index.layer != self.index {
             return false;

@@ -70,7 +70,8 @@ fn a_hash_is_of_texels_alone() {
         LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[1.0, 0.0]; 4]).unwrap()
     };
     assert_eq!(hash(&described("a")), hash(&described("b")));
-    // By Python's hashlib, so that others can compute it: sha256(pack("<II16f8f", 2, 1, *(1, 0, 0, 1) * 4, *(1, 0) * 4))
+    // By Python's hashlib, so that others can compute it: sha256(pack("<II16f8f", 2, 1, *(1, 0, 0, 1) * 4,
+    // *(1, 0) * 4))
     let expected = "sha256:56377ea8af2ee463758acb31e839469047ad5496eecf89d896a372ae07816581";
     assert_eq!(hash(&described("a")), expected);
     let two = described("a").with_schlick_matrix(vec![[1.0, 0.0, 0.0, 1.0]; 4]).unwrap();

@@ -123,7 +123,8 @@ fn another_pixel_type_is_refused() {
     let error = spoil(|draft| draft.layers[0].channels[3].1 = FlatSamples::U32(vec![1; 9]));
     assert_eq!(
         error.to_string(),
-        "layer `matrix`: channels `A U32, B F32, G F32, R F32`; expected `R G B A, 32-bit float`, not subsampled"
+        "layer `matrix`: channels `A U32, B F32, G F32, R F32`; expected `R G B A, 32-bit float`, not \
+        subsampled"
     );
     let halves = vec![f16::from_f32(0.5); 9];
     let error = spoil(|draft| draft.layers[1].channels[0].1 = FlatSamples::F16(halves));

@@ -1,6 +1,6 @@
-//! Bytes changed at random: the readers may refuse or, where nothing that matters changed, accept. They may not
-//! panic, hang, or allocate out of proportion. `AREALIGHT_DAMAGE_CASES` sets how many times each test tries; the fuzz
-//! targets in `fuzz/` look deeper.
+//! Bytes changed at random: the readers may refuse or, where nothing that matters changed, accept. They may
+//! not panic, hang, or allocate out of proportion. `AREALIGHT_DAMAGE_CASES` sets how many times each test
+//! tries; the fuzz targets in `fuzz/` look deeper.
 
 use arealight_table::{read, read_published, write};
 use proptest::prelude::*;

@@ -78,7 +78,8 @@ fn compile_glsl(constants: &str) -> Option<Output> {
          #include \"arealight/lobes/table.glsl\"\n{constants}\n\
          layout(local_size_x = 1) in;\n\
          layout(std430, set = 0, binding = 0) buffer Out {{ vec4 result; }};\n\
-         void main() {{\n    result = arealight_table_bilinear(2, vec2(0.5), arealight_bridge_table_size())\n        \
+         void main() {{\n    result = arealight_table_bilinear(2, vec2(0.5), \
+         arealight_bridge_table_size())\n        \
          + arealight_bridge_table(1, ivec2(1));\n}}\n"
     );
     let folder = tempfile::tempdir().unwrap();

@@ -177,7 +177,8 @@ fn literal(operand: &Operand) -> Option<u32> {
     }
 }
 
-/// What a decoration says of a specialisation constant: its id in the module, and the id that hosts give it a value by.
+/// What a decoration says of a specialisation constant: its id in the module, and the id that hosts give it a
+/// value by.
 pub(super) fn specialization_id(annotation: &Instruction) -> Option<(Word, u32)> {
     match annotation.operands.as_slice() {
         [

@@ -85,8 +85,8 @@ impl Flow {
             }
         }
 
-        // Each value that is known may close a branch, and each branch that is closed may make values known: in one round at
-        // least one of either, or all is found
+        // Each value that is known may close a branch, and each branch that is closed may make values known:
+        // in one round at least one of either, or all is found
         let (live, edges) = Default::default();
         let mut flow = Self { known, memory: HashMap::new(), live, edges, keeps_all: false };
         for _ in 0..=function.blocks.len() {
@@ -169,8 +169,8 @@ impl Flow {
         function.blocks.iter().filter(|block| self.is_live(block)).flat_map(|block| &block.instructions)
     }
 
-    /// The variables of a function that are written once and else read alone, with what is written. (What is read before is
-    /// anything, so also that.)
+    /// The variables of a function that are written once and else read alone, with what is written. (What is
+    /// read before is anything, so also that.)
     fn constant_variables(
         &self,
         function: &Function,

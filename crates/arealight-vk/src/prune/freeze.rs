@@ -7,11 +7,12 @@ use rspirv::dr::{Instruction, Operand, load_words};
 use rspirv::spirv::{Op, Word};
 use std::collections::HashSet;
 
-/// As [`prune`](super::prune()), and without specialisation constants: each is a constant of its value, and so is what the module computes of them
-/// before it runs. It is for what reads SPIR-V and knows no specialisation: compilers to other shading languages.
+/// As [`prune`](super::prune()), and without specialisation constants: each is a constant of its value, and
+/// so is what the module computes of them before it runs. It is for what reads SPIR-V and knows no
+/// specialisation: compilers to other shading languages.
 ///
-/// None where the module cannot be read, or computes of specialisation constants what isn't understood: other than integers of 32 bits and truth
-/// values.
+/// None where the module cannot be read, or computes of specialisation constants what isn't understood: other
+/// than integers of 32 bits and truth values.
 pub fn freeze(module: &[u32], specialization: &[(u32, u32)]) -> Option<Vec<u32>> {
     let mut module = load_words(pruned(module, specialization)?).ok()?;
     let known = Known::of(&module, specialization);

@@ -25,8 +25,8 @@ pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
     images.into_iter().chain(shapes).collect()
 }
 
-/// The host's resources of one run. Images are read and written by texel; the light textures have a sampler that is the pass's own.
-/// What may be missing is not read in some frames: a frame that reads it is refused.
+/// The host's resources of one run. Images are read and written by texel; the light textures have a sampler
+/// that is the pass's own. What may be missing is not read in some frames: a frame that reads it is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 /// By default there is none; the pass refuses a set without the seven that are no `Option`.
@@ -34,14 +34,16 @@ pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
 pub struct ShadeResources {
     /// The light table, see [`crate::TableImage`].
     pub table: Resource,
-    /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes or more.
+    /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes
+    /// or more.
     pub lights: Resource,
     /// [`PackedLights::vertices`](arealight::PackedLights::vertices), likewise.
     pub light_vertices: Resource,
-    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or tubes.
+    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or
+    /// tubes.
     pub shapes: Option<Resource>,
-    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's layer is there. None where no
-    /// frame has textured lights.
+    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's
+    /// layer is there. None where no frame has textured lights.
     pub light_textures: Option<Resource>,
     /// Positions or depth, by [`ShadeOptions::from_depth`].
     pub position: Resource,
@@ -49,35 +51,42 @@ pub struct ShadeResources {
     pub normal: Resource,
     /// Base colour and metalness.
     pub base_color: Resource,
-    /// Dielectric reflectance, or the third image of another layout; none without [`ShadeOptions::reads_specular`].
+    /// Dielectric reflectance, or the third image of another layout; none without
+    /// [`ShadeOptions::reads_specular`].
     pub specular: Option<Resource>,
     /// Coats: weight, roughness and normal; none without [`ShadeOptions::reads_coat`].
     pub coat: Option<Resource>,
     /// Sheen: colour and roughness; none without [`ShadeOptions::reads_sheen`].
     pub sheen: Option<Resource>,
-    /// Second roughnesses: tangent, roughness along it, diffuse roughness; none without [`ShadeOptions::reads_anisotropy`].
+    /// Second roughnesses: tangent, roughness along it, diffuse roughness; none without
+    /// [`ShadeOptions::reads_anisotropy`].
     pub anisotropy: Option<Resource>,
     /// Thin films: weight, index of refraction and thickness; none without [`ShadeOptions::reads_film`].
     pub film: Option<Resource>,
-    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`] that of the diffuse lobe.
+    /// Where radiance goes, in the format of [`ShadeOptions::format`]; with [`ShadeOptions::separate_lobes`]
+    /// that of the diffuse lobe.
     pub radiance: Resource,
-    /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else none.
+    /// Where the glossy lobe's goes with [`ShadeOptions::separate_lobes`]: another image of that format. Else
+    /// none.
     pub glossy: Option<Resource>,
-    /// With [`ShadeOptions::shadow_rays`], a buffer of [`crate::ShadePass::picks_size`] bytes, which the pass writes and a
-    /// [`crate::ShadowPass`] reads. Else none.
+    /// With [`ShadeOptions::shadow_rays`], a buffer of [`crate::ShadePass::picks_size`] bytes, which the pass
+    /// writes and a [`crate::ShadowPass`] reads. Else none.
     pub picks: Option<Resource>,
-    /// Stencils, in the aspect of stencils or an image of unsigned integers, for each texel of the G-buffer; none without [`ShadeOptions::stencil`].
+    /// Stencils, in the aspect of stencils or an image of unsigned integers, for each texel of the G-buffer;
+    /// none without [`ShadeOptions::stencil`].
     pub stencil: Option<Resource>,
     /// A buffer of [`arealight::gpu::LightCounts`]; none without [`ShadeOptions::light_counts`].
     pub light_counts: Option<Resource>,
     /// With tiles, a buffer of [`arealight::LightTable::lobe_horizons`] of the table. Else none.
     pub lobe_horizons: Option<Resource>,
-    /// With tiles, a buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run at the same time need one each. Else none.
+    /// With tiles, a buffer of [`crate::ShadePass::tile_memory`]. The pass alone writes it; frames that run
+    /// at the same time need one each. Else none.
     pub tile_lists: Option<Resource>,
 }
 
 impl ShadeResources {
-    /// The resources as the kernel's first `bindings` have them, and the bindings of those that are missing: something stands there in their place.
+    /// The resources as the kernel's first `bindings` have them, and the bindings of those that are missing:
+    /// something stands there in their place.
     pub(super) fn in_order(
         &self,
         options: ShadeOptions,
@@ -154,8 +163,8 @@ impl ShadeResources {
     }
 }
 
-/// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as they
-/// were found; the pass makes no barrier for host resources.
+/// How the pass uses a resource of the host, so that the host can place its barriers. Layouts are left as
+/// they were found; the pass makes no barrier for host resources.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ResourceAccess {
     /// The binding's name in the manifest.

@@ -26,9 +26,9 @@ pub fn store_to(format: RadianceFormat, words: &mut [u32]) {
     });
 }
 
-/// Makes a SPIR-V module of a kernel that reads a G-buffer read one of `samples` samples: where there are several, the types of its images that are
-/// read by texel become those of multisampled images, and the level of each read becomes the sample. The kernels read `g_buffer_sample` as
-/// their level, which is that.
+/// Makes a SPIR-V module of a kernel that reads a G-buffer read one of `samples` samples: where there are
+/// several, the types of its images that are read by texel become those of multisampled images, and the level
+/// of each read becomes the sample. The kernels read `g_buffer_sample` as their level, which is that.
 pub fn read_samples(samples: u32, words: &mut [u32]) {
     const TWO_DIMENSIONS: u32 = 1;
     const READ: u32 = 1;
@@ -53,7 +53,8 @@ pub fn read_samples(samples: u32, words: &mut [u32]) {
     });
 }
 
-/// Visits each instruction with its opcode and its words, of which the first holds the opcode and the word count.
+/// Visits each instruction with its opcode and its words, of which the first holds the opcode and the word
+/// count.
 fn each_instruction(words: &mut [u32], mut act: impl FnMut(u32, &mut [u32])) {
     let mut at = HEADER;
     while at < words.len() {

@@ -3,13 +3,14 @@
 use super::{LightTable, TableSample};
 use crate::SpecularLobes;
 
-/// Between which planes the horizons of the lobes of a cell of a table lie, and how dense they are: `ArealightGpuLobeHorizon` in
-/// `shaders/kernels/tiles.glsl`.
+/// Between which planes the horizons of the lobes of a cell of a table lie, and how dense they are:
+/// `ArealightGpuLobeHorizon` in `shaders/kernels/tiles.glsl`.
 ///
-/// The horizon of a lobe is the plane through the shading point whose normal is proportional to `mirror + q across`
-/// ([`super::mirror_frame`]'s third and first axis), with the ratio `q = q20 / q22` of its texel. Held here is `q` over
-/// the sine of the view's angle, which has a limit where the view is along the normal. It is NaN, which is
-/// neither above nor below anything, where a lobe of the cell has no horizon below its mirror direction.
+/// The horizon of a lobe is the plane through the shading point whose normal is proportional to
+/// `mirror + q across` ([`super::mirror_frame`]'s third and first axis), with the ratio `q = q20 / q22` of
+/// its texel. Held here is `q` over the sine of the view's angle, which has a limit where the view is along
+/// the normal. It is NaN, which is neither above nor below anything, where a lobe of the cell has no horizon
+/// below its mirror direction.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct LobeHorizon {
@@ -17,12 +18,13 @@ pub struct LobeHorizon {
     pub lobe: [f32; 2],
     /// Of the lobe of Schlick's weight; likewise.
     pub schlick: [f32; 2],
-    /// The least and the largest of Schlick's albedo times `q22` of its lobe, over the same of the lobe without Fresnel term:
-    /// what a mixture of the two is weighed by.
+    /// The least and the largest of Schlick's albedo times `q22` of its lobe, over the same of the lobe
+    /// without Fresnel term: what a mixture of the two is weighed by.
     pub weight: [f32; 2],
-    /// `a` and `b` such that no lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a steradian, times the
-    /// sine of the elevation above its horizon, at the angle `delta` from the mirror direction. An isotropic lobe is about as
-    /// dense as that. Of smooth lobes, below a roughness of 0.1, nothing is said: `a` is the largest number there.
+    /// `a` and `b` such that no lobe, nor one between them, is denser than `a / (b + 1 - cos delta)²` a
+    /// steradian, times the sine of the elevation above its horizon, at the angle `delta` from the mirror
+    /// direction. An isotropic lobe is about as dense as that. Of smooth lobes, below a roughness of 0.1,
+    /// nothing is said: `a` is the largest number there.
     pub envelope: [f32; 2],
     /// No Schlick's albedo in the cell is larger.
     pub schlick_albedo: f32,
@@ -38,7 +40,8 @@ const LEAST_SINE: f64 = 1e-3;
 
 /// The envelope at a node.
 struct Peak {
-    /// The most that a lobe's density over the elevation's sine, times `(b + 1 - cos delta)²`, is: for each [`width`] as `b`.
+    /// The most that a lobe's density over the elevation's sine, times `(b + 1 - cos delta)²`, is: for each
+    /// [`width`] as `b`.
     scaled: [f64; WIDTHS],
     /// Schlick's albedo.
     schlick: f64,
@@ -55,14 +58,14 @@ fn width(index: usize) -> f64 {
 /// The angle from the mirror direction that envelopes are made for, as 1 - cos: 37 degrees.
 const OFF_MIRROR: f64 = 0.2;
 
-/// Directions in which densities are taken: so many angles from where they are largest over the elevation's sine, and about it,
-/// to one side of the plane of incidence: the other is its mirror image.
+/// Directions in which densities are taken: so many angles from where they are largest over the elevation's
+/// sine, and about it, to one side of the plane of incidence: the other is its mirror image.
 const NEAR_STEPS: u32 = 64;
 const FAR_STEPS: u32 = 48;
 const AZIMUTHS: u32 = 4;
 
-/// The angles from where a lobe is largest, as 1 - cos: that, from 1e-9 on angles that grow by 1.19, and even ones, since a lobe
-/// may end at its horizon anywhere.
+/// The angles from where a lobe is largest, as 1 - cos: that, from 1e-9 on angles that grow by 1.19, and even
+/// ones, since a lobe may end at its horizon anywhere.
 fn falls() -> impl Iterator<Item = f64> {
     let near = (0..NEAR_STEPS - 1).map(|step| 2.0 * 0.71_f64.powi(step.cast_signed()));
     let far = (1..FAR_STEPS)
@@ -70,14 +73,16 @@ fn falls() -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain(near).chain(far)
 }
 
-/// Steps of the power method: what is left of other directions falls by alpha squared a step, or is of no matter.
+/// Steps of the power method: what is left of other directions falls by alpha squared a step, or is of no
+/// matter.
 const POWER_STEPS: usize = 16;
 
-/// What densities may grow by between nodes, and between the directions: most where lobes are sharpest. A test tries lookups
-/// all over the table.
+/// What densities may grow by between nodes, and between the directions: most where lobes are sharpest. A
+/// test tries lookups all over the table.
 const BETWEEN_NODES: f64 = 1.3;
 
-/// The roughness below which no envelope is given: lobes change too much between nodes there for [`BETWEEN_NODES`] to be tried.
+/// The roughness below which no envelope is given: lobes change too much between nodes there for
+/// [`BETWEEN_NODES`] to be tried.
 const LEAST_ROUGHNESS: f64 = 0.1;
 
 /// What albedos may differ by between nodes: docs/fit.md, and a grazing dip.
@@ -86,14 +91,16 @@ const ALBEDO_ERROR: f64 = 0.01;
 impl LightTable {
     /// The horizons of the `(size - 1)²` cells between the table's nodes, in rows of growing view angle.
     ///
-    /// They are taken at 9 × 9 points of the cell, at which texels are interpolated as a lookup does, and are generous by a twentieth
-    /// of what they differ there, and by what float16 rounds: along an edge of the cell the ratio of two interpolated numbers only
-    /// grows or only falls, and its ends are among the points.
+    /// They are taken at 9 × 9 points of the cell, at which texels are interpolated as a lookup does, and are
+    /// generous by a twentieth of what they differ there, and by what float16 rounds: along an edge of the
+    /// cell the ratio of two interpolated numbers only grows or only falls, and its ends are among the
+    /// points.
     ///
     /// `lobes` is what passes are made with ([`crate::Quality::specular_lobes`]).
     pub fn lobe_horizons(&self, lobes: SpecularLobes) -> Vec<LobeHorizon> {
         let cells = self.size as usize - 1;
-        // Half-way between nodes of the roughness too: near a smooth lobe's edge a lobe between two is denser than both
+        // Half-way between nodes of the roughness too: near a smooth lobe's edge a lobe between two is denser
+        // than both
         let columns = 2 * self.size - 1;
         let peaks: Vec<Peak> = (0..columns * self.size)
             .map(|index| self.peak(lobes, index % columns, index / columns))
@@ -121,9 +128,10 @@ impl LightTable {
         (0..cells * cells).map(cell).collect()
     }
 
-    /// How dense the specular lobes of a surface of this perceptual roughness are a steradian, where they are densest, of any view and any
-    /// reflectance: what is reflected of a light is at most that times the light's solid angle and radiance. 0 to 1; rougher lobes are less dense.
-    /// `lobes` is as in [`LightTable::lobe_horizons`].
+    /// How dense the specular lobes of a surface of this perceptual roughness are a steradian, where they are
+    /// densest, of any view and any reflectance: what is reflected of a light is at most that times the
+    /// light's solid angle and radiance. 0 to 1; rougher lobes are less dense. `lobes` is as in
+    /// [`LightTable::lobe_horizons`].
     ///
     /// Sampled at twice as many views as the table has, and generous by a third for what is between them.
     pub fn lobe_density(&self, lobes: SpecularLobes, roughness: f64) -> f64 {
@@ -202,8 +210,8 @@ impl LightTable {
         }
     }
 
-    /// Of each lobe `q / sin` at either end of its reflectances, and the weight of Schlick's; not finite where a lobe has no horizon below
-    /// its mirror direction.
+    /// Of each lobe `q / sin` at either end of its reflectances, and the weight of Schlick's; not finite
+    /// where a lobe has no horizon below its mirror direction.
     fn horizon_at(&self, lobes: SpecularLobes, roughness: f64, cos_view: f64) -> Vec<[f64; 3]> {
         let found = self.lookup(roughness, cos_view);
         let sine = (1.0 - cos_view * cos_view).sqrt();
@@ -224,7 +232,8 @@ impl LightTable {
     }
 }
 
-/// The matrices of each lobe at either end of its reflectances. A coat has one lobe where the surface has two.
+/// The matrices of each lobe at either end of its reflectances. A coat has one lobe where the surface has
+/// two.
 fn lobe_ends(lobes: SpecularLobes, found: &TableSample) -> impl Iterator<Item = [glam::DMat3; 2]> + use<> {
     let pairs = found.pairs.filter(|_| lobes == SpecularLobes::Two);
     let of_pairs = pairs.into_iter().flat_map(|(inverses, _)| inverses.map(|inverse| [inverse; 2]));
@@ -237,8 +246,9 @@ fn between([from, to]: [glam::DMat3; 2]) -> impl Iterator<Item = glam::DMat3> {
     parts.iter().map(move |part| from * (1.0 - part) + to * *part)
 }
 
-/// The directions in which a lobe's densities are taken: about that where it is largest over the elevation's sine, which is in the plane of incidence, as
-/// the ridge of a lobe is that is long. `frame` is the mirror direction's.
+/// The directions in which a lobe's densities are taken: about that where it is largest over the elevation's
+/// sine, which is in the plane of incidence, as the ridge of a lobe is that is long. `frame` is the mirror
+/// direction's.
 fn directions(inverse: glam::DMat3, frame: glam::DMat3, mut take: impl FnMut(glam::DVec3)) {
     let largest = least_stretched(inverse).unwrap_or(frame.z_axis);
     let (u, v) = (frame.y_axis.cross(largest), frame.y_axis);
@@ -251,7 +261,8 @@ fn directions(inverse: glam::DMat3, frame: glam::DMat3, mut take: impl FnMut(gla
     }
 }
 
-/// The direction that a transform into cosine space stretches least, above the lobe's horizon. `None` if it has no inverse.
+/// The direction that a transform into cosine space stretches least, above the lobe's horizon. `None` if it
+/// has no inverse.
 fn least_stretched(inverse: glam::DMat3) -> Option<glam::DVec3> {
     // The power method, of the inverse of what squares of lengths are
     let transform = inverse.inverse();

@@ -1,5 +1,5 @@
-//! Draws some frames by the deferred engine, and keeps the last as a PNG; or shows them in a window, where there is one
-//! (with the feature `window`, and no picture asked for).
+//! Draws some frames by the deferred engine, and keeps the last as a PNG; or shows them in a window, where
+//! there is one (with the feature `window`, and no picture asked for).
 
 use arealight_examples::command_line::CommandLine;
 use arealight_examples::deferred::Deferred;

@@ -42,7 +42,8 @@ impl Screen {
         std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap()
     }
 
-    /// Red, green and blue of its pixels, from a dump of version 7 with 32 bits a pixel, of a screen of so many.
+    /// Red, green and blue of its pixels, from a dump of version 7 with 32 bits a pixel, of a screen of so
+    /// many.
     pub fn pixels(dump: &[u8], size: [u32; 2]) -> Vec<u8> {
         let field =
             |index: usize| u32::from_be_bytes(dump[4 * index..4 * index + 4].try_into().unwrap()) as usize;
@@ -64,8 +65,8 @@ impl Drop for Screen {
     }
 }
 
-/// A program with the validation layer, which says what it finds on the standard output: messages of the kinds `report`. `feature`
-/// is one of `VK_EXT_validation_features`, `setting` what newer layers call it.
+/// A program with the validation layer, which says what it finds on the standard output: messages of the
+/// kinds `report`. `feature` is one of `VK_EXT_validation_features`, `setting` what newer layers call it.
 pub fn under_validation(program: &str, folder: &Path, report: &str, feature: &str, setting: &str) -> Command {
     let settings = [
         "",

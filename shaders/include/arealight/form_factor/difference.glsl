@@ -4,14 +4,15 @@
 #include "arealight/form_factor/outline.glsl"
 #include "arealight/form_factor/quad.glsl"
 
-// The difference form: form factors of small and distant polygons with relative precision. It keeps the promises of
-// form_factor/quad.glsl, and
+// The difference form: form factors of small and distant polygons with relative precision. It keeps the
+// promises of form_factor/quad.glsl, and
 //
-//   4. For a light within a fifth of its distance d of its anchor, the error is at most 1e-6 A / (pi d^2), out to any distance;
-//      A is its area, or for a sliver .24 of its extent times its perimeter.
+//   4. For a light within a fifth of its distance d of its anchor, the error is at most 1e-6 A / (pi d^2),
+//      out to any distance; A is its area, or for a sliver .24 of its extent times its perimeter.
 //
-// A polygon is given by an anchor near it and its vertices' offsets from that. What the arcs of a small outline have in common
-// is left out: it cancels in the sum around the outline, and with it what would be its error.
+// A polygon is given by an anchor near it and its vertices' offsets from that. What the arcs of a small
+// outline have in common is left out: it cancels in the sum around the outline, and with it what would be its
+// error.
 
 // A vertex as the arcs need it.
 struct ArealightVertex {
@@ -31,23 +32,25 @@ struct ArealightAnchor {
     float front;      // as in arealight_quad_vector
 };
 
-// The origin of vertices' offsets: the anchor, or where that is not distant the shading point, so that no vertex near to that
-// is the difference of two that are not.
+// The origin of vertices' offsets: the anchor, or where that is not distant the shading point, so that no
+// vertex near to that is the difference of two that are not.
 vec3 arealight_base(ArealightAnchor anchor) {
     return anchor.distant ? anchor.position : vec3(0.0);
 }
 
-// The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space; `front` as in arealight_quad_vector. Of a polygon that is not distant a
-// vertex is above the horizon or below by its own height: of a ceiling far larger than its height over the point, none is on it.
+// The anchor of a polygon whose vertices are at most `extent` from `position`, both in the same space;
+// `front` as in arealight_quad_vector. Of a polygon that is not distant a vertex is above the horizon or
+// below by its own height: of a ceiling far larger than its height over the point, none is on it.
 ArealightAnchor arealight_anchor(vec3 position, float extent, float horizon, float front) {
     float square = dot(position, position);
     float reciprocal = inversesqrt(max(square, AREALIGHT_LEAST_SQUARE));
     bool distant = 4.0 * extent * extent <= square;
-    return ArealightAnchor(position, square * reciprocal, reciprocal, distant, distant ? horizon : 0.0, front);
+    return ArealightAnchor(position, square * reciprocal, reciprocal, distant, distant ? horizon : 0.0,
+                           front);
 }
 
-// The vertex at `offset` from the anchor. Its direction's distance from the anchor's direction keeps the relative precision of
-// the offset o: with the anchor a, v = a + o and e = o.(a + v) = |v|^2 - |a|^2,
+// The vertex at `offset` from the anchor. Its direction's distance from the anchor's direction keeps the
+// relative precision of the offset o: with the anchor a, v = a + o and e = o.(a + v) = |v|^2 - |a|^2,
 //
 //     v / |v| - a / |a| = (o - a e / (|a| (|a| + |v|))) / |v|
 ArealightVertex arealight_vertex(ArealightAnchor anchor, vec3 offset) {
@@ -74,8 +77,8 @@ vec3 arealight_arc_excess(vec3 s, float y, float square) {
          / (y + y * y * (0.893227518 + y * 0.192593366));
 }
 
-// arealight_arc without what a x b has from the anchor. In the sum around a closed outline the error is relative to the square of
-// the outline's angular size.
+// arealight_arc without what a x b has from the anchor. In the sum around a closed outline the error is
+// relative to the square of the outline's angular size.
 vec3 arealight_difference_arc(ArealightVertex a, ArealightVertex b) {
     vec3 middle = a.unit + b.unit;
     float y = sqrt(dot(middle, middle) + AREALIGHT_LEAST_SQUARE);
@@ -119,11 +122,13 @@ struct ArealightDifferenceOutline {
 
 ArealightDifferenceOutline arealight_difference_begin() {
     ArealightVertex nowhere = ArealightVertex(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
-    return ArealightDifferenceOutline(vec3(0.0), 0.0, nowhere, nowhere, nowhere, nowhere, vec2(1.0, 0.0), false, false, false);
+    return ArealightDifferenceOutline(vec3(0.0), 0.0, nowhere, nowhere, nowhere, nowhere, vec2(1.0, 0.0),
+                                      false, false, false);
 }
 
 // Adds the edge from a to b, and what closes the outline along the horizon where it comes up again.
-void arealight_difference_edge(inout ArealightDifferenceOutline outline, ArealightAnchor anchor, ArealightVertex a,
+void arealight_difference_edge(inout ArealightDifferenceOutline outline, ArealightAnchor anchor,
+                               ArealightVertex a,
                                ArealightVertex b) {
     bool a_above = a.unit.z > 0.0;
     bool b_above = b.unit.z > 0.0;
@@ -150,7 +155,8 @@ void arealight_difference_edge(inout ArealightDifferenceOutline outline, Arealig
 }
 
 // Goes on to a vertex.
-void arealight_difference_to(inout ArealightDifferenceOutline outline, ArealightAnchor anchor, ArealightVertex vertex) {
+void arealight_difference_to(inout ArealightDifferenceOutline outline, ArealightAnchor anchor,
+                             ArealightVertex vertex) {
     if (outline.begun) {
         arealight_difference_edge(outline, anchor, outline.last, vertex);
     } else {
@@ -175,8 +181,9 @@ vec3 arealight_difference_vector(ArealightDifferenceOutline outline, ArealightAn
     return arealight_is_finite(outline.squares) ? AREALIGHT_PER_ARC * outline.arcs : vec3(0.0);
 }
 
-// The vector form factor of a convex quad whose vertices are offsets from `center`, clipped at the horizon z = 0; `horizon` is the
-// sine of the elevation below which a vertex counts as on it, `front` as in arealight_quad_vector.
+// The vector form factor of a convex quad whose vertices are offsets from `center`, clipped at the horizon z
+// = 0; `horizon` is the sine of the elevation below which a vertex counts as on it, `front` as in
+// arealight_quad_vector.
 vec3 arealight_difference_quad(vec3 center, ArealightQuad offsets, float horizon, float front) {
     float extent = max(max(dot(offsets.a, offsets.a), dot(offsets.b, offsets.b)),
                        max(dot(offsets.c, offsets.c), dot(offsets.d, offsets.d)));

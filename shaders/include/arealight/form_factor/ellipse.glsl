@@ -4,22 +4,24 @@
 #include "arealight/form_factor/arctangent.glsl"
 #include "arealight/common.glsl"
 
-// The form factor of a flat ellipse that lies wholly above the horizon, in closed form: a disk light, and under the
-// transform into a lobe's cosine space the ellipse that it becomes. elliptic_arc.glsl clips it at the horizon.
+// The form factor of a flat ellipse that lies wholly above the horizon, in closed form: a disk light, and
+// under the transform into a lobe's cosine space the ellipse that it becomes. elliptic_arc.glsl clips it at
+// the horizon.
 //
-// The ellipse is the points center + cos(t) axis_u + sin(t) axis_v. The two axes need not be perpendicular, nor of one
-// length: a disk's axes remain axes under any linear transform. Its front is where t runs counter-clockwise, as a
-// polygon's; so axis_u x axis_v points to where it shines.
+// The ellipse is the points center + cos(t) axis_u + sin(t) axis_v. The two axes need not be perpendicular,
+// nor of one length: a disk's axes remain axes under any linear transform. Its front is where t runs
+// counter-clockwise, as a polygon's; so axis_u x axis_v points to where it shines.
 //
-// In the ellipse's principal frame, with half axes a and b and the ellipse's center at (x, y, h) from the point, the
-// ellipse is the focal one of a family of confocal quadrics, and the ellipsoid of the family that passes through the
-// point (its parameter is the largest root l of x^2 / (a^2 + l) + y^2 / (b^2 + l) + h^2 / l = 1) has as its normal there
-// the axis of the cone under which the ellipse is seen. All follows from l without cancellation; and l is found without
-// iteration, see arealight_confocal_root.
+// In the ellipse's principal frame, with half axes a and b and the ellipse's center at (x, y, h) from the
+// point, the ellipse is the focal one of a family of confocal quadrics, and the ellipsoid of the family that
+// passes through the point (its parameter is the largest root l of x^2 / (a^2 + l) + y^2 / (b^2 + l) + h^2 /
+// l = 1) has as its normal there the axis of the cone under which the ellipse is seen. All follows from l
+// without cancellation; and l is found without iteration, see arealight_confocal_root.
 
 // An ellipse as seen from the point, scaled by a power of two so that its size is of order one.
 struct ArealightEllipse {
-    vec3 longer;  // unit directions of its axes, which with the normal that points away from the point are its frame
+    // Unit directions of its axes, which with the normal that points away from the point are its frame
+    vec3 longer;
     vec3 shorter;
     vec3 center;  // in the frame, the point being its origin; z > 0
     float major;  // half axes
@@ -34,8 +36,8 @@ struct ArealightEllipse {
 // Heights over the plane of the ellipse below this part of its size or distance count as this.
 const float AREALIGHT_ELLIPSE_HEIGHT = 1e-15;
 
-// An ellipse's frame: columns are unit directions of the longer axis, the shorter axis and the normal, which is taken where it is
-// needed.
+// An ellipse's frame: columns are unit directions of the longer axis, the shorter axis and the normal, which
+// is taken where it is needed.
 mat3 arealight_ellipse_frame(ArealightEllipse ellipse) {
     return mat3(ellipse.longer, ellipse.shorter, cross(ellipse.longer, ellipse.shorter));
 }
@@ -48,8 +50,9 @@ vec3 arealight_ellipse_up(ArealightEllipse ellipse) {
 
 // The principal frame of an ellipse in any space, from the point.
 //
-// One rotation of Jacobi's makes conjugate half axes principal. Its angle is at most pi / 4, so that the longer axis has
-// no cancellation; the shorter one has that of the axes that came in, as if they had moved by 2^-24 of their length.
+// One rotation of Jacobi's makes conjugate half axes principal. Its angle is at most pi / 4, so that the
+// longer axis has no cancellation; the shorter one has that of the axes that came in, as if they had moved by
+// 2^-24 of their length.
 ArealightEllipse arealight_ellipse(vec3 center, vec3 axis_u, vec3 axis_v) {
     ArealightEllipse ellipse;
     float largest = max(arealight_max_component(center),
@@ -104,11 +107,11 @@ float arealight_third_of_angle(float c) {
 
 // The largest root l of x^2 / (a^2 + l) + y^2 / (b^2 + l) + h^2 / l = 1: positive.
 //
-// As a cubic, l^3 + p l^2 + q l - r = 0 with r > 0 has three real roots, one positive. Viete's formula gives the root
-// that is largest in size without cancellation: where p <= 0 it is the one that is wanted, else the other two have a
-// quadratic equation that gives it. The coefficients are differences of squares, taken as products. Relative error in
-// exact arithmetic: 5e-8; what the form factor has of it is less, and rounding is as if the
-// ellipse had moved by 2^-24 of its distance.
+// As a cubic, l^3 + p l^2 + q l - r = 0 with r > 0 has three real roots, one positive. Viete's formula gives
+// the root that is largest in size without cancellation: where p <= 0 it is the one that is wanted, else the
+// other two have a quadratic equation that gives it. The coefficients are differences of squares, taken as
+// products. Relative error in exact arithmetic: 5e-8; what the form factor has of it is less, and rounding is
+// as if the ellipse had moved by 2^-24 of its distance.
 float arealight_confocal_root(ArealightEllipse ellipse) {
     float x = abs(ellipse.center.x);
     float y = abs(ellipse.center.y);
@@ -143,14 +146,14 @@ vec2 arealight_confocal_reciprocals(ArealightEllipse ellipse, float root) {
     return 1.0 / (vec2(ellipse.major * ellipse.major, ellipse.minor * ellipse.minor) + root);
 }
 
-// The axis of the cone under which the ellipse is seen, in its frame: the normal of the confocal ellipsoid of parameter
-// `root`, of no particular length.
+// The axis of the cone under which the ellipse is seen, in its frame: the normal of the confocal ellipsoid of
+// parameter `root`, of no particular length.
 vec3 arealight_ellipse_cone_axis(ArealightEllipse ellipse, float root) {
     return vec3(ellipse.center.xy * (root * arealight_confocal_reciprocals(ellipse, root)), ellipse.center.z);
 }
 
-// The integral of the direction over pi, over the directions that the ellipse covers, in its frame: a vector whose
-// product with any unit normal above whose horizon all of the ellipse lies is the form factor.
+// The integral of the direction over pi, over the directions that the ellipse covers, in its frame: a vector
+// whose product with any unit normal above whose horizon all of the ellipse lies is the form factor.
 vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
     vec2 reciprocals = arealight_confocal_reciprocals(ellipse, root);
@@ -158,25 +161,29 @@ vec3 arealight_ellipse_vector(ArealightEllipse ellipse, float root) {
     return axis * (area * sqrt(reciprocals.x) * sqrt(reciprocals.y) / dot(axis, axis));
 }
 
-// The form factor of an ellipse that lies wholly above the horizon, of either side. Error: 4e-7, relative 2e-6 at any distance, for an ellipse as it
-// rounds: its center and axes are as if moved by 4 x 2^-24 of their lengths.
+// The form factor of an ellipse that lies wholly above the horizon, of either side. Error: 4e-7, relative
+// 2e-6 at any distance, for an ellipse as it rounds: its center and axes are as if moved by 4 x 2^-24 of
+// their lengths.
 float arealight_whole_ellipse(ArealightEllipse ellipse, float root) {
     float a2 = ellipse.major * ellipse.major;
     float b2 = ellipse.minor * ellipse.minor;
     vec3 up = arealight_ellipse_up(ellipse);
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
-    // The cone's axis is the center less what is small for a far ellipse: so its height keeps the center's precision
+    // The cone's axis is the center less what is small for a far ellipse: so its height keeps the center's
+    // precision
     vec2 less = ellipse.center.xy * vec2(a2, b2) * arealight_confocal_reciprocals(ellipse, root);
     float height = root > a2 ? ellipse.height - dot(less, up.xy) : dot(axis, up);
     float area = ellipse.center.z * ellipse.major * ellipse.minor;
     return height * (area * inversesqrt((a2 + root) * (b2 + root)) / dot(axis, axis));
 }
 
-// The vector form factor of a whole ellipse, in the space that it is given in: the integral of the direction over pi, of
-// length at most 1. Its direction is the cone's axis. Not clipped, and whatever side is seen; NaN where an input is.
+// The vector form factor of a whole ellipse, in the space that it is given in: the integral of the direction
+// over pi, of length at most 1. Its direction is the cone's axis. Not clipped, and whatever side is seen; NaN
+// where an input is.
 vec3 arealight_ellipse_vector_form_factor(vec3 center, vec3 axis_u, vec3 axis_v) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
-    return arealight_ellipse_frame(ellipse) * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse));
+    return arealight_ellipse_frame(ellipse)
+        * arealight_ellipse_vector(ellipse, arealight_confocal_root(ellipse));
 }
 
 #endif

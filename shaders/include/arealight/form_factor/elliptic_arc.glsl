@@ -4,19 +4,21 @@
 #include "arealight/form_factor/ellipse.glsl"
 #include "arealight/options.glsl"
 
-// Arcs of an ellipse, and with them the form factor of an ellipse clipped exactly at the horizon, in closed form.
+// Arcs of an ellipse, and with them the form factor of an ellipse clipped exactly at the horizon, in closed
+// form.
 //
 // The cone of directions under which an ellipse is seen is elliptic: in its own frame it is
 // (a cos(t), b sin(t), c). The contour integral of Lambert's formula over an arc of it, the vector
 //
 //     I = integral of p x dp / |p|^2,
 //
-// is elementary: its components are two arctangents and one logarithm, taken at the arc's middle and half width, where
-// neither short nor nearly full arcs cancel.
+// is elementary: its components are two arctangents and one logarithm, taken at the arc's middle and half
+// width, where neither short nor nearly full arcs cancel.
 
 // An elliptic cone of directions.
 struct ArealightCone {
-    mat3 frame; // columns: unit directions of the longer axis, the shorter axis and the cone's own, in the ellipse's
+    // Columns: unit directions of the longer axis, the shorter axis and the cone's own, in the ellipse's
+    mat3 frame;
                 // frame; right-handed
     float a;    // half axes of the cross section at the distance c: a >= b
     float b;
@@ -31,15 +33,15 @@ struct ArealightArcSpan {
 
 // The cone of an ellipse; `root` by arealight_confocal_root.
 //
-// The planes through the point that touch the ellipse have normals n with n.D n = 0, D = a^2 uu + b^2 vv - cc for the
-// principal half axes and the center c. The eigenvalues of D are the cone's a^2, b^2 and -c^2 (the last one -root), the
-// axis being the eigenvector of the last one; b follows from the determinant, where it does not cancel. Across that axis, w of
-// the length |w|, D equals
+// The planes through the point that touch the ellipse have normals n with n.D n = 0, D = a^2 uu + b^2 vv - cc
+// for the principal half axes and the center c. The eigenvalues of D are the cone's a^2, b^2 and -c^2 (the
+// last one -root), the axis being the eigenvector of the last one; b follows from the determinant, where it
+// does not cancel. Across that axis, w of the length |w|, D equals
 //
 //     |w|^2 / root (a^2 uu + b^2 vv) + a^2 b^2 jj,    j = y / (b^2 + root) u - x / (a^2 + root) v,
 //
-// for the center (x, y, h) in the ellipse's frame: a sum in which nothing cancels, where the one above loses all digits before a
-// needle's tip.
+// for the center (x, y, h) in the ellipse's frame: a sum in which nothing cancels, where the one above loses
+// all digits before a needle's tip.
 ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     ArealightCone cone;
     float a2 = ellipse.major * ellipse.major;
@@ -47,7 +49,8 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     vec3 axis = arealight_ellipse_cone_axis(ellipse, root);
     float square = dot(axis, axis);
     axis *= inversesqrt(square);
-    // Two perpendiculars, along which no component cancels: the second has none along the ellipse's longer axis
+    // Two perpendiculars, along which no component cancels: the second has none along the ellipse's longer
+    // axis
     float across = sqrt(axis.y * axis.y + axis.z * axis.z);
     float reciprocal = 1.0 / max(across, 1e-37);
     vec3 first = vec3(across, -axis.x * axis.y * reciprocal, -axis.x * axis.z * reciprocal);
@@ -58,7 +61,8 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     vec2 place = ellipse.center.xy * arealight_confocal_reciprocals(ellipse, root);
     float along_first = place.y * first.x - place.x * first.y;
     float along_second = -place.x * second.y;
-    float m11 = square * (a2 * first.x * first.x + b2 * first.y * first.y) + a2 * b2 * along_first * along_first;
+    float m11 = square * (a2 * first.x * first.x + b2 * first.y * first.y) + a2 * b2 * along_first
+        * along_first;
     float m12 = b2 * (square * first.y * second.y + a2 * along_first * along_second);
     float m22 = b2 * (square * second.y * second.y + a2 * along_second * along_second);
     // Its eigenvectors, by one rotation of Jacobi's
@@ -75,8 +79,8 @@ ArealightCone arealight_ellipse_cone(ArealightEllipse ellipse, float root) {
     return cone;
 }
 
-// The integral of p x dp / |p|^2 over an arc of a cone's outline, in the cone's frame. Absolute error: some 2^-23 for
-// components up to 2 pi.
+// The integral of p x dp / |p|^2 over an arc of a cone's outline, in the cone's frame. Absolute error: some
+// 2^-23 for components up to 2 pi.
 vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc) {
     float cs = arc.middle.x;
     float ss = arc.middle.y;
@@ -119,8 +123,9 @@ vec3 arealight_elliptic_arc(ArealightCone cone, ArealightArcSpan arc) {
     return integral;
 }
 
-// The contour of the part of a cone above the horizon of a unit `normal`, given in the cone's frame: arealight_elliptic_arc of its
-// outline, and what closes it along the horizon, a vector along the normal of the length w. The cone must cross the horizon.
+// The contour of the part of a cone above the horizon of a unit `normal`, given in the cone's frame:
+// arealight_elliptic_arc of its outline, and what closes it along the horizon, a vector along the normal of
+// the length w. The cone must cross the horizon.
 vec4 arealight_cone_contour_above_horizon(ArealightCone cone, vec3 normal) {
     // Where on the outline the height a n.x cos(t) + b n.y sin(t) + c n.z is positive
     vec2 slope = vec2(cone.a * normal.x, cone.b * normal.y);
@@ -133,10 +138,13 @@ vec4 arealight_cone_contour_above_horizon(ArealightCone cone, vec3 normal) {
     arc.half_width = vec2(cosine, sine);
     vec3 integral = arealight_elliptic_arc(cone, arc);
     // Back along the horizon: the angle between the arc's ends
-    float cos_cos = (arc.middle.x * cosine - arc.middle.y * sine) * (arc.middle.x * cosine + arc.middle.y * sine);
-    float sin_sin = (arc.middle.y * cosine - arc.middle.x * sine) * (arc.middle.y * cosine + arc.middle.x * sine);
+    float cos_cos = (arc.middle.x * cosine - arc.middle.y * sine)
+        * (arc.middle.x * cosine + arc.middle.y * sine);
+    float sin_sin = (arc.middle.y * cosine - arc.middle.x * sine)
+        * (arc.middle.y * cosine + arc.middle.x * sine);
     float closing = arealight_arctangent(2.0 * cone.a * cone.b * cone.c * sine * reciprocal,
-                                         cone.c * cone.c + cone.a * cone.a * cos_cos + cone.b * cone.b * sin_sin);
+                                         cone.c * cone.c + cone.a * cone.a * cos_cos + cone.b * cone.b
+                                             * sin_sin);
     return vec4(integral, closing);
 }
 
@@ -149,7 +157,8 @@ float arealight_cone_above_horizon(ArealightCone cone, vec3 normal) {
 // The part of a small ellipse above the horizon.
 struct ArealightEllipseSegment {
     vec3 middle;   // centroid of the heights above the horizon, in the ellipse's frame
-    float moment;  // the integral of the height over the segment of the unit disk to which the axes map it, over the rise
+    // The integral of the height over the segment of the unit disk to which the axes map it, over the rise
+    float moment;
 };
 
 // `up` is the horizon's normal in the ellipse's frame. The ellipse must cross the horizon.
@@ -157,14 +166,16 @@ ArealightEllipseSegment arealight_ellipse_segment(ArealightEllipse ellipse, vec3
     float reciprocal = 1.0 / max(ellipse.rise, 1e-37);
     // Half the arc above the horizon
     float cosine = clamp(-ellipse.height * reciprocal, -1.0, 1.0);
-    float sine = sqrt(max((ellipse.rise - ellipse.height) * (ellipse.rise + ellipse.height), 0.0)) * reciprocal;
+    float sine = sqrt(max((ellipse.rise - ellipse.height) * (ellipse.rise + ellipse.height), 0.0))
+        * reciprocal;
     float angle = arealight_arctangent(sine, cosine);
     float w = angle * angle;
     // The moment, and the mean height, weighed with the height, over the rise
     float moment;
     float mean;
     if (w < 1.0) {
-        float series = 0.99999947 + w * (-0.26188854 + w * (0.03364939 + w * (-0.0026387374 + w * 8.501425e-5)));
+        float series = 0.99999947 + w * (-0.26188854 + w
+                                         * (0.03364939 + w * (-0.0026387374 + w * 8.501425e-5)));
         moment = 0.13333333 * w * w * angle * series;
         mean = 0.99999957 + w * (-0.21427264 + w * (0.02119492 + w * (-0.00068659094 - w * 4.4518310e-5)));
     } else {
@@ -179,8 +190,8 @@ ArealightEllipseSegment arealight_ellipse_segment(ArealightEllipse ellipse, vec3
     return ArealightEllipseSegment(middle, moment);
 }
 
-// The form factor of a small ellipse that crosses the horizon, with relative precision: its radiance all comes from the
-// centroid of its segment. Arguments as above. Relative error: 2 (major / distance)^2.
+// The form factor of a small ellipse that crosses the horizon, with relative precision: its radiance all
+// comes from the centroid of its segment. Arguments as above. Relative error: 2 (major / distance)^2.
 float arealight_small_ellipse_crossing(ArealightEllipse ellipse, vec3 up) {
     ArealightEllipseSegment segment = arealight_ellipse_segment(ellipse, up);
     float square = dot(segment.middle, segment.middle);
@@ -193,13 +204,13 @@ bool arealight_is_small_ellipse(ArealightEllipse ellipse) {
     return ellipse.major * ellipse.major < 4e-4 * dot(ellipse.center, ellipse.center);
 }
 
-// The form factor of an ellipse, clipped at the horizon z = 0: in [0, 1]; one-sided: 0 for one seen from its back. All
-// vectors in a space whose z axis is the normal, the center from the shading point, in any unit. For any bits the result
-// is a finite number in [0, 1].
+// The form factor of an ellipse, clipped at the horizon z = 0: in [0, 1]; one-sided: 0 for one seen from its
+// back. All vectors in a space whose z axis is the normal, the center from the shading point, in any unit.
+// For any bits the result is a finite number in [0, 1].
 //
-// Error: within 6e-7 of the interval of values of the ellipses whose center and axes differ by 4 x 2^-24 of their
-// lengths. In the difference form a far ellipse that crosses the horizon keeps relative
-// precision too: 3e-6 + 2 (size / distance)^2; one that does not has it anyway.
+// Error: within 6e-7 of the interval of values of the ellipses whose center and axes differ by 4 x 2^-24 of
+// their lengths. In the difference form a far ellipse that crosses the horizon keeps relative precision too:
+// 3e-6 + 2 (size / distance)^2; one that does not has it anyway.
 float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool two_sided) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
     float root = arealight_confocal_root(ellipse);
@@ -219,8 +230,9 @@ float arealight_ellipse_form_factor(vec3 center, vec3 axis_u, vec3 axis_v, bool 
     return arealight_guarded_form_factor(two_sided || ellipse.front ? form_factor : 0.0, ellipse.square);
 }
 
-// The mean direction in which the part of an ellipse above the horizon z = 0 is seen, of no particular length; of what
-// arealight_ellipse_form_factor integrates, and of the same arguments. Below the horizon, and for NaN, anything.
+// The mean direction in which the part of an ellipse above the horizon z = 0 is seen, of no particular
+// length; of what arealight_ellipse_form_factor integrates, and of the same arguments. Below the horizon, and
+// for NaN, anything.
 vec3 arealight_ellipse_mean_direction(vec3 center, vec3 axis_u, vec3 axis_v) {
     ArealightEllipse ellipse = arealight_ellipse(center, axis_u, axis_v);
     float root = arealight_confocal_root(ellipse);

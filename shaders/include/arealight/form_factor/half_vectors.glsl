@@ -3,39 +3,48 @@
 
 #include "arealight/form_factor/quad.glsl"
 
-// The vector form factor, of facets, of a polygon that they mirror to the viewer: the polygon's directions, turned into half vectors and stretched so
-// that GGX's alpha is 1. There the visible normals are a clamped cosine about the stretched view (Heitz 2018, Sampling the GGX Distribution of
-// Visible Normals), so that an outline of theirs is integrated by arcs as that of any polygon is.
+// The vector form factor, of facets, of a polygon that they mirror to the viewer: the polygon's directions,
+// turned into half vectors and stretched so that GGX's alpha is 1. There the visible normals are a clamped
+// cosine about the stretched view (Heitz 2018, Sampling the GGX Distribution of Visible Normals), so that an
+// outline of theirs is integrated by arcs as that of any polygon is.
 //
-// An edge of the light is an arc of a great circle, e(t) = (1 - t)^2 a + 2 t (1 - t) m + t^2 b up to its length, m being the middle direction over the
-// cosine of half the angle. Its half vectors e(t) + |e(t)| v are quadratic in t as well: an arc of a conic, whose control points are
-// a + v, (a + b) / |a + b| + v |a + b| / 2 and b + v. No linear map leads there; chords do, from the ends to the shoulder of the conic, with what they
-// lack added by the triangle that they make: two of an edge, more of the parts of one that bends far. Where chords meet is fixed by the edge alone, so
-// that a light cut in two sends what it did, up to the chords' error: an edge errs by 3e-4 of a form factor at most, on average 1e-4 of one that bends far.
+// An edge of the light is an arc of a great circle, e(t) = (1 - t)^2 a + 2 t (1 - t) m + t^2 b up to its
+// length, m being the middle direction over the cosine of half the angle. Its half vectors e(t) + |e(t)| v
+// are quadratic in t as well: an arc of a conic, whose control points are a + v, (a + b) / |a + b| + v |a +
+// b| / 2 and b + v. No linear map leads there; chords do, from the ends to the shoulder of the conic, with
+// what they lack added by the triangle that they make: two of an edge, more of the parts of one that bends
+// far. Where chords meet is fixed by the edge alone, so that a light cut in two sends what it did, up to the
+// chords' error: an edge errs by 3e-4 of a form factor at most, on average 1e-4 of one that bends far.
 
 // What the facets of a surface are and who sees them.
 struct ArealightFacets {
-    mat3 to_axes; // a rotation, from the shading frame into the axes of the distribution: x along the first alpha, z the normal
+    // A rotation, from the shading frame into the axes of the distribution: x along the first alpha, z the
+    // normal
+    mat3 to_axes;
     vec2 alpha;   // along x and along y, from AREALIGHT_MIN_ALPHA
     vec3 view;    // the direction to the viewer in these axes, unit, not below the surface
 };
 
-// An arc of a conic about the origin, by its control points: rational and quadratic, of the points' directions.
+// An arc of a conic about the origin, by its control points: rational and quadratic, of the points'
+// directions.
 struct ArealightConic {
     vec3 first;
     vec3 control;
     vec3 last;
 };
 
-// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than an angle of this cosine.
+// An edge, or a part of one, is halved where the middle of its half vectors is farther from an end than an
+// angle of this cosine.
 const float AREALIGHT_BENT = 0.7;
 // Parts of an edge from this one on are not: after five halvings.
 const uint AREALIGHT_LAST_PARTS = 32u;
 
-// What two chords of a conic lack, over the triangle that they make with the third: 1/3 of a parabola, 0.57 of a half circle.
+// What two chords of a conic lack, over the triangle that they make with the third: 1/3 of a parabola, 0.57
+// of a half circle.
 const float AREALIGHT_CONIC_SEGMENT = 0.4;
 
-// The shoulder of a conic, and what its halves have for control points: x control, y shoulder, z control. Both halves are alike there.
+// The shoulder of a conic, and what its halves have for control points: x control, y shoulder, z control.
+// Both halves are alike there.
 mat3 arealight_conic_shoulder(ArealightConic conic) {
     float first = inversesqrt(max(dot(conic.first, conic.first), AREALIGHT_LEAST_SQUARE));
     float last = inversesqrt(max(dot(conic.last, conic.last), AREALIGHT_LEAST_SQUARE));
@@ -73,7 +82,8 @@ vec3 arealight_conic_arcs(ArealightConic conic) {
             part *= 2u;
         } else {
             float lacking = dot(middle, cross(middle - first, last - first));
-            arcs += arealight_arc(first, middle) + arealight_arc(middle, last) + (AREALIGHT_CONIC_SEGMENT * lacking) * middle;
+            arcs += arealight_arc(first, middle) + arealight_arc(middle, last)
+                + (AREALIGHT_CONIC_SEGMENT * lacking) * middle;
             // On to the next, up from second halves
             part += 1u;
             part >>= findLSB(part);
@@ -88,7 +98,8 @@ vec3 arealight_facet_edge(ArealightFacets facets, vec3 from, vec3 to) {
     float square = max(dot(sum, sum), AREALIGHT_LEAST_SQUARE);
     float per_length = inversesqrt(square);
     vec3 shrink = vec3(1.0 / facets.alpha, 1.0);
-    return arealight_conic_arcs(ArealightConic(shrink * (from + facets.view), shrink * (per_length * (sum + (0.5 * square) * facets.view)),
+    return arealight_conic_arcs(ArealightConic(shrink * (from + facets.view), shrink
+                                               * (per_length * (sum + (0.5 * square) * facets.view)),
                                                shrink * (to + facets.view)));
 }
 
@@ -104,8 +115,8 @@ vec3 arealight_facet_sky(ArealightFacets facets) {
     return AREALIGHT_PER_ARC * arcs;
 }
 
-// The vector form factor of a convex quad in the shading frame, clipped at the horizon of the axes. Of a light seen from its front its product with
-// arealight_facet_pole is not negative.
+// The vector form factor of a convex quad in the shading frame, clipped at the horizon of the axes. Of a
+// light seen from its front its product with arealight_facet_pole is not negative.
 vec3 arealight_facet_quad(ArealightFacets facets, ArealightQuad quad) {
     quad = arealight_transformed(facets.to_axes, quad);
     if (arealight_highest(quad) <= 0.0) {
@@ -122,7 +133,8 @@ vec3 arealight_facet_quad(ArealightFacets facets, ArealightQuad quad) {
     vec3 arcs = vec3(0.0);
     vec3 from = arealight_unit(fifth);
     for (int index = 0; index < count; index++) {
-        vec3 vertex = index == 0 ? quad.a : index == 1 ? quad.b : index == 2 ? quad.c : index == 3 ? quad.d : fifth;
+        vec3 vertex = index == 0 ? quad.a : index == 1 ? quad.b : index == 2 ? quad.c : index == 3 ? quad.d
+            : fifth;
         vec3 to = arealight_unit(vertex);
         arcs += arealight_facet_edge(facets, from, to);
         from = to;
@@ -160,7 +172,8 @@ void arealight_facet_add(inout ArealightFacetOutline outline, ArealightFacets fa
 void arealight_facet_vertex(inout ArealightFacetOutline outline, ArealightFacets facets, vec3 vertex) {
     bool is_above = vertex.z > 0.0;
     if (is_above != (outline.previous.z > 0.0)) {
-        arealight_facet_add(outline, facets, is_above ? arealight_cut(vertex, outline.previous) : arealight_cut(outline.previous, vertex));
+        arealight_facet_add(outline, facets, is_above ? arealight_cut(vertex, outline.previous)
+                            : arealight_cut(outline.previous, vertex));
     }
     if (is_above) {
         arealight_facet_add(outline, facets, vertex);

@@ -3,15 +3,16 @@
 
 #include "arealight/form_factor/arc.glsl"
 
-// The vector form factor of any simple polygon, convex or concave, of any number of vertices, clipped at the horizon z = 0 of
-// its space: edge by edge as they pass, without a vertex array, a limit to the number of vertices, or a table of cases.
+// The vector form factor of any simple polygon, convex or concave, of any number of vertices, clipped at the
+// horizon z = 0 of its space: edge by edge as they pass, without a vertex array, a limit to the number of
+// vertices, or a table of cases.
 //
 //     ArealightOutline outline = arealight_outline_begin();
 //     for each edge: arealight_outline_edge(outline, from, to);   // unit vectors
 //     vec3 vector = arealight_outline_vector(outline);
 //
-// Promises: as form_factor/quad.glsl states; tested for up to 64 vertices, the rounding of a longer sum grows with its length
-// (1024: 1.4e-6).
+// Promises: as form_factor/quad.glsl states; tested for up to 64 vertices, the rounding of a longer sum grows
+// with its length (1024: 1.4e-6).
 struct ArealightOutline {
     vec3 arcs; // the sum so far
     vec2 turn; // how far the outline has to turn along the horizon to be closed, as a complex number
@@ -21,16 +22,19 @@ ArealightOutline arealight_outline_begin() {
     return ArealightOutline(vec3(0.0), vec2(1.0, 0.0));
 }
 
-// How far an outline has to turn along the horizon to be closed, after a crossing more, a unit vector; `exits`: there the outline goes down.
+// How far an outline has to turn along the horizon to be closed, after a crossing more, a unit vector;
+// `exits`: there the outline goes down.
 //
-// The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that line, add up to
-// less than pi: so it is enough to know their sum's direction, as a product of complex numbers.
+// The crossings of a flat, simple polygon lie on one line, and the angles between them, seen from beside that
+// line, add up to less than pi: so it is enough to know their sum's direction, as a product of complex
+// numbers.
 vec2 arealight_turned_by(vec2 turn, vec2 crossing, bool exits) {
     float y = exits ? -crossing.y : crossing.y;
     return vec2(turn.x * crossing.x - turn.y * y, turn.x * y + turn.y * crossing.x);
 }
 
-// The arc along the horizon that closes an outline, from how far it has to turn; `half_turn` and `front` as in arealight_horizon_arc.
+// The arc along the horizon that closes an outline, from how far it has to turn; `half_turn` and `front` as
+// in arealight_horizon_arc.
 vec3 arealight_closing_arc(vec2 turn, float half_turn, float front) {
     vec2 unit = turn * inversesqrt(dot(turn, turn) + AREALIGHT_LEAST_SQUARE);
     return arealight_horizon_arc(vec2(1.0, 0.0), unit, half_turn, front);
@@ -54,7 +58,8 @@ void arealight_outline_edge(inout ArealightOutline outline, vec3 from, vec3 to) 
     }
 }
 
-// The vector form factor of all edges. Seen from the front z is positive; `front` as in arealight_quad_vector.
+// The vector form factor of all edges. Seen from the front z is positive; `front` as in
+// arealight_quad_vector.
 vec3 arealight_outline_vector(ArealightOutline outline, float front) {
     return AREALIGHT_PER_ARC * (outline.arcs + arealight_closing_arc(outline.turn, -outline.arcs.z, front));
 }
@@ -64,8 +69,8 @@ vec3 arealight_outline_vector(ArealightOutline outline) {
     return arealight_outline_vector(outline, 0.0);
 }
 
-// A polygon clipped at the surface's horizon first, vertex by vertex: they come in the shading frame, whose horizon is the
-// surface's, and what is left of the outline goes on into a lobe's space.
+// A polygon clipped at the surface's horizon first, vertex by vertex: they come in the shading frame, whose
+// horizon is the surface's, and what is left of the outline goes on into a lobe's space.
 struct ArealightClippedOutline {
     ArealightOutline outline;
     vec3 previous; // the vertex before, in the shading frame

@@ -3,20 +3,22 @@
 
 #include "arealight/form_factor/arc.glsl"
 
-// The vector form factor of a convex quad, clipped at the horizon z = 0 of its space: by branches that the invocations of a wave
-// mostly agree on (wholly below, wholly above, crossing with one, two or three vertices above), without an array or a table of
-// cases. A vertex below the horizon is never normalised.
+// The vector form factor of a convex quad, clipped at the horizon z = 0 of its space: by branches that the
+// invocations of a wave mostly agree on (wholly below, wholly above, crossing with one, two or three vertices
+// above), without an array or a table of cases. A vertex below the horizon is never normalised.
 //
-// What is promised of form factors, and tested (docs/stability.md), for vertices from the shading point in a space whose z
-// axis is the normal (diffuse) or in a lobe's cosine space, at distances from 1e-14 to 1e18:
+// What is promised of form factors, and tested (docs/stability.md), for vertices from the shading point in a
+// space whose z axis is the normal (diffuse) or in a lobe's cosine space, at distances from 1e-14 to 1e18:
 //
 //   1. Any bits in, a finite number in [0, 1] out (arealight_form_factor).
-//   2. The result is within 6e-7 of the interval of values that the polygons have whose vertices differ by at most
-//      4 x 2^-24 of their distance.
-//   3. Its error is at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its farthest vertex.
+//   2. The result is within 6e-7 of the interval of values that the polygons have whose vertices differ by at
+//      most 4 x 2^-24 of their distance.
+//   3. Its error is at most 1e-6 + 1e-7 / rho, rho being the distance to the polygon over that to its
+//      farthest vertex.
 //
-// They assume square roots and divisions that round to the last place or nearly: on a device that takes all that Vulkan
-// allows, 2 to 4.5 units, count on as many times the error. `arealight bench stability` measures it.
+// They assume square roots and divisions that round to the last place or nearly: on a device that takes all
+// that Vulkan allows, 2 to 4.5 units, count on as many times the error. `arealight bench stability` measures
+// it.
 
 // The vertices of a convex quad in the order of its outline; a triangle has one of them twice.
 struct ArealightQuad {
@@ -38,7 +40,8 @@ float arealight_highest(ArealightQuad quad) {
     return max(max(quad.a.z, quad.b.z), max(quad.c.z, quad.d.z));
 }
 
-// A quad that crosses the horizon, turned so that a is above it and d is not: of the vertices above a is the first.
+// A quad that crosses the horizon, turned so that a is above it and d is not: of the vertices above a is the
+// first.
 ArealightQuad arealight_turned(ArealightQuad quad) {
     bvec4 above = greaterThan(vec4(quad.a.z, quad.b.z, quad.c.z, quad.d.z), vec4(0.0));
     if ((above.z && !above.y) || (above.w && !above.z)) {
@@ -50,8 +53,8 @@ ArealightQuad arealight_turned(ArealightQuad quad) {
     return quad;
 }
 
-// What is above the horizon of a quad that crosses it, as five vertices in the order of the outline: from where it comes up to where it
-// goes down. With fewer than three vertices above, the last ones are the same.
+// What is above the horizon of a quad that crosses it, as five vertices in the order of the outline: from
+// where it comes up to where it goes down. With fewer than three vertices above, the last ones are the same.
 struct ArealightCutQuad {
     vec3 entry;
     vec3 a;
@@ -68,11 +71,12 @@ ArealightCutQuad arealight_cut_at_horizon(ArealightQuad quad) {
     vec3 entry = arealight_cut(turned.a, turned.d);
     vec3 exit = arealight_cut(c_above ? turned.c : b_above ? turned.b : turned.a,
                               c_above ? turned.d : b_above ? turned.c : turned.b);
-    return ArealightCutQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit, exit, c_above);
+    return ArealightCutQuad(entry, turned.a, b_above ? turned.b : exit, c_above ? turned.c : exit, exit,
+                            c_above);
 }
 
-// The arcs around what is above the horizon of a quad that crosses it: from where the outline comes up to a, on to b and c as
-// far as they are above, to where it goes down, and back along the horizon.
+// The arcs around what is above the horizon of a quad that crosses it: from where the outline comes up to a,
+// on to b and c as far as they are above, to where it goes down, and back along the horizon.
 vec3 arealight_quad_crossing(ArealightQuad quad, float front) {
     ArealightQuad turned = arealight_turned(quad);
     vec3 last = arealight_unit(turned.a);
@@ -96,13 +100,14 @@ vec3 arealight_quad_crossing(ArealightQuad quad, float front) {
     return arcs + arealight_horizon_arc(exit.xy, entry.xy, -arcs.z, front);
 }
 
-// The vector form factor of a convex quad. Seen from its front z is positive. `front`: 1 where it is known to be seen from there, -1 from its
-// back, 0 where that is not known (arealight_horizon_arc).
+// The vector form factor of a convex quad. Seen from its front z is positive. `front`: 1 where it is known to
+// be seen from there, -1 from its back, 0 where that is not known (arealight_horizon_arc).
 vec3 arealight_quad_vector(ArealightQuad quad, float front) {
     vec3 arcs = vec3(0.0);
     if (arealight_highest(quad) > 0.0) {
         if (arealight_lowest(quad) > 0.0) {
-            vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c), d = arealight_unit(quad.d);
+            vec3 a = arealight_unit(quad.a), b = arealight_unit(quad.b), c = arealight_unit(quad.c),
+                d = arealight_unit(quad.d);
             arcs = arealight_arc(a, b) + arealight_arc(b, c) + arealight_arc(c, d) + arealight_arc(d, a);
         } else {
             arcs = arealight_quad_crossing(quad, front);

@@ -4,8 +4,9 @@
 #include "arealight/form_factor/elliptic_arc.glsl"
 #include "arealight/form_factor/outline.glsl"
 
-// Arcs of ellipses as parts of an outline (outline.glsl): the ends of tubes, and disks that are cut by the surface's horizon. Where an arc ends and an edge begins, both have the same
-// direction to the bit, so that an outline is closed whatever the rounding.
+// Arcs of ellipses as parts of an outline (outline.glsl): the ends of tubes, and disks that are cut by the
+// surface's horizon. Where an arc ends and an edge begins, both have the same direction to the bit, so that
+// an outline is closed whatever the rounding.
 
 // A part of an ellipse's outline: center + cos(t) middle + sin(t) side for t from -half to half.
 struct ArealightRim {
@@ -20,7 +21,8 @@ struct ArealightRim {
 struct ArealightRimArc {
     ArealightCone cone;   // its frame from the ellipse's into cosine space, right-handed
     float way;            // 1 where the cone's parameter grows with the rim's, else -1
-    vec2 begin;           // cosine and sine of the ends in the cone's parameter, which grows from begin to end
+    // Cosine and sine of the ends in the cone's parameter, which grows from begin to end
+    vec2 begin;
     vec2 end;
     bool reflex;          // more than half of the cone's outline
 };
@@ -30,7 +32,8 @@ vec3 arealight_cone_direction(ArealightCone cone, vec2 point) {
     return cone.frame * vec3(cone.a * point.x, cone.b * point.y, cone.c);
 }
 
-// Where a direction, given by its parts along the columns of a cone's frame, lies on its outline, which it is on but for rounding.
+// Where a direction, given by its parts along the columns of a cone's frame, lies on its outline, which it is
+// on but for rounding.
 vec2 arealight_cone_parameter(ArealightCone cone, vec3 along) {
     vec2 point = vec2(along.x * cone.b, along.y * cone.a);
     point *= inversesqrt(max(dot(point, point), 1e-37));
@@ -40,7 +43,8 @@ vec2 arealight_cone_parameter(ArealightCone cone, vec3 along) {
     return cone.b > 1e-3 * cone.a ? point : vec2(cosine, along.y < 0.0 ? -sine : sine);
 }
 
-// a b, row by row: each row of the product takes the place of one of `a`, so that a GPU needs registers for two matrices, not for three.
+// a b, row by row: each row of the product takes the place of one of `a`, so that a GPU needs registers for
+// two matrices, not for three.
 mat3 arealight_product_by_rows(mat3 a, mat3 b) {
     vec3 x = vec3(a[0].x, a[1].x, a[2].x) * b;
     vec3 y = vec3(a[0].y, a[1].y, a[2].y) * b;
@@ -57,9 +61,11 @@ ArealightRimArc arealight_rim_arc(ArealightRim rim, mat3 transform, inout bool f
     finite = finite && arealight_is_finite(ellipse.square);
     // The point is behind the front: seen from it the rim's parameter runs as the cone's does
     arc.way = ellipse.front ? -1.0 : 1.0;
-    // The middle of the chord between the ends, and half of it, in the ellipse's frame: of its plane the center's distance is known
+    // The middle of the chord between the ends, and half of it, in the ellipse's frame: of its plane the
+    // center's distance is known
     vec2 width = ellipse.scale * rim.half_width;
-    vec2 chord = ellipse.center.xy + width.x * vec2(dot(middle, ellipse.longer), dot(middle, ellipse.shorter));
+    vec2 chord = ellipse.center.xy + width.x
+        * vec2(dot(middle, ellipse.longer), dot(middle, ellipse.shorter));
     vec2 half_chord = arc.way * width.y * vec2(dot(side, ellipse.longer), dot(side, ellipse.shorter));
     arc.cone = arealight_ellipse_cone(ellipse, arealight_confocal_root(ellipse));
     // And in the cone's
@@ -101,16 +107,19 @@ vec2 arealight_cone_crossing(ArealightCone cone, vec2 point) {
     return direction * inversesqrt(max(dot(direction, direction), 1e-37));
 }
 
-// Whether a point of a cone's outline is on the arc between two others, t growing; `reflex`: the arc is more than half of it.
+// Whether a point of a cone's outline is on the arc between two others, t growing; `reflex`: the arc is more
+// than half of it.
 bool arealight_arc_has(vec2 point, vec2 begin, vec2 end, bool reflex) {
     bool after_begin = begin.x * point.y - begin.y * point.x > 0.0;
     bool before_end = point.x * end.y - point.y * end.x > 0.0;
     return reflex ? after_begin || before_end : after_begin && before_end;
 }
 
-// Adds an arc to an outline, clipped at the horizon; `way` is 1 in the direction of the rim's own parameter, else -1.
-// `first_above` and `last_above`: the ends in the order of the cone's parameter are above the horizon.
-void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, bool first_above, bool last_above, float way) {
+// Adds an arc to an outline, clipped at the horizon; `way` is 1 in the direction of the rim's own parameter,
+// else -1. `first_above` and `last_above`: the ends in the order of the cone's parameter are above the
+// horizon.
+void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, bool first_above,
+                           bool last_above, float way) {
     ArealightCone cone = arc.cone;
     way *= arc.way;
     // Where the cone's whole outline crosses the horizon
@@ -142,8 +151,8 @@ void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, 
         outline.turn = arealight_turned_by(outline.turn, arealight_cone_crossing(cone, fall), way > 0.0);
         end = last_above ? end : fall;
     }
-    // What is left is more than half of the outline by its ends' turn. Where they meet it is none of it, or all where nearly all of
-    // the outline is above and the arc is more than half of it
+    // What is left is more than half of the outline by its ends' turn. Where they meet it is none of it, or
+    // all where nearly all of the outline is above and the arc is more than half of it
     vec2 chord = end - begin;
     bool turned = begin.x * end.y - begin.y * end.x < 0.0;
     bool all = arc.reflex && cosine < -0.999;
@@ -155,10 +164,10 @@ void arealight_outline_rim(inout ArealightOutline outline, ArealightRimArc arc, 
     outline.arcs += way * (cone.frame * integral);
 }
 
-// The form factor of an ellipse clipped at two horizons, in [0, 1]: that of cosine space, and the surface's, above which a
-// vector's height is known before it is transformed: `heights` are those of center, axis_u and axis_v. All else is as in
-// arealight_ellipse_form_factor, error 2e-6; `horizon` is the sine of the elevation below which a corner counts as on the
-// horizon of cosine space.
+// The form factor of an ellipse clipped at two horizons, in [0, 1]: that of cosine space, and the surface's,
+// above which a vector's height is known before it is transformed: `heights` are those of center, axis_u and
+// axis_v. All else is as in arealight_ellipse_form_factor, error 2e-6; `horizon` is the sine of the elevation
+// below which a corner counts as on the horizon of cosine space.
 float arealight_ellipse_both_horizons(vec3 center, vec3 axis_u, vec3 axis_v, vec3 heights, bool two_sided,
                                       float horizon) {
     float rise = sqrt(heights.y * heights.y + heights.z * heights.z);

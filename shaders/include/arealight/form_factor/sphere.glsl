@@ -3,22 +3,25 @@
 
 #include "arealight/form_factor/elliptic_arc.glsl"
 
-// The form factor of a sphere: for Lambert's lobe in closed form, for a fitted lobe by the disk that looks the same.
-// A sphere shines outwards; from inside, or on it, a one-sided sphere gives 0 and a two-sided one 1.
+// The form factor of a sphere: for Lambert's lobe in closed form, for a fitted lobe by the disk that looks
+// the same. A sphere shines outwards; from inside, or on it, a one-sided sphere gives 0 and a two-sided one
+// 1.
 
-// (angle - sin(angle) cos(angle)) for an angle of [0, pi / 2] whose sine times cosine is `product`: relative error 3e-7.
+// (angle - sin(angle) cos(angle)) for an angle of [0, pi / 2] whose sine times cosine is `product`: relative
+// error 3e-7.
 float arealight_circle_segment(float angle, float product) {
     float w = 4.0 * angle * angle;
     float series = 1.0 - w * (0.05 - w * (0.0011904762 - w * (1.6534392e-5 - w * 1.5031265e-7)));
     return w < 1.0 ? 0.66666667 * angle * angle * angle * series : angle - product;
 }
 
-// The form factor of a sphere, clipped at the horizon z = 0: in [0, 1]. `center` is from the shading point, in a space
-// whose z axis is the normal and which keeps lengths, in any unit; for any bits the result is a finite number.
+// The form factor of a sphere, clipped at the horizon z = 0: in [0, 1]. `center` is from the shading point,
+// in a space whose z axis is the normal and which keeps lengths, in any unit; for any bits the result is a
+// finite number.
 //
-// Error: 2e-7, and 3e-6 relative to the whole sphere's at any distance; in contact as if center and radius were moved by
-// 4 x 2^-24.
-// Source: the closed form for a spherical source (Snyder 1996), its terms rearranged so that they do not cancel.
+// Error: 2e-7, and 3e-6 relative to the whole sphere's at any distance; in contact as if center and radius
+// were moved by 4 x 2^-24. Source: the closed form for a spherical source (Snyder 1996), its terms rearranged
+// so that they do not cancel.
 float arealight_sphere_form_factor(vec3 center, float radius, bool two_sided) {
     float scale = arealight_power_of_two_scale(max(arealight_max_component(center), radius));
     center *= scale;
@@ -52,8 +55,8 @@ void arealight_perpendiculars(vec3 axis, out vec3 x, out vec3 y) {
     y = vec3(b, side + axis.y * axis.y * a, -axis.y);
 }
 
-// The disk that covers the same directions as a sphere, as an ellipse's arguments: transform each of the three by a
-// lobe's matrix. Its front is to the point. In the space of `center`, which keeps lengths.
+// The disk that covers the same directions as a sphere, as an ellipse's arguments: transform each of the
+// three by a lobe's matrix. Its front is to the point. In the space of `center`, which keeps lengths.
 struct ArealightSilhouette {
     vec3 center;
     vec3 axis_u;

@@ -5,31 +5,32 @@
 #include "arealight/form_factor/tube_outline.glsl"
 #include "arealight/form_factor/tube_small.glsl"
 
-// The form factor of a tube: a cylinder without or with flat caps, or a capsule. A tube shines outwards; from inside it
-// gives 0.
+// The form factor of a tube: a cylinder without or with flat caps, or a capsule. A tube shines outwards; from
+// inside it gives 0.
 //
-// A convex body of constant radiance sends what its silhouette does. A tube's outline is two arcs of circles, which
-// elliptic_arc.glsl integrates in closed form under any linear transform, and two edges between their ends. So the outline is
-// exact, whatever the tube's thickness, and is clipped exactly at the horizon.
+// A convex body of constant radiance sends what its silhouette does. A tube's outline is two arcs of circles,
+// which elliptic_arc.glsl integrates in closed form under any linear transform, and two edges between their
+// ends. So the outline is exact, whatever the tube's thickness, and is clipped exactly at the horizon.
 //
 //     ArealightTube tube = arealight_tube(center, half_axis, radius, ends); once a shading point
 //     float f = arealight_tube_form_factor(tube, to_cosine, horizon); for each lobe
 
-// The form factor of a tube, clipped at the horizon z = 0 of a lobe's cosine space: in [0, 1]. `transform` takes the tube's
-// space into cosine space; `horizon` is the sine of the elevation below which an end of a rim counts as on the horizon:
-// arealight_horizon_width. For any bits the result is a finite number.
+// The form factor of a tube, clipped at the horizon z = 0 of a lobe's cosine space: in [0, 1]. `transform`
+// takes the tube's space into cosine space; `horizon` is the sine of the elevation below which an end of a
+// rim counts as on the horizon: arealight_horizon_width. For any bits the result is a finite number.
 //
-// Error: 2e-6 where the point is a tenth of the radius away or more. The difference form makes the error relative
-// where the ends are small (AREALIGHT_TUBE_SMALL): for a tube within a fifth of its distance it is at most 1e-5 of what the
-// whole tube sends from the zenith, out to any distance, however it is turned and cut; for a longer one as thin as
-// AREALIGHT_TUBE_THIN 1e-4 of that, unless it is seen along its axis.
+// Error: 2e-6 where the point is a tenth of the radius away or more. The difference form makes the error
+// relative where the ends are small (AREALIGHT_TUBE_SMALL): for a tube within a fifth of its distance it is
+// at most 1e-5 of what the whole tube sends from the zenith, out to any distance, however it is turned and
+// cut; for a longer one as thin as AREALIGHT_TUBE_THIN 1e-4 of that, unless it is seen along its axis.
 float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horizon) {
     if (!tube.seen) {
         return 0.0;
     }
     if (!tube.outside) {
         ArealightSilhouette disk = arealight_tube_disk(tube);
-        return arealight_ellipse_form_factor(transform * disk.center, transform * disk.axis_u, transform * disk.axis_v, true);
+        return arealight_ellipse_form_factor(transform * disk.center, transform * disk.axis_u, transform
+                                             * disk.axis_v, true);
     }
     if (AREALIGHT_USES_DIFFERENCE) {
         bool is_small;
@@ -38,7 +39,8 @@ float arealight_tube_form_factor(ArealightTube tube, mat3 transform, float horiz
             return form_factor;
         }
     }
-    // From the start's rim along one edge to the end's, and back. A loop: one rim after the other, each made where it is used
+    // From the start's rim along one edge to the end's, and back. A loop: one rim after the other, each made
+    // where it is used
     ArealightOutline outline = arealight_outline_begin();
     bool finite = true;
     vec3 first = vec3(0.0);

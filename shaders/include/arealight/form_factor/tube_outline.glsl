@@ -4,16 +4,16 @@
 #include "arealight/form_factor/rim.glsl"
 #include "arealight/form_factor/sphere.glsl"
 
-// A tube as it is seen: a cylinder without or with flat caps, or a capsule. Its outline is two arcs of circles and two edges
-// between their ends.
+// A tube as it is seen: a cylinder without or with flat caps, or a capsule. Its outline is two arcs of
+// circles and two edges between their ends.
 
 // How a tube ends: as a literal or a specialisation constant, or as a value.
 const int AREALIGHT_TUBE_OPEN = 0;  // the lateral surface alone shines
 const int AREALIGHT_TUBE_FLAT = 1;  // flat caps shine too
 const int AREALIGHT_TUBE_ROUND = 2; // half spheres: a capsule
 
-// A tube as seen from the shading point, in the space of its arguments, in any unit. All of its outline follows from
-// this little, rim by rim, so that no lobe's work holds more than one rim.
+// A tube as seen from the shading point, in the space of its arguments, in any unit. All of its outline
+// follows from this little, rim by rim, so that no lobe's work holds more than one rim.
 struct ArealightTube {
     vec3 axis;         // unit, from start to end
     vec3 towards;      // unit, from the axis to the point
@@ -38,7 +38,8 @@ ArealightRim arealight_tube_rim(ArealightTube tube, float outwards) {
     vec3 side = cross(tube.axis, tube.towards);
     // Half the angle under which the circle of the tube sees its own contacts
     float contact = tube.radius / tube.distance;
-    float sine = sqrt(max((tube.distance - tube.radius) * (tube.distance + tube.radius), 0.0)) / tube.distance;
+    float sine = sqrt(max((tube.distance - tube.radius) * (tube.distance + tube.radius),
+                          0.0)) / tube.distance;
     ArealightRim rim;
     // The outer part of a half sphere's circle, the far half of a rim where the cap behind it is seen
     rim.reflex = tube.ends != AREALIGHT_TUBE_OPEN && outwards * place < 0.0;
@@ -73,8 +74,8 @@ ArealightSilhouette arealight_tube_disk(ArealightTube tube) {
     return ArealightSilhouette(center, axis_u * tube.radius, axis_v * tube.radius, false);
 }
 
-// What is seen of a tube. Its `center` is from the shading point, its axis from center - half_axis to center + half_axis, in
-// a space that keeps lengths, in any unit; lengths from 1e-14 to 1e18.
+// What is seen of a tube. Its `center` is from the shading point, its axis from center - half_axis to center
+// + half_axis, in a space that keeps lengths, in any unit; lengths from 1e-14 to 1e18.
 ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends) {
     ArealightTube tube;
     // The difference form takes fourth powers of distances
@@ -90,7 +91,8 @@ ArealightTube arealight_tube(vec3 center, vec3 half_axis, float radius, int ends
     tube.start = dot(start, tube.axis);
     tube.end = dot(end, tube.axis);
     tube.half_length = dot(half_axis, tube.axis);
-    // From the axis to the point, by the nearer end, or the center where that is nearer: its error is a part of this distance
+    // From the axis to the point, by the nearer end, or the center where that is nearer: its error is a part
+    // of this distance
     vec3 near = dot(start, start) < dot(end, end) ? start : end;
     near = dot(center, center) < dot(near, near) ? center : near;
     vec3 foot = near - tube.axis * dot(near, tube.axis);

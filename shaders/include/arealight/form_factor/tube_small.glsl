@@ -5,30 +5,33 @@
 #include "arealight/form_factor/rim.glsl"
 #include "arealight/form_factor/tube_outline.glsl"
 
-// The form factor of a tube whose ends are small before their distance, with relative precision: the difference form of a
-// tube.
+// The form factor of a tube whose ends are small before their distance, with relative precision: the
+// difference form of a tube.
 //
-// Its outline is a polygon, of the ends of the two arcs, and the segments of ellipses between the arcs and their chords. The
-// polygon is integrated in the difference form (difference.glsl). A segment is flat: what it sends is (n.p) z / |p|^4 integrated
-// over it, n.p being the same for all its points, and z / |p|^4 an expansion about its centroid. Nothing cancels in either, and what is cut at the horizon is cut as it always is.
+// Its outline is a polygon, of the ends of the two arcs, and the segments of ellipses between the arcs and
+// their chords. The polygon is integrated in the difference form (difference.glsl). A segment is flat: what
+// it sends is (n.p) z / |p|^4 integrated over it, n.p being the same for all its points, and z / |p|^4 an
+// expansion about its centroid. Nothing cancels in either, and what is cut at the horizon is cut as it always
+// is.
 //
 // A line takes the polygon's place where the tube is so thin that the polygon would lose digits.
 
-// An end is small where the sum of the squares of its half axes is less than this part of its squared distance: where its radius
-// is a 45th of that, or less.
+// An end is small where the sum of the squares of its half axes is less than this part of its squared
+// distance: where its radius is a 45th of that, or less.
 const float AREALIGHT_TUBE_SMALL = 1.0 / 1024.0;
 
-// A tube with small ends is a line between them where its width in cosine space is less than AREALIGHT_TUBE_THIN of the axis's
-// distance and less than AREALIGHT_TUBE_SLIM of its length; and where the horizon cuts an end, if what a line is cut
-// otherwise is less than AREALIGHT_TUBE_CUT of what the whole tube sends from the zenith.
+// A tube with small ends is a line between them where its width in cosine space is less than
+// AREALIGHT_TUBE_THIN of the axis's distance and less than AREALIGHT_TUBE_SLIM of its length; and where the
+// horizon cuts an end, if what a line is cut otherwise is less than AREALIGHT_TUBE_CUT of what the whole tube
+// sends from the zenith.
 const float AREALIGHT_TUBE_THIN = 3e-3;
 const float AREALIGHT_TUBE_SLIM = 1.0 / 64.0;
 const float AREALIGHT_TUBE_CUT = 2e-6;
 
-// The contour integral p x dp / |p|^2 around a segment of a small ellipse, its z: -2 pi times its form factor if its
-// front is seen. The segment lies between an arc of center + cos(t) middle + sin(t) side and its chord; what is below the
-// horizon counts as negative.
-// Error: 8 (size / distance)^4 + .2 (size / distance)^3 of the whole ellipse's at the zenith, and rounding of it.
+// The contour integral p x dp / |p|^2 around a segment of a small ellipse, its z: -2 pi times its form factor
+// if its front is seen. The segment lies between an arc of center + cos(t) middle + sin(t) side and its
+// chord; what is below the horizon counts as negative. Error: 8 (size / distance)^4 + .2 (size / distance)^3
+// of the whole ellipse's at the zenith, and rounding of it.
 float arealight_small_segment(vec3 center, vec3 middle, vec3 side, ArealightArcSpan arc) {
     float cosine = arc.half_width.x;
     float sine = arc.half_width.y;
@@ -46,7 +49,8 @@ float arealight_small_segment(vec3 center, vec3 middle, vec3 side, ArealightArcS
     float slope = dot(balance, along) * reciprocal;
     float slope_across = dot(balance, across) * reciprocal;
     float bend = moment * (12.0 * slope * slope - 2.0 * dot(along, along) * reciprocal)
-               + moment_across * (12.0 * slope_across * slope_across - 2.0 * dot(across, across) * reciprocal);
+               + moment_across * (12.0 * slope_across * slope_across - 2.0 * dot(across, across)
+                                  * reciprocal);
     float tilt = 4.0 * (along.z * moment * slope + across.z * moment_across * slope_across);
     float weighted = balance.z * (area + bend) - tilt;
     return 2.0 * dot(cross(along, across), center) * reciprocal * (weighted * reciprocal);
@@ -64,7 +68,8 @@ struct ArealightSmallEnd {
 };
 
 // The end whose rim has its center at `offset` from the anchor; `axes` are its middle and side.
-ArealightSmallEnd arealight_small_end(ArealightAnchor anchor, vec3 offset, vec3 middle, vec3 side, vec2 half_width) {
+ArealightSmallEnd arealight_small_end(ArealightAnchor anchor, vec3 offset, vec3 middle, vec3 side,
+                                      vec2 half_width) {
     ArealightSmallEnd end;
     vec3 center = anchor.position + offset;
     end.small = dot(middle, middle) + dot(side, side) < AREALIGHT_TUBE_SMALL * dot(center, center);
@@ -94,7 +99,8 @@ ArealightSmallEnd arealight_small_end(ArealightAnchor anchor, vec3 offset, vec3 
     if (begins != ends) {
         end.crossing = arealight_horizon_vertex(anchor, place);
     }
-    // The arc from there to the end that is above. It is more than half of the rim only if it has the rim's middle
+    // The arc from there to the end that is above. It is more than half of the rim only if it has the rim's
+    // middle
     vec2 from = begins ? vec2(half_width.x, -half_width.y) : point;
     vec2 to = begins ? point : half_width;
     bool turned = from.x * to.y - from.y * to.x < 0.0 || dot(to - from, to - from) < 1e-6;
@@ -117,10 +123,10 @@ ArealightSmallEnd arealight_small_end(ArealightAnchor anchor, vec3 offset, vec3 
     return end;
 }
 
-// The form factor of a thin tube's lateral surface, clipped at the horizon, with relative precision: a line of the
-// tube's width as it is seen. It goes from `start` to `start` + `along`; `width` is half of the tube's in cosine space, `slant` half the
-// difference of heights across it, which counts where the horizon cuts it between its ends.
-// Relative error: (width / distance)^2 and 4e-6.
+// The form factor of a thin tube's lateral surface, clipped at the horizon, with relative precision: a line
+// of the tube's width as it is seen. It goes from `start` to `start` + `along`; `width` is half of the tube's
+// in cosine space, `slant` half the difference of heights across it, which counts where the horizon cuts it
+// between its ends. Relative error: (width / distance)^2 and 4e-6.
 float arealight_line_form_factor(vec3 start, vec3 along, float width, float slant) {
     float end_height = start.z + along.z;
     if (max(start.z, end_height) <= 0.0) {
@@ -146,20 +152,24 @@ float arealight_line_form_factor(vec3 start, vec3 along, float width, float slan
     float turn = arealight_arctangent(distance * extent, square + begin * finish);
     float across = 0.5 * foot.z * (extent * (square - begin * finish) * both * reciprocal + turn / square);
     float slope = 0.5 * axis.z * distance * extent * (begin + finish) * both;
-    // Cut at a slant, the height over the horizon has a larger integral than cut across, by slant^2 / (6 slope)
+    // Cut at a slant, the height over the horizon has a larger integral than cut across, by slant^2 / (6
+    // slope)
     float cut = start.z < 0.0 ? begin : finish;
     float cut_square = square + cut * cut;
-    float slanted = part < 1.0 ? slant * slant * distance / (6.0 * max(abs(axis.z), 1e-37) * cut_square * cut_square) : 0.0;
+    float slanted = part < 1.0 ? slant * slant
+        * distance / (6.0 * max(abs(axis.z), 1e-37) * cut_square * cut_square) : 0.0;
     return 2.0 * width * AREALIGHT_INVERSE_PI * (across + slope + slanted);
 }
 
-// The form factor of a tube seen from outside, of which `is_small` becomes false, and the result means nothing, where an
-// end is not small. Clipped at the horizon; arguments as arealight_tube_form_factor's.
+// The form factor of a tube seen from outside, of which `is_small` becomes false, and the result means
+// nothing, where an end is not small. Clipped at the horizon; arguments as arealight_tube_form_factor's.
 float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, out bool is_small) {
     // The anchor is the tube's center
     vec3 half_axis = transform * (tube.half_length * tube.axis);
     float extent = sqrt(dot(half_axis, half_axis));
-    ArealightAnchor anchor = arealight_anchor(transform * arealight_on_axis(tube, 0.5 * (tube.start + tube.end)), extent, horizon, 0.0);
+    ArealightAnchor anchor = arealight_anchor(transform
+                                              * arealight_on_axis(tube, 0.5 * (tube.start + tube.end)),
+        extent, horizon, 0.0);
     // Both ends. A half sphere has its outline on a disk about its center
     ArealightSmallEnd ends[2];
     for (int i = 0; i < 2; i++) {
@@ -168,7 +178,8 @@ float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, ou
         float square = place * place + tube.distance * tube.distance;
         float grow = square / max(square - tube.radius * tube.radius, 1e-37);
         mat3 into = transform * (tube.ends == AREALIGHT_TUBE_ROUND ? grow : 1.0);
-        ends[i] = arealight_small_end(anchor, i == 0 ? -half_axis : half_axis, into * rim.middle, into * rim.side,
+        ends[i] = arealight_small_end(anchor, i == 0 ? -half_axis : half_axis, into * rim.middle, into
+                                      * rim.side,
                                       rim.half_width);
     }
     is_small = ends[0].small && ends[1].small;
@@ -185,10 +196,12 @@ float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, ou
     bool cut = ends[0].cut || ends[1].cut;
     float slant = max(ends[0].slant, ends[1].slant);
     float away = anchor.distant ? anchor.distance : distance;
-    bool straight = !cut || slant * slant <= 2.0 * AREALIGHT_TUBE_CUT * away * max(2.0 * abs(half_axis.z), slant);
+    bool straight = !cut || slant * slant <= 2.0 * AREALIGHT_TUBE_CUT * away
+        * max(2.0 * abs(half_axis.z), slant);
     bool slim = width < 2.0 * AREALIGHT_TUBE_SLIM * extent;
     if (thin && slim && straight) {
-        float line = arealight_line_form_factor(transform * arealight_on_axis(tube, tube.start), 2.0 * half_axis, width,
+        float line = arealight_line_form_factor(transform * arealight_on_axis(tube, tube.start), 2.0
+                                                * half_axis, width,
                                                 cut ? 0.0 : slant);
         float sides = segments * AREALIGHT_INVERSE_TWO_PI;
         float squares = tube.start * tube.start + tube.end * tube.end + tube.distance * tube.distance;

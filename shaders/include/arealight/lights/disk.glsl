@@ -5,9 +5,9 @@
 #include "arealight/light_kind.glsl"
 #include "arealight/textures/footprint.glsl"
 
-// A flat disk or ellipse, center + cos(t) axis_u + sin(t) axis_v, of constant radiance or with an image that multiplies it. The
-// image's rows run along axis_u, its top row is where axis_v points to, seen from the front, and the parallelogram of both axes
-// touches its edges.
+// A flat disk or ellipse, center + cos(t) axis_u + sin(t) axis_v, of constant radiance or with an image that
+// multiplies it. The image's rows run along axis_u, its top row is where axis_v points to, seen from the
+// front, and the parallelogram of both axes touches its edges.
 struct ArealightDiskLight {
     vec3 radiance;  // of the front, W/(m^2 sr)
     vec3 center;    // relative to the origin of ArealightSurface.position
@@ -66,9 +66,11 @@ vec3 arealight_image_average(mat3 space, ArealightLocalDisk local, vec3 vector) 
     if (AREALIGHT_HAS_TEXTURED_DISKS && local.image != AREALIGHT_NO_IMAGE) {
         vec3 center = space * local.center;
         ArealightLobeImage image =
-            arealight_lobe_image(arealight_disk_image(local.image, local.axis_u, local.axis_v), center, space);
+            arealight_lobe_image(arealight_disk_image(local.image, local.axis_u, local.axis_v), center,
+                                 space);
         image.end = AREALIGHT_ELLIPSE_IMAGE_END;
-        return arealight_footprint(image, arealight_ellipse_mean_direction(center, space * local.axis_u, space * local.axis_v));
+        return arealight_footprint(image, arealight_ellipse_mean_direction(center, space * local.axis_u, space
+                                                                           * local.axis_v));
     }
 #endif
     return vec3(1.0);

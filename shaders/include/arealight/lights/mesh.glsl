@@ -3,12 +3,12 @@
 
 #include "arealight/lights/polygon.glsl"
 
-// The host's bridge to the faces of meshes: at the index before those of a face's vertices, the unit normal of its front in xyz, and
-// in w how many vertices it has.
+// The host's bridge to the faces of meshes: at the index before those of a face's vertices, the unit normal
+// of its front in xyz, and in w how many vertices it has.
 vec4 arealight_bridge_face(uint index);
 
-// Flat, simple polygons, one after another, of one constant radiance. The sum is of what each emits: where one hides another,
-// both count.
+// Flat, simple polygons, one after another, of one constant radiance. The sum is of what each emits: where
+// one hides another, both count.
 struct ArealightMeshLight {
     vec3 radiance;     // of the fronts, W/(m^2 sr)
     vec3 center;       // relative to the origin of ArealightSurface.position
@@ -34,7 +34,8 @@ bool arealight_to_local(ArealightPoint point, ArealightMeshLight light, out Area
     return true;
 }
 
-// A face of a mesh: its vertices, whose last one is before the next face's row, and the side that the point sees of it.
+// A face of a mesh: its vertices, whose last one is before the next face's row, and the side that the point
+// sees of it.
 struct ArealightMeshFace {
     uint first;
     uint end;
@@ -58,7 +59,8 @@ vec3 arealight_vector_form_factor(mat3 space, ArealightLocalMesh local) {
         ArealightMeshFace face = arealight_mesh_face(local, row);
         if (face.side != 0.0) {
             // Seen from the back an outline goes around the other way
-            sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first, face.end, face.side);
+            sum += face.side * arealight_outline_form_factor(space, center, local.to_frame, face.first,
+                                                             face.end, face.side);
         }
         row = face.end;
     }

@@ -6,11 +6,12 @@
 #include "arealight/lights/quad.glsl"
 #include "arealight/textures/split.glsl"
 
-// The host's bridge to the outlines of polygon and mesh lights: the position of vertex `index`, from its light's center.
+// The host's bridge to the outlines of polygon and mesh lights: the position of vertex `index`, from its
+// light's center.
 vec3 arealight_bridge_vertex(uint index);
 
-// A flat, simple polygon of any number of vertices, convex or not, counter-clockwise seen from its front; of constant radiance,
-// or with an image that multiplies it.
+// A flat, simple polygon of any number of vertices, convex or not, counter-clockwise seen from its front; of
+// constant radiance, or with an image that multiplies it.
 struct ArealightPolygonLight {
     vec3 radiance;     // of the front, W/(m^2 sr)
     vec3 center;       // relative to the origin of ArealightSurface.position
@@ -53,7 +54,8 @@ bool arealight_to_local(ArealightPoint point, ArealightPolygonLight light, out A
     return light.vertex_count != 0u && local.side != 0.0;
 }
 
-// The vector form factor of the outline of vertices `first` to `end` - 1, not empty, in a space, clipped at its horizon.
+// The vector form factor of the outline of vertices `first` to `end` - 1, not empty, in a space, clipped at
+// its horizon.
 vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
     vec3 in_space = space * center;
     mat3 to_space = space * to_frame;
@@ -72,8 +74,10 @@ vec3 arealight_outline_in_space(mat3 space, vec3 center, mat3 to_frame, uint fir
 }
 
 // The same, clipped at the surface's horizon first.
-vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
-    ArealightClippedOutline clipped = arealight_clipped_begin(center + to_frame * arealight_bridge_vertex(end - 1u));
+vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
+                                     float front) {
+    ArealightClippedOutline clipped = arealight_clipped_begin(center + to_frame
+                                                              * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 vertex = center + to_frame * arealight_bridge_vertex(index);
@@ -84,14 +88,16 @@ vec3 arealight_outline_above_surface(mat3 space, vec3 center, mat3 to_frame, uin
 }
 
 // The same as the two above in the difference form, with relative precision for small outlines.
-vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
+vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
+                                     float front) {
     mat3 to_space = space * to_frame;
     float extent = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 offset = to_space * arealight_bridge_vertex(index);
         extent = max(extent, dot(offset, offset));
     }
-    ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space), front);
+    ArealightAnchor anchor = arealight_anchor(space * center, sqrt(extent), arealight_horizon_width(space),
+                                              front);
     ArealightDifferenceOutline outline = arealight_difference_begin();
     vec3 previous = to_frame * arealight_bridge_vertex(end - 1u);
     for (uint index = first; index < end; index++) {
@@ -112,8 +118,10 @@ vec3 arealight_outline_by_difference(mat3 space, vec3 center, mat3 to_frame, uin
     return arealight_difference_vector(outline, anchor);
 }
 
-// The vector form factor of an outline that is seen from its front (1) or its back (-1), as the options have it.
-vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint first, uint end, float front) {
+// The vector form factor of an outline that is seen from its front (1) or its back (-1), as the options have
+// it.
+vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint first, uint end,
+                                   float front) {
     if (AREALIGHT_USES_DIFFERENCE) {
         return arealight_outline_by_difference(space, center, to_frame, first, end, front);
     }
@@ -123,11 +131,14 @@ vec3 arealight_outline_form_factor(mat3 space, vec3 center, mat3 to_frame, uint 
     return arealight_outline_in_space(space, center, to_frame, first, end, front);
 }
 
-// The vector form factor of facets of the outline of vertices `first` to `end` - 1, not empty, clipped at the horizon of their axes.
-vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+// The vector form factor of facets of the outline of vertices `first` to `end` - 1, not empty, clipped at the
+// horizon of their axes.
+vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 to_frame, uint first,
+                                     uint end) {
     vec3 in_axes = facets.to_axes * center;
     mat3 to_axes = facets.to_axes * to_frame;
-    ArealightFacetOutline outline = arealight_facet_begin(in_axes + to_axes * arealight_bridge_vertex(end - 1u));
+    ArealightFacetOutline outline = arealight_facet_begin(in_axes + to_axes
+                                                          * arealight_bridge_vertex(end - 1u));
     float heights = 0.0;
     for (uint index = first; index < end; index++) {
         vec3 vertex = in_axes + to_axes * arealight_bridge_vertex(index);
@@ -138,7 +149,8 @@ vec3 arealight_facet_outline_in_axes(ArealightFacets facets, vec3 center, mat3 t
 }
 
 // The same, clipped at the surface's horizon first: that of a coat's axes is another one.
-vec3 arealight_facet_outline_above_surface(ArealightFacets facets, vec3 center, mat3 to_frame, uint first, uint end) {
+vec3 arealight_facet_outline_above_surface(ArealightFacets facets, vec3 center, mat3 to_frame, uint first,
+                                           uint end) {
     ArealightFacetLoop outline = arealight_facet_loop();
     vec3 previous = center + to_frame * arealight_bridge_vertex(end - 1u);
     float heights = 0.0;
@@ -183,20 +195,23 @@ vec3 arealight_facet_form_factor(ArealightFacets facets, ArealightLocalPolygon l
 
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalPolygon local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
-    return front * arealight_outline_form_factor(space, local.center, local.to_frame, local.first, local.end, front);
+    return front * arealight_outline_form_factor(space, local.center, local.to_frame, local.first, local.end,
+                                                 front);
 }
 
 #if AREALIGHT_LIGHT_TEXTURES
 
 // The sum of form factors times colours, and of form factors, of `count` by `count` parts of a part.
-vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image, ArealightQuad quad, float count) {
+vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image,
+                         ArealightQuad quad, float count) {
     ArealightPart whole = arealight_part(local.image, quad);
     vec4 sum = vec4(0.0);
     for (float y = 0.0; y < count; y += 1.0) {
         for (float x = 0.0; x < count; x += 1.0) {
             ArealightPart part = arealight_split_part(whole, vec2(x, y), count);
             ArealightQuad quad_in_frame = arealight_quad_in_frame(local.to_frame, local.center, part.quad);
-            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false, local.center, local.side);
+            ArealightLocalQuad in_frame = ArealightLocalQuad(quad_in_frame, quad_in_frame, false,
+                                                             local.center, local.side);
             if (arealight_cut_local(in_frame, local.to_frame, part.quad)) {
                 vec3 vector = arealight_vector_form_factor(space, in_frame);
                 float form_factor = arealight_form_factor(vector);
@@ -207,21 +222,26 @@ vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeI
     return sum;
 }
 
-// The mean colour that a lobe sees of an image by parts of the light: those of a convex quad, or of the triangles about the center of
-// any other outline, of which those that run against the outline are taken away again.
-vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image, float form_factor) {
+// The mean colour that a lobe sees of an image by parts of the light: those of a convex quad, or of the
+// triangles about the center of any other outline, of which those that run against the outline are taken away
+// again.
+vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image,
+                           float form_factor) {
     vec4 sum = vec4(0.0);
     if (local.is_quad) {
         uint last = local.end - 1u;
-        ArealightQuad quad = ArealightQuad(arealight_bridge_vertex(local.first), arealight_bridge_vertex(local.first + 1u),
-                                           arealight_bridge_vertex(min(local.first + 2u, last)), arealight_bridge_vertex(last));
+        ArealightQuad quad = ArealightQuad(arealight_bridge_vertex(local.first),
+                                           arealight_bridge_vertex(local.first + 1u),
+                                           arealight_bridge_vertex(min(local.first + 2u, last)),
+                                               arealight_bridge_vertex(last));
         sum = arealight_split_sum(space, local, image, quad, AREALIGHT_PARTS);
     } else {
         vec3 from = arealight_bridge_vertex(local.end - 1u);
         for (uint index = local.first; index < local.end; index++) {
             vec3 to = arealight_bridge_vertex(index);
             bool against = dot(cross(from, to), local.normal) < 0.0;
-            ArealightQuad triangle = against ? ArealightQuad(vec3(0.0), to, to, from) : ArealightQuad(vec3(0.0), from, to, to);
+            ArealightQuad triangle = against ? ArealightQuad(vec3(0.0), to, to, from)
+                : ArealightQuad(vec3(0.0), from, to, to);
             vec4 part = arealight_split_sum(space, local, image, triangle, 0.5 * AREALIGHT_PARTS);
             sum += against ? -part : part;
             from = to;
@@ -236,8 +256,10 @@ vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLob
 vec3 arealight_image_average(mat3 space, ArealightLocalPolygon local, vec3 vector) {
 #if AREALIGHT_LIGHT_TEXTURES
     if (AREALIGHT_HAS_TEXTURED_POLYGONS && local.image.layer != AREALIGHT_NO_IMAGE) {
-        ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space * local.to_frame);
-        return AREALIGHT_SPLITS_IMAGES ? arealight_split_color(space, local, image, arealight_form_factor(vector))
+        ArealightLobeImage image = arealight_lobe_image(local.image, space * local.center, space
+                                                        * local.to_frame);
+        return AREALIGHT_SPLITS_IMAGES ? arealight_split_color(space, local, image,
+                                                               arealight_form_factor(vector))
                                        : arealight_footprint(image, vector);
     }
 #endif

@@ -5,7 +5,8 @@
 #include "arealight/form_factor/quad.glsl"
 #include "arealight/light_kind.glsl"
 
-// A convex, flat quad of constant radiance (a triangle has a vertex twice), counter-clockwise seen from its front.
+// A convex, flat quad of constant radiance (a triangle has a vertex twice), counter-clockwise seen from its
+// front.
 struct ArealightQuadLight {
     vec3 radiance;      // of the front, W/(m^2 sr)
     vec3 center;        // near the middle, relative to the origin of ArealightSurface.position
@@ -17,7 +18,8 @@ struct ArealightQuadLight {
 // A quad in the shading frame, cut at the surface's horizon with AREALIGHT_SURFACE_HORIZON.
 struct ArealightLocalQuad {
     ArealightQuad quad;     // from the shading point; with AREALIGHT_DIFFERENCE from the center
-    ArealightQuad triangle; // what the cut leaves beside a quad where three vertices are above, its last vertex twice
+    // What the cut leaves beside a quad where three vertices are above, its last vertex twice
+    ArealightQuad triangle;
     bool has_triangle;
     vec3 center;            // from the shading point
     float side;             // arealight_lit_side
@@ -42,8 +44,8 @@ ArealightQuad arealight_moved(ArealightQuad quad, vec3 by) {
     return ArealightQuad(quad.a + by, quad.b + by, quad.c + by, quad.d + by);
 }
 
-// Cuts a quad at the surface's horizon with AREALIGHT_SURFACE_HORIZON, and takes its vertices from its center again with
-// AREALIGHT_DIFFERENCE. False where nothing is left. `quad`: the same in the world.
+// Cuts a quad at the surface's horizon with AREALIGHT_SURFACE_HORIZON, and takes its vertices from its center
+// again with AREALIGHT_DIFFERENCE. False where nothing is left. `quad`: the same in the world.
 bool arealight_cut_local(inout ArealightLocalQuad local, mat3 to_frame, ArealightQuad quad) {
     bool is_cut = false;
     if (AREALIGHT_CLIPS_AT_SURFACE) {
@@ -59,7 +61,8 @@ bool arealight_cut_local(inout ArealightLocalQuad local, mat3 to_frame, Arealigh
         }
     }
     if (AREALIGHT_USES_DIFFERENCE) {
-        local.quad = is_cut ? arealight_moved(local.quad, -local.center) : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
+        local.quad = is_cut ? arealight_moved(local.quad, -local.center)
+            : arealight_quad_in_frame(to_frame, vec3(0.0), quad);
         local.triangle = arealight_moved(local.triangle, -local.center);
     }
     return true;
@@ -82,15 +85,18 @@ bool arealight_to_local(ArealightPoint point, ArealightQuadLight light, out Area
 
 // The vector form factor in a space with AREALIGHT_DIFFERENCE, of a quad whose vertices are from `center`.
 vec3 arealight_far_quad_vector(mat3 space, vec3 center, ArealightQuad quad, float front) {
-    return arealight_difference_quad(space * center, arealight_transformed(space, quad), arealight_horizon_width(space), front);
+    return arealight_difference_quad(space * center, arealight_transformed(space, quad),
+                                     arealight_horizon_width(space), front);
 }
 
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalQuad local) {
     float front = AREALIGHT_HAS_TWO_SIDED ? local.side : 1.0;
-    vec3 vector = AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.quad, front)
+    vec3 vector = AREALIGHT_USES_DIFFERENCE
+        ? arealight_far_quad_vector(space, local.center, local.quad, front)
                                             : arealight_quad_vector(arealight_transformed(space, local.quad), front);
     if (AREALIGHT_CLIPS_AT_SURFACE && local.has_triangle) {
-        vector += AREALIGHT_USES_DIFFERENCE ? arealight_far_quad_vector(space, local.center, local.triangle, front)
+        vector += AREALIGHT_USES_DIFFERENCE
+            ? arealight_far_quad_vector(space, local.center, local.triangle, front)
                                             : arealight_quad_vector(arealight_transformed(space, local.triangle), front);
     }
     return front * vector;

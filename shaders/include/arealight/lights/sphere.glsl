@@ -28,8 +28,8 @@ bool arealight_to_local(ArealightPoint point, ArealightSphereLight light, out Ar
     return !local.silhouette.inside || (AREALIGHT_HAS_TWO_SIDED && light.two_sided);
 }
 
-// z alone: by the disk, in any space. In the shading frame itself a sphere has a closed form of its own, which compilers choose
-// for a lobe whose space is a literal unit matrix.
+// z alone: by the disk, in any space. In the shading frame itself a sphere has a closed form of its own,
+// which compilers choose for a lobe whose space is a literal unit matrix.
 vec3 arealight_vector_form_factor(mat3 space, ArealightLocalSphere local) {
     if (local.silhouette.inside) {
         return vec3(0.0, 0.0, 1.0);

@@ -3,23 +3,25 @@
 
 #include "arealight/lobes/specular.glsl"
 
-// A coat above other lobes: KHR_materials_clearcoat. What it reflects, and what it keeps from the lobes below, depends on the view
-// alone, so that the layers conserve energy with a factor each: radiance = (1 - share) base + share coat, the coat being GGX without
-// Fresnel term. With AREALIGHT_COAT_BY_ALBEDO as OpenPBR has it: radiance = (1 - weight albedo) base + weight coat, the coat being GGX with
-// Schlick's Fresnel term, and the albedo its own at the view.
+// A coat above other lobes: KHR_materials_clearcoat. What it reflects, and what it keeps from the lobes
+// below, depends on the view alone, so that the layers conserve energy with a factor each: radiance = (1 -
+// share) base + share coat, the coat being GGX without Fresnel term. With AREALIGHT_COAT_BY_ALBEDO as OpenPBR
+// has it: radiance = (1 - weight albedo) base + weight coat, the coat being GGX with Schlick's Fresnel term,
+// and the albedo its own at the view.
 
-// The frame of a coat, in the shading frame's coordinates, where the view is `view`; the shading frame itself without
-// AREALIGHT_COAT_NORMAL and for a normal of zero.
+// The frame of a coat, in the shading frame's coordinates, where the view is `view`; the shading frame itself
+// without AREALIGHT_COAT_NORMAL and for a normal of zero.
 ArealightFrame arealight_coat_frame(ArealightFrame frame, ArealightCoat coat, vec3 view) {
     if (AREALIGHT_HAS_COAT_NORMAL) {
         return arealight_surface_frame(arealight_frame_matrix(frame) * coat.normal, view);
     }
-    return ArealightFrame(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), frame.cos_view, frame.sin_view);
+    return ArealightFrame(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0), frame.cos_view,
+                          frame.sin_view);
 }
 
-// A GGX lobe about the coat's own normal: one more lookup in the table (or the formula). A view below
-// that normal counts as grazing. With AREALIGHT_SURFACE_HORIZON it is clipped at the surface's horizon, as every lobe is, and gains no
-// more than its part above either horizon asks for.
+// A GGX lobe about the coat's own normal: one more lookup in the table (or the formula). A view below that
+// normal counts as grazing. With AREALIGHT_SURFACE_HORIZON it is clipped at the surface's horizon, as every
+// lobe is, and gains no more than its part above either horizon asks for.
 ArealightLayer arealight_coat_layer(ArealightFrame frame, ArealightCoat coat) {
     vec3 view = vec3(frame.sin_view, 0.0, frame.cos_view);
     ArealightFrame own = arealight_coat_frame(frame, coat, view);

@@ -5,10 +5,12 @@
 
 // GGX without a table: what arealight_table_lookup answers, by polynomials and two ratios of them.
 
-// The smallest cosine of a view for which entries and albedos are asked: exactly at the horizon a lobe degenerates.
+// The smallest cosine of a view for which entries and albedos are asked: exactly at the horizon a lobe
+// degenerates.
 const float AREALIGHT_FORMULA_MIN_COS_VIEW = 1e-3;
 
-// Coefficients, as `arealight fit --formula` prints them; what they mean is told at arealight::table::Formula.
+// Coefficients, as `arealight fit --formula` prints them; what they mean is told at
+// arealight::table::Formula.
 const vec4 AREALIGHT_FORMULA_LOBE[10] = vec4[10](
     vec4(0.000106325, -0.000173203, 0.798099, 0.000232858),
     vec4(0.888402, 0.222552, -0.393555, 1.87183),
@@ -62,16 +64,17 @@ float arealight_formula_quadratic(float c[6], float x, float y) {
     return c[0] + y * (c[1] + y * c[2]) + x * (c[3] + y * c[4] + x * c[5]);
 }
 
-// GGX's lobes at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01). Entries and
-// albedos of a view below AREALIGHT_FORMULA_MIN_COS_VIEW are those at it; the mirror frame in which
-// arealight_table_space takes them stays the view's own, as it does with a table.
+// GGX's lobes at a surface frame and a perceptual roughness (clamped to [0.01, 1]; NaN counts as 0.01).
+// Entries and albedos of a view below AREALIGHT_FORMULA_MIN_COS_VIEW are those at it; the mirror frame in
+// which arealight_table_space takes them stays the view's own, as it does with a table.
 //
-// Mean error of the reflected radiance over the fit's 3,000 quads, in thousandths: .66 at F0 = 0.04 and 2.85 at 1; with a table of
-// 64 x 64 nodes .54 and 2.13. The albedo is within 0.015 of the truth,
-// 0.0023 on average, Schlick's within 0.05. Against the float64 twin, arealight::table::Formula::lookup: entries 9e-7 of
-// the largest, albedos 7e-7. Determinants are above 0 at every roughness, view and reflectance.
-// Cost, counted in optimised SPIR-V: 99 multiply-adds, 7 more multiplications, 4 divisions; no sampler, no memory.
-// Source: a least squares on the table, weighted by the curvature of the loss of the table's own fit: docs/fit.md.
+// Mean error of the reflected radiance over the fit's 3,000 quads, in thousandths: .66 at F0 = 0.04 and 2.85
+// at 1; with a table of 64 x 64 nodes .54 and 2.13. The albedo is within 0.015 of the truth, 0.0023 on
+// average, Schlick's within 0.05. Against the float64 twin, arealight::table::Formula::lookup: entries 9e-7
+// of the largest, albedos 7e-7. Determinants are above 0 at every roughness, view and reflectance. Cost,
+// counted in optimised SPIR-V: 99 multiply-adds, 7 more multiplications, 4 divisions; no sampler, no memory.
+// Source: a least squares on the table, weighted by the curvature of the loss of the table's own fit:
+// docs/fit.md.
 ArealightTableSample arealight_formula_sample(ArealightFrame frame, float roughness) {
     roughness = arealight_clamped_roughness(roughness, sqrt(AREALIGHT_MIN_ALPHA));
     float alpha = roughness * roughness;
@@ -88,7 +91,8 @@ ArealightTableSample arealight_formula_sample(ArealightFrame frame, float roughn
     // Albedo: smooth, less a dip where the cosine of the view is about alpha
     float x = cosine / alpha;
     float dip = AREALIGHT_FORMULA_DIP[0] * x /
-                (1.0 + x * (AREALIGHT_FORMULA_DIP[1] + x * (AREALIGHT_FORMULA_DIP[2] + x * AREALIGHT_FORMULA_DIP[3])));
+                (1.0 + x * (AREALIGHT_FORMULA_DIP[1] + x
+                            * (AREALIGHT_FORMULA_DIP[2] + x * AREALIGHT_FORMULA_DIP[3])));
     float smooth_part = arealight_formula_cubic(AREALIGHT_FORMULA_ALBEDO, alpha, cosine) /
                         arealight_formula_quadratic(AREALIGHT_FORMULA_ALBEDO_DENOMINATOR, alpha, cosine);
     result.albedo = clamp(smooth_part - dip, 0.0, 1.0);

@@ -6,7 +6,9 @@
 
 // A lobe of a surface's reflection: a clamped cosine, linearly transformed and weighted.
 struct ArealightLobe {
-    mat3 space;  // from the shading frame (x to the viewer's side, z the normal) to the lobe's cosine space; determinant > 0
+    // From the shading frame (x to the viewer's side, z the normal) to the lobe's cosine space; determinant >
+    // 0
+    mat3 space;
     vec3 albedo; // what it reflects of light from everywhere, per channel
     float gain;  // of what is left by clipping at the surface's horizon, to keep the albedo; 1 without that
 };
@@ -17,8 +19,8 @@ struct ArealightLayer {
     float base; // of the light that the lobes below get, in [0, 1]
 };
 
-// The gain of a lobe with this space, from 1 on: the inverse of its part above the surface, which is a lune of the cosine
-// (share_above_surface in Rust).
+// The gain of a lobe with this space, from 1 on: the inverse of its part above the surface, which is a lune
+// of the cosine (share_above_surface in Rust).
 float arealight_gain_above_surface(mat3 space) {
     if (!AREALIGHT_CLIPS_AT_SURFACE) {
         return 1.0;

@@ -3,10 +3,10 @@
 
 #include "arealight/lobes/table.glsl"
 
-// Light that the facets of a specular lobe reflect more than once, which GGX loses: of white rough metals up to 60 %. With
-// AREALIGHT_MULTIPLE_SCATTERING part of it is added in the lobe's own shape (Turquin 2019), the rest as from a Lambert lobe (after
-// Fdez-Aguera 2019): a metal has that lobe then, too. A white surface sends all that it gets. What it errs beside random walks on the
-// microsurface: docs/materials.md.
+// Light that the facets of a specular lobe reflect more than once, which GGX loses: of white rough metals up
+// to 60 %. With AREALIGHT_MULTIPLE_SCATTERING part of it is added in the lobe's own shape (Turquin 2019), the
+// rest as from a Lambert lobe (after Fdez-Aguera 2019): a metal has that lobe then, too. A white surface
+// sends all that it gets. What it errs beside random walks on the microsurface: docs/materials.md.
 
 // How much of it has the specular lobe's shape.
 const float AREALIGHT_RESCATTERED_SPECULAR = 0.4;
@@ -17,10 +17,12 @@ struct ArealightRescattered {
     vec3 diffuse; // what is added to the diffuse lobe's albedo
 };
 
-// 1 less the albedo of a white lobe, averaged over the cosine of views: error 8e-4, for alpha = roughness^2 in [0, 1].
+// 1 less the albedo of a white lobe, averaged over the cosine of views: error 8e-4, for alpha = roughness^2
+// in [0, 1].
 float arealight_missing_albedo(float alpha) {
     float roughness = sqrt(alpha);
-    float missing = -0.0064 + roughness * (0.2948 + roughness * (3.1516 + roughness * (-4.5023 + roughness * 1.6532)));
+    float missing = -0.0064 + roughness * (0.2948 + roughness
+                                           * (3.1516 + roughness * (-4.5023 + roughness * 1.6532)));
     return clamp(alpha * missing, 0.0, 1.0);
 }
 

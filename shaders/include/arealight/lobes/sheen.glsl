@@ -4,13 +4,15 @@
 #include "arealight/lobes/formula.glsl"
 #include "arealight/lobes/lobe.glsl"
 
-// By levels with more than one specular lobe it is two lobes, the second of which takes light away: Charlie has a hole about the mirror direction.
+// By levels with more than one specular lobe it is two lobes, the second of which takes light away: Charlie
+// has a hole about the mirror direction.
 
-// The smallest sheen roughness; a smaller one counts as this. Below it the lobe is seen at grazing angles alone.
+// The smallest sheen roughness; a smaller one counts as this. Below it the lobe is seen at grazing angles
+// alone.
 const float AREALIGHT_SHEEN_MIN_ROUGHNESS = 0.07;
 
-// Entries (q00 - 1) / sin^2, q02 / sin, q20 / sin, q22 of the one lobe, sin being that of the view: the cubic of
-// arealight_formula_cubic in AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness and the view's cosine.
+// Entries (q00 - 1) / sin^2, q02 / sin, q20 / sin, q22 of the one lobe, sin being that of the view: the cubic
+// of arealight_formula_cubic in AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness and the view's cosine.
 const vec4 AREALIGHT_SHEEN_LOBE[10] = vec4[10](
     vec4(-0.0267666, 0.293183, 0.0270966, 1.45411),
     vec4(0.0837258, -1.53275, -0.521527, -1.00096),
@@ -48,7 +50,8 @@ const vec4 AREALIGHT_SHEEN_HOLE[10] = vec4[10](
     vec4(-1.60811, -5.13065, -1.12835, -9.8566));
 const float AREALIGHT_SHEEN_HOLE_SHARE = 0.25;
 
-// L(x) = a / (1 + b x^c) + d x + e of the masking of Charlie, for p = (1 - alpha)^2 = 0 and 1: (a, b, c, d), e.
+// L(x) = a / (1 + b x^c) + d x + e of the masking of Charlie, for p = (1 - alpha)^2 = 0 and 1: (a, b, c, d),
+// e.
 const vec4 AREALIGHT_SHEEN_MASKING[2] = vec4[2](
     vec4(21.5473, 3.82987, 0.19823, -1.9776),
     vec4(25.3245, 3.32435, 0.16801, -1.27393));
@@ -66,12 +69,13 @@ float arealight_sheen_masking(float cosine, float roughness) {
     return exp(cosine < 0.5 ? exponent : 2.0 * half_exponent - exponent);
 }
 
-// What sheen of colour 1 reflects of light from everywhere, from 0 on; at grazing views of low roughness Charlie gains energy, up to
-// 2.9. For a roughness in [AREALIGHT_SHEEN_MIN_ROUGHNESS, 1] and a view's cosine in [AREALIGHT_FORMULA_MIN_COS_VIEW, 1].
+// What sheen of colour 1 reflects of light from everywhere, from 0 on; at grazing views of low roughness
+// Charlie gains energy, up to 2.9. For a roughness in [AREALIGHT_SHEEN_MIN_ROUGHNESS, 1] and a view's cosine
+// in [AREALIGHT_FORMULA_MIN_COS_VIEW, 1].
 //
-// 1 / (4 cos (1 + Lambda)), which is what makes Charlie's albedo steep at grazing views, times the exponential of a polynomial of
-// degree 5 in AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness and the square root of the view's cosine. Error: 1.5e-3 on average over
-// roughnesses and view angles, 6.5e-3 at most.
+// 1 / (4 cos (1 + Lambda)), which is what makes Charlie's albedo steep at grazing views, times the
+// exponential of a polynomial of degree 5 in AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness and the square root of
+// the view's cosine. Error: 1.5e-3 on average over roughnesses and view angles, 6.5e-3 at most.
 float arealight_sheen_albedo(float roughness, float cos_view) {
     float u = AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness;
     float y = sqrt(cos_view);
@@ -84,8 +88,9 @@ float arealight_sheen_albedo(float roughness, float cos_view) {
     return exp(exponent) / (4.0 * cos_view * (1.0 + arealight_sheen_masking(cos_view, roughness)));
 }
 
-// The space of a lobe of these coefficients, from the shading frame: its own surface's, since Charlie does not lean towards the mirror
-// direction. At the normal it is symmetric about it. For the ranges of arealight_sheen_albedo; determinants are above 0 at every one.
+// The space of a lobe of these coefficients, from the shading frame: its own surface's, since Charlie does
+// not lean towards the mirror direction. At the normal it is symmetric about it. For the ranges of
+// arealight_sheen_albedo; determinants are above 0 at every one.
 mat3 arealight_sheen_space(vec4 coefficients[10], ArealightFrame frame, float roughness, float cos_view) {
     vec4 entries = arealight_formula_cubic(coefficients, AREALIGHT_SHEEN_MIN_ROUGHNESS / roughness, cos_view);
     float s = frame.sin_view;
@@ -99,11 +104,12 @@ struct ArealightSheenLayer {
     float base;         // of the light that the lobes below get, in [0, 1]
 };
 
-// Sheen's lobes, and what they keep from the lobes below: radiance = sheen + base * those. The part of the light that the base gets is a
-// scalar of the view alone, the same for each channel: 1 - the largest channel of the colour times the albedo, from 0 on.
+// Sheen's lobes, and what they keep from the lobes below: radiance = sheen + base * those. The part of the
+// light that the base gets is a scalar of the view alone, the same for each channel: 1 - the largest channel
+// of the colour times the albedo, from 0 on.
 //
-// Mean error of the reflected radiance, for a colour of 1 and random quads of unit radiance, roughness 0.1 to 1: .6e-3 by two lobes, 1.8e-3 by
-// one. No sampler, no memory. Source: docs/decisions/0019-sheen.md.
+// Mean error of the reflected radiance, for a colour of 1 and random quads of unit radiance, roughness 0.1 to
+// 1: .6e-3 by two lobes, 1.8e-3 by one. No sampler, no memory. Source: docs/decisions/0019-sheen.md.
 ArealightSheenLayer arealight_sheen_layer(ArealightFrame frame, ArealightSheen sheen) {
     float roughness = arealight_clamped_roughness(sheen.roughness, AREALIGHT_SHEEN_MIN_ROUGHNESS);
     float cos_view = max(frame.cos_view, AREALIGHT_FORMULA_MIN_COS_VIEW);
@@ -111,7 +117,8 @@ ArealightSheenLayer arealight_sheen_layer(ArealightFrame frame, ArealightSheen s
     float base = max(1.0 - arealight_max_component(sheen.color) * albedo, 0.0);
     vec3 color = sheen.color * albedo;
     if (!AREALIGHT_HAS_TWO_SHEEN_LOBES) {
-        ArealightLobe lobe = arealight_lobe(arealight_sheen_space(AREALIGHT_SHEEN_LOBE, frame, roughness, cos_view), color);
+        ArealightLobe lobe = arealight_lobe(arealight_sheen_space(AREALIGHT_SHEEN_LOBE, frame, roughness,
+                                                                  cos_view), color);
         return ArealightSheenLayer(lobe, lobe, base);
     }
     mat3 first = arealight_sheen_space(AREALIGHT_SHEEN_FIRST_LOBE, frame, roughness, cos_view);

@@ -4,8 +4,9 @@
 #include "arealight/options.glsl"
 #include "arealight/shadows/shadow_sampling.glsl"
 
-// Shadow rays drawn over outlines of any number of vertices, as shading points see lights of every kind: a polygon's or a face's vertices, or a
-// ring of them for what is round. An outline is cut into a fan of convex pieces, of which one is chosen by its form factor.
+// Shadow rays drawn over outlines of any number of vertices, as shading points see lights of every kind: a
+// polygon's or a face's vertices, or a ring of them for what is round. An outline is cut into a fan of convex
+// pieces, of which one is chosen by its form factor.
 
 // The host's bridge to vertices, from their light's center.
 vec3 arealight_bridge_vertex(uint index);
@@ -16,7 +17,8 @@ struct ArealightShadowOutline {
     uint first;     // for arealight_bridge_vertex
     uint count;     // vertices, from 3 on
     vec3 center;    // from the shading point: what vertices are relative to
-    vec3 axis_u;    // of a ring: vertex i is at center + cos(t) axis_u + sin(t) axis_v, t = 2 pi (i + 1/2) / count
+    // Of a ring: vertex i is at center + cos(t) axis_u + sin(t) axis_v, t = 2 pi (i + 1/2) / count
+    vec3 axis_u;
     vec3 axis_v;
 };
 
@@ -30,9 +32,11 @@ struct ArealightShadowRay {
 const uint AREALIGHT_RING_VERTICES = 16u;
 const float AREALIGHT_RING_SCALE = 1.0129962;
 
-// The outline of an ellipse. Shadows err by what is between it and sixteen chords: at most 1.3 % of its size at its rim.
+// The outline of an ellipse. Shadows err by what is between it and sixteen chords: at most 1.3 % of its size
+// at its rim.
 ArealightShadowOutline arealight_ellipse_outline(vec3 center, vec3 axis_u, vec3 axis_v) {
-    return ArealightShadowOutline(true, true, 0u, AREALIGHT_RING_VERTICES, center, AREALIGHT_RING_SCALE * axis_u,
+    return ArealightShadowOutline(true, true, 0u, AREALIGHT_RING_VERTICES, center, AREALIGHT_RING_SCALE
+                                  * axis_u,
                             AREALIGHT_RING_SCALE * axis_v);
 }
 
@@ -64,7 +68,8 @@ ArealightQuad arealight_outline_piece(ArealightShadowOutline outline, uint piece
     uint first = outline.is_convex ? 2u * piece + 1u : piece + 1u;
     uint last = min(first + (outline.is_convex ? 2u : 1u), outline.count - 1u);
     return ArealightQuad(arealight_outline_vertex(outline, 0u), arealight_outline_vertex(outline, first),
-                         arealight_outline_vertex(outline, first + 1u), arealight_outline_vertex(outline, last));
+                         arealight_outline_vertex(outline, first + 1u),
+                             arealight_outline_vertex(outline, last));
 }
 
 // The size of an outline's form factor in the space that `to_space` leads to.
@@ -77,7 +82,8 @@ float arealight_outline_weight(ArealightShadowOutline outline, mat3 to_space) {
 }
 
 // Chooses a piece by the size of its form factor; false where none has any.
-bool arealight_choose_piece(ArealightShadowOutline outline, mat3 to_space, inout float random, out ArealightQuad chosen) {
+bool arealight_choose_piece(ArealightShadowOutline outline, mat3 to_space, inout float random,
+                            out ArealightQuad chosen) {
     float sum = 0.0;
     for (uint i = 0u; i < arealight_outline_pieces(outline); i++) {
         ArealightQuad piece = arealight_outline_piece(outline, i);
@@ -89,24 +95,29 @@ bool arealight_choose_piece(ArealightShadowOutline outline, mat3 to_space, inout
     return sum > 0.0;
 }
 
-// How many triangles of an outline that is not convex a direction is in: (each counted once, each by its orientation).
+// How many triangles of an outline that is not convex a direction is in: (each counted once, each by its
+// orientation).
 ivec2 arealight_outline_coverage(ArealightShadowOutline outline, vec3 direction) {
     ivec2 coverage = ivec2(0);
     for (uint i = 0u; i < arealight_outline_pieces(outline); i++) {
         ArealightQuad piece = arealight_outline_piece(outline, i);
         vec3 sides = vec3(dot(direction, cross(piece.a, piece.b)), dot(direction, cross(piece.b, piece.c)),
                           dot(direction, cross(piece.c, piece.a)));
-        coverage += all(greaterThan(sides, vec3(0.0))) ? ivec2(1, 1) : all(lessThan(sides, vec3(0.0))) ? ivec2(1, -1) : ivec2(0);
+        coverage += all(greaterThan(sides, vec3(0.0))) ? ivec2(1, 1) : all(lessThan(sides, vec3(0.0)))
+            ? ivec2(1, -1) : ivec2(0);
     }
     return coverage;
 }
 
-// How often a direction is drawn, until one is inside of an outline that is not convex, and above the surface.
+// How often a direction is drawn, until one is inside of an outline that is not convex, and above the
+// surface.
 const int AREALIGHT_OUTLINE_TRIES = 32;
 
-// Draws a ray over an outline from a lobe whose cosine space `space` leads to from the shading frame. `random` in [0, 1)^2, uniform. False where
-// the outline has no form factor in that space, or no draw was inside of it and above the surface: there is next to no light.
-bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 space, vec2 random, out ArealightShadowRay ray) {
+// Draws a ray over an outline from a lobe whose cosine space `space` leads to from the shading frame.
+// `random` in [0, 1)^2, uniform. False where the outline has no form factor in that space, or no draw was
+// inside of it and above the surface: there is next to no light.
+bool arealight_draw_ray(ArealightShadowOutline outline, mat3 to_frame, mat3 space, vec2 random,
+                        out ArealightShadowRay ray) {
     mat3 to_space = space * to_frame;
     int tries = outline.is_convex && !AREALIGHT_CLIPS_AT_SURFACE ? 1 : AREALIGHT_OUTLINE_TRIES;
     for (int i = 0; i < tries; i++) {

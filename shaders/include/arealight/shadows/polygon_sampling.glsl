@@ -4,28 +4,31 @@
 #include "arealight/form_factor/arctangent.glsl"
 #include "arealight/shadows/choose.glsl"
 
-// Directions drawn from a lobe over a polygon: with the density of the clamped cosine in the lobe's cosine space, over what of the
-// polygon is above the horizon. The integrand of the unshadowed light over that density is its form factor, whatever is drawn. So the
-// mean visibility of the drawn directions is the shadow: unbiased from one ray on, with a variance of S (1 - S) per ray, and without noise where
-// nothing or everything is hidden.
+// Directions drawn from a lobe over a polygon: with the density of the clamped cosine in the lobe's cosine
+// space, over what of the polygon is above the horizon. The integrand of the unshadowed light over that
+// density is its form factor, whatever is drawn. So the mean visibility of the drawn directions is the
+// shadow: unbiased from one ray on, with a variance of S (1 - S) per ray, and without noise where nothing or
+// everything is hidden.
 //
 //     ArealightSamplingPolygon polygon = ...;                        // in cosine space, z >= 0, convex
 //     ArealightDraw draw = arealight_draw(polygon, random);          // draw.area = pi times the form factor
 //     vec3 direction = inverse(space) * draw.direction;              // of any length
 //
-// Projected along z onto the unit disk the density is uniform. The polygon's projection is cut at the azimuths of its vertices into sectors,
-// each between two great circles or, where the zenith is inside of the polygon, within one. A sector is chosen by its area, an azimuth in it by
-// the area up to there, and then a radius.
+// Projected along z onto the unit disk the density is uniform. The polygon's projection is cut at the
+// azimuths of its vertices into sectors, each between two great circles or, where the zenith is inside of the
+// polygon, within one. A sector is chosen by its area, an azimuth in it by the area up to there, and then a
+// radius.
 //
-// Bounds (tests/tests/gpu/polygon_sampling.rs): the areas sum to pi F within 5e-7; directions are inside of the polygon to 5e-7; of 1,024 draws the share on
-// either side of a plane through the point is right to 3e-3 rms, as evenly as the sequence goes, for polygons from a tenth of their distance
-// on. Of the area of smaller ones rounding takes a part that grows with the inverse of their size: the areas of two circles cancel.
+// Bounds (tests/tests/gpu/polygon_sampling.rs): the areas sum to pi F within 5e-7; directions are inside of
+// the polygon to 5e-7; of 1,024 draws the share on either side of a plane through the point is right to 3e-3
+// rms, as evenly as the sequence goes, for polygons from a tenth of their distance on. Of the area of smaller
+// ones rounding takes a part that grows with the inverse of their size: the areas of two circles cancel.
 
 // The most vertices: a quad, cut at the horizon.
 const int AREALIGHT_SAMPLING_VERTICES = 5;
 
-// A convex polygon in a lobe's cosine space, at or above its horizon: from the shading point, in order, of either orientation. One of fewer
-// vertices has some of them twice, next to each other.
+// A convex polygon in a lobe's cosine space, at or above its horizon: from the shading point, in order, of
+// either orientation. One of fewer vertices has some of them twice, next to each other.
 struct ArealightSamplingPolygon {
     vec3 vertices[AREALIGHT_SAMPLING_VERTICES];
 };
@@ -45,14 +48,16 @@ struct ArealightSector {
     float area;
 };
 
-// Steps of Newton's method. The error of the area up to the azimuth, as a part of the sector's, of quads as large as twice their distance: 99 in
-// a hundred 6e-4, rms 4e-4 (4 steps: 4e-6, 3e-5). What is left is a direction of the sector all the same.
+// Steps of Newton's method. The error of the area up to the azimuth, as a part of the sector's, of quads as
+// large as twice their distance: 99 in a hundred 6e-4, rms 4e-4 (4 steps: 4e-6, 3e-5). What is left is a
+// direction of the sector all the same.
 const int AREALIGHT_SAMPLING_STEPS = 3;
 
 // The sine of an angle in [0, pi / 2]: error 8e-8. Source: minimax polynomial of sin(x) / x in x^2.
 float arealight_sine(float x) {
     float x2 = x * x;
-    return x * (0.99999999 + x2 * (-0.16666657 + x2 * (0.0083330251 + x2 * (-0.00019807419 + x2 * 2.6019031e-6))));
+    return x * (0.99999999 + x2 * (-0.16666657 + x2
+                                   * (0.0083330251 + x2 * (-0.00019807419 + x2 * 2.6019031e-6))));
 }
 
 // (cosine, sine) of an angle in [0, pi]. The built-in functions err by 2^-11.
@@ -74,16 +79,17 @@ vec2 arealight_turned_by(vec2 azimuth, vec2 turn) {
     return vec2(azimuth.x * turn.x - azimuth.y * turn.y, azimuth.x * turn.y + azimuth.y * turn.x);
 }
 
-// Of the point of a great circle at an azimuth, with the plane's unit normal: (squared distance from the disk's center, squared height), which
-// add up to 1. That of the zero vector is the zenith.
+// Of the point of a great circle at an azimuth, with the plane's unit normal: (squared distance from the
+// disk's center, squared height), which add up to 1. That of the zero vector is the zenith.
 vec2 arealight_circle_squares(vec3 normal, vec2 azimuth) {
     float height = dot(normal.xy, azimuth);
     vec2 squares = vec2(normal.z * normal.z, height * height + 1e-37);
     return squares / (squares.x + squares.y);
 }
 
-// The angle along a great circle from one azimuth to another one, which is that one turned by an angle in [0, pi] with this cosine and
-// sine. Half of it times the height of the plane's normal is the area between the zenith and the circle.
+// The angle along a great circle from one azimuth to another one, which is that one turned by an angle in [0,
+// pi] with this cosine and sine. Half of it times the height of the plane's normal is the area between the
+// zenith and the circle.
 float arealight_circle_angle(vec3 normal, vec2 from, vec2 to, vec2 turn) {
     float across = abs(normal.z) * turn.y;
     float along = normal.z * normal.z * turn.x + dot(normal.xy, from) * dot(normal.xy, to);
@@ -97,7 +103,8 @@ float arealight_linear_quantile(float from, float to, float part) {
     return sum > 0.0 ? min(part * (from + to) / sum, 1.0) : part;
 }
 
-// The azimuth up to which a sector without an inner circle has this area: the angle along the outer circle is in proportion to it.
+// The azimuth up to which a sector without an inner circle has this area: the angle along the outer circle is
+// in proportion to it.
 vec2 arealight_azimuth_around_zenith(ArealightSector sector, float area) {
     vec3 normal = sector.outer.z < 0.0 ? -sector.outer : sector.outer;
     vec3 start = vec3(normal.z * sector.from, -dot(normal.xy, sector.from));
@@ -112,12 +119,14 @@ vec2 arealight_sector_area(ArealightSector sector, float angle) {
     vec2 to = arealight_turned_by(sector.from, turn);
     float outer = abs(sector.outer.z) * arealight_circle_angle(sector.outer, sector.from, to, turn);
     float inner = abs(sector.inner.z) * arealight_circle_angle(sector.inner, sector.from, to, turn);
-    float density = arealight_circle_squares(sector.outer, to).x - arealight_circle_squares(sector.inner, to).x;
+    float density = arealight_circle_squares(sector.outer, to).x
+        - arealight_circle_squares(sector.inner, to).x;
     return 0.5 * vec2(outer - inner, max(density, 0.0));
 }
 
-// The azimuth up to which a sector between two circles has this part of its area: by Newton's method in a bracket, from where it would be for a
-// linear density. A step that rounding takes out of the bracket by nothing must not end in its middle: the bracket is closed.
+// The azimuth up to which a sector between two circles has this part of its area: by Newton's method in a
+// bracket, from where it would be for a linear density. A step that rounding takes out of the bracket by
+// nothing must not end in its middle: the bracket is closed.
 vec2 arealight_azimuth_between(ArealightSector sector, float part) {
     float low = 0.0;
     float high = sector.width;
@@ -135,12 +144,13 @@ vec2 arealight_azimuth_between(ArealightSector sector, float part) {
     return arealight_turned_by(sector.from, arealight_direction_at(angle));
 }
 
-// The direction in a sector whose azimuth has `random.x` of the area before it, and whose squared radius is `random.y` on the way from the inner
-// circle to the outer one.
+// The direction in a sector whose azimuth has `random.x` of the area before it, and whose squared radius is
+// `random.y` on the way from the inner circle to the outer one.
 vec3 arealight_draw_in_sector(ArealightSector sector, vec2 random) {
     vec2 azimuth = sector.inner == vec3(0.0) ? arealight_azimuth_around_zenith(sector, random.x * sector.area)
                                              : arealight_azimuth_between(sector, random.x);
-    vec2 squares = mix(arealight_circle_squares(sector.inner, azimuth), arealight_circle_squares(sector.outer, azimuth),
+    vec2 squares = mix(arealight_circle_squares(sector.inner, azimuth),
+                       arealight_circle_squares(sector.outer, azimuth),
                        random.y);
     return vec3(azimuth * sqrt(squares.x), sqrt(squares.y));
 }
@@ -221,8 +231,8 @@ void arealight_sort(inout vec3 v[AREALIGHT_SAMPLING_VERTICES]) {
     arealight_order(v[2], v[3]);
 }
 
-// The sector between neighbours in azimuth of a polygon that the zenith is outside of: of the two edges that span it the lower one in the middle is
-// the outer circle.
+// The sector between neighbours in azimuth of a polygon that the zenith is outside of: of the two edges that
+// span it the lower one in the middle is the outer circle.
 ArealightSector arealight_sector_between(ArealightSamplingEdges edges, vec3 from, vec3 to) {
     vec2 middle = arealight_unit_azimuth(from.xy + to.xy, from.xy);
     vec3 outer = vec3(0.0);

@@ -1,13 +1,14 @@
 #ifndef AREALIGHT_SEQUENCE_GLSL
 #define AREALIGHT_SEQUENCE_GLSL
 
-// Random numbers for the rays of an image: neighbouring pixels, and frames after one another, get numbers that fill the unit interval or square
-// evenly. Over pixels they are lattices, over rays the golden ratio's multiples and the sequence R2 (Roberts 2018, "The unreasonable
-// effectiveness of quasirandom sequences").
+// Random numbers for the rays of an image: neighbouring pixels, and frames after one another, get numbers
+// that fill the unit interval or square evenly. Over pixels they are lattices, over rays the golden ratio's
+// multiples and the sequence R2 (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 //
-// Of the variance that random numbers give to a Gaussian mean of 0s and 1s over pixels, the share of the unit square that is on one side of a line
-// or in a circle, the lattice leaves .25 for a standard deviation of 1 pixel, .11 for 2 and .06 for 3 (two masks of blue noise .34, .22, .21;
-// R2 along a Hilbert curve .43, .27, .18). Its coefficients are the best of a random search for that.
+// Of the variance that random numbers give to a Gaussian mean of 0s and 1s over pixels, the share of the unit
+// square that is on one side of a line or in a circle, the lattice leaves .25 for a standard deviation of 1
+// pixel, .11 for 2 and .06 for 3 (two masks of blue noise .34, .22, .21; R2 along a Hilbert curve .43, .27,
+// .18). Its coefficients are the best of a random search for that.
 
 // A number of 32 bits after the point, in [0, 1).
 float arealight_fraction(uint bits) {

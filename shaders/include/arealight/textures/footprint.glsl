@@ -6,25 +6,26 @@
 
 // What a lobe sees of the image that a light shows.
 //
-// A lobe in its cosine space weighs the points of the light's plane with (cosine of the lobe) x (cosine of the light) /
-// distance^2: a bump around a point, which we take for a Gaussian. So the image is blurred beforehand, by ever wider
-// Gaussians (arealight::pyramid in Rust), and looked up where the mean direction of the clipped light meets its plane, at
-// the level whose blur is that of the bump. With the distance d to that point and the area A of the image in cosine
-// space, in units where A is 1, the variance is
+// A lobe in its cosine space weighs the points of the light's plane with (cosine of the lobe) x (cosine of
+// the light) / distance^2: a bump around a point, which we take for a Gaussian. So the image is blurred
+// beforehand, by ever wider Gaussians (arealight::pyramid in Rust), and looked up where the mean direction of
+// the clipped light meets its plane, at the level whose blur is that of the bump. With the distance d to that
+// point and the area A of the image in cosine space, in units where A is 1, the variance is
 //
 //     d^2 / (1.5 A + 6 d^2)
 //
-// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point where the mean direction meets the plane is a
-// better place than the plane's foot, and as the light ends, so must the footprint: the widest is that of an even spread, nearly,
-// as the image is mirrored at its ends. The bump is longer than wide where the plane is seen at an angle; better quality levels
-// fetch along its longer axis, and split the light (split.glsl). The numbers were found by search, against the integral of image times lobe: errors are
-// in docs/textures.md.
+// Heitz et al. 2016 (eq. 35) have r^2 / 2 with the distance r to the plane. The point where the mean
+// direction meets the plane is a better place than the plane's foot, and as the light ends, so must the
+// footprint: the widest is that of an even spread, nearly, as the image is mirrored at its ends. The bump is
+// longer than wide where the plane is seen at an angle; better quality levels fetch along its longer axis,
+// and split the light (split.glsl). The numbers were found by search, against the integral of image times
+// lobe: errors are in docs/textures.md.
 
 // The layer of a light without an image.
 const uint AREALIGHT_NO_IMAGE = 0xffffffffu;
 
-// An image's place on a light: GpuLight in Rust. The box of the image that the light shows is spanned by two axes; box
-// coordinates run from 0 to 1 along them.
+// An image's place on a light: GpuLight in Rust. The box of the image that the light shows is spanned by two
+// axes; box coordinates run from 0 to 1 along them.
 struct ArealightImage {
     uint layer;  // of the light textures, or AREALIGHT_NO_IMAGE
     vec3 corner; // where the box begins, from the light's center
@@ -36,8 +37,8 @@ struct ArealightImage {
 
 #if AREALIGHT_LIGHT_TEXTURES
 
-// The host's bridge to the light textures: layer `layer`, trilinear and clamped to the edge, at normalised coordinates,
-// level explicit; textureLod of an array image.
+// The host's bridge to the light textures: layer `layer`, trilinear and clamped to the edge, at normalised
+// coordinates, level explicit; textureLod of an array image.
 vec3 arealight_bridge_light_texture(uint layer, vec2 coordinate, float level);
 // Width and height of level 0, in texels.
 ivec2 arealight_bridge_light_texture_size();
@@ -60,7 +61,8 @@ struct ArealightLobeImage {
     float end;    // inverse of the widest variance of a blur, in units of the box's area
 };
 
-// `center` is the light's, from the shading point in cosine space; `transform` takes offsets from the center there.
+// `center` is the light's, from the shading point in cosine space; `transform` takes offsets from the center
+// there.
 ArealightLobeImage arealight_lobe_image(ArealightImage image, vec3 center, mat3 transform) {
     ArealightLobeImage seen;
     seen.layer = image.layer;
@@ -88,8 +90,8 @@ vec2 arealight_mirror_coordinate(vec2 x, vec2 low, vec2 high) {
     return arealight_clamp_coordinate(high - abs(high - low - abs(x - low)), low, high);
 }
 
-// The level of the pyramid whose blur is `square`, a variance in squares of level 0's texels, between two levels;
-// PyramidSize::level_of in Rust.
+// The level of the pyramid whose blur is `square`, a variance in squares of level 0's texels, between two
+// levels; PyramidSize::level_of in Rust.
 float arealight_texture_level(float square, float last) {
     const float TENT = 0.1666666667;    // variance that bilinear lookup adds, in texels
     const float REGULAR = 0.8891666667; // of a level's blur and of bilinear lookup, in its own texels
@@ -131,16 +133,18 @@ ArealightPlaneHit arealight_plane_hit(ArealightLobeImage image, vec3 toward) {
     return hit;
 }
 
-// The footprint's ellipse, in units of the box's area: box coordinates that are stretched so that texels are as long in both
-// directions.
+// The footprint's ellipse, in units of the box's area: box coordinates that are stretched so that texels are
+// as long in both directions.
 struct ArealightFootprintEllipse {
     vec2 axis;   // the longer one's direction, in box coordinates
     float major; // variances
     float minor;
 };
 
-// The inverse of the covariance is `bump` over the squared distance, of the lobe, and `end`, in units of the box.
-ArealightFootprintEllipse arealight_footprint_ellipse(ArealightLobeImage image, float square, float bump, float end) {
+// The inverse of the covariance is `bump` over the squared distance, of the lobe, and `end`, in units of the
+// box.
+ArealightFootprintEllipse arealight_footprint_ellipse(ArealightLobeImage image, float square, float bump,
+                                                      float end) {
     float stretch = sqrt(image.texels.x / image.texels.y);
     vec3 u = image.axis_u / stretch;
     vec3 v = image.axis_v * stretch;
@@ -162,8 +166,9 @@ ArealightFootprintEllipse arealight_footprint_ellipse(ArealightLobeImage image, 
     return ellipse;
 }
 
-// The mean colour that a lobe sees of a light's image, `toward` being where the light comes from in its cosine space: finite and not
-// negative for any input, if the image is. One fetch, or four along the longer axis.
+// The mean colour that a lobe sees of a light's image, `toward` being where the light comes from in its
+// cosine space: finite and not negative for any input, if the image is. One fetch, or four along the longer
+// axis.
 vec3 arealight_footprint(ArealightLobeImage image, vec3 toward) {
     ArealightPlaneHit hit = arealight_plane_hit(image, toward);
     vec2 box = arealight_clamp_coordinate(hit.box, vec2(0.0), vec2(1.0));
@@ -179,7 +184,8 @@ vec3 arealight_footprint(ArealightLobeImage image, vec3 toward) {
     for (int tap = 0; tap < 4; tap++) {
         float offset = (tap & 1) == 0 ? 0.378 : 1.363;
         vec2 place = box + step * (tap < 2 ? offset : -offset);
-        color += arealight_image_blurred(image, arealight_mirror_coordinate(place, vec2(0.0), vec2(1.0)), variance);
+        color += arealight_image_blurred(image, arealight_mirror_coordinate(place, vec2(0.0), vec2(1.0)),
+                                         variance);
     }
     return 0.25 * color;
 }

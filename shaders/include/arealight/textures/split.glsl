@@ -42,16 +42,17 @@ ArealightPart arealight_split_part(ArealightPart whole, vec2 cell, float count) 
     return part;
 }
 
-// As arealight_footprint, of one of `parts` by `parts` parts of the light, which is within the box from `low` to `high`: two
-// taps.
+// As arealight_footprint, of one of `parts` by `parts` parts of the light, which is within the box from `low`
+// to `high`: two taps.
 vec3 arealight_footprint_of_part(ArealightLobeImage image, vec3 toward, vec2 low, vec2 high, float parts) {
     ArealightPlaneHit hit = arealight_plane_hit(image, toward);
     vec2 box = arealight_clamp_coordinate(hit.box, low, high);
-    // Near to the light a part sees no more than itself. From afar all see all of it, and their blurs must add up to an even
-    // one: those of half a part's width do
+    // Near to the light a part sees no more than itself. From afar all see all of it, and their blurs must
+    // add up to an even one: those of half a part's width do
     float distance = hit.square / (sqrt(dot(image.normal, image.normal)) + AREALIGHT_TINY);
     float end = 4.0 + 6.0 / (1.0 + 0.0625 * distance * distance);
-    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, hit.square, 2.0, end * parts * parts);
+    ArealightFootprintEllipse ellipse = arealight_footprint_ellipse(image, hit.square, 2.0, end * parts
+                                                                    * parts);
     float variance = min(ellipse.major, max(ellipse.minor, 0.5625 * ellipse.major));
     vec2 step = sqrt(ellipse.major - variance) * ellipse.axis;
     vec3 color = arealight_image_blurred(image, arealight_mirror_coordinate(box + step, low, high), variance)
@@ -61,8 +62,10 @@ vec3 arealight_footprint_of_part(ArealightLobeImage image, vec3 toward, vec2 low
 
 // The mean colour that a lobe sees of a part, whose vector form factor is `vector`.
 vec3 arealight_part_color(ArealightLobeImage image, ArealightPart part, vec3 vector) {
-    vec2 low = vec2(min(min(part.u.x, part.u.y), min(part.u.z, part.u.w)), min(min(part.v.x, part.v.y), min(part.v.z, part.v.w)));
-    vec2 high = vec2(max(max(part.u.x, part.u.y), max(part.u.z, part.u.w)), max(max(part.v.x, part.v.y), max(part.v.z, part.v.w)));
+    vec2 low = vec2(min(min(part.u.x, part.u.y), min(part.u.z, part.u.w)),
+                    min(min(part.v.x, part.v.y), min(part.v.z, part.v.w)));
+    vec2 high = vec2(max(max(part.u.x, part.u.y), max(part.u.z, part.u.w)),
+                     max(max(part.v.x, part.v.y), max(part.v.z, part.v.w)));
     return arealight_footprint_of_part(image, vector, low, high, AREALIGHT_PARTS);
 }
 

@@ -33,9 +33,9 @@ fn rising() -> Vec<Vec<DVec3>> {
     ]
 }
 
-/// A light rises over the horizon in 40,000 steps, each of a millionth of its distance or so. What it gains in one is that times
-/// the sine of its elevation at most, which is 0.05 in the end. The roundings of neighbours differ by a few units in
-/// the last place of arcs of up to a right angle.
+/// A light rises over the horizon in 40,000 steps, each of a millionth of its distance or so. What it gains
+/// in one is that times the sine of its elevation at most, which is 0.05 in the end. The roundings of
+/// neighbours differ by a few units in the last place of arcs of up to a right angle.
 pub fn a_light_rises_without_a_jump(engine: &TestEngine, levels: &[Level]) {
     for &level in levels {
         let bound = REACH * 2.0 * REACH / STEPS as f64 + 2.0 * f64::from(f32::EPSILON);
@@ -100,8 +100,8 @@ pub fn nothing_leaks_from_below_the_surface(engine: &TestEngine, levels: &[Level
     }
 }
 
-/// The form factor of what is clipped at both horizons is no larger than of what is clipped at one; its gain aside, with
-/// which the lobe keeps its albedo.
+/// The form factor of what is clipped at both horizons is no larger than of what is clipped at one; its gain
+/// aside, with which the lobe keeps its albedo.
 pub fn clipping_twice_is_no_brighter(engine: &TestEngine) {
     let mut random = Random::new(32);
     for path in PATHS {

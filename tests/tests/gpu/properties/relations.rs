@@ -72,8 +72,8 @@ impl Relation {
     }
 }
 
-/// In two, from the first vertex on. A convex quad along its diagonal, a triangle to the middle of the opposite edge, a
-/// star through its middle.
+/// In two, from the first vertex on. A convex quad along its diagonal, a triangle to the middle of the
+/// opposite edge, a star through its middle.
 fn split(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     let outline = given.light.shape.vertices();
     let [one, other] = match outline {
@@ -91,11 +91,11 @@ fn split(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     vec![with_outline(given, one), with_outline(given, other)]
 }
 
-/// The point from which all vertices are seen at even angles, see `Random::polygon`: where the lines from the first
-/// vertex and from the second do as the others say.
+/// The point from which all vertices are seen at even angles, see `Random::polygon`: where the lines from the
+/// first vertex and from the second do as the others say.
 fn star_middle(outline: &[DVec3]) -> DVec3 {
-    // Minimise how unevenly the directions lie, from the mean on, by Newton's method on the sum of unit vectors, which
-    // vanishes there
+    // Minimise how unevenly the directions lie, from the mean on, by Newton's method on the sum of unit
+    // vectors, which vanishes there
     let mut middle = outline.iter().sum::<DVec3>() / outline.len() as f64;
     for _ in 0..200 {
         let pull: DVec3 = outline.iter().map(|v| (*v - middle).normalize_or_zero()).sum();
@@ -121,8 +121,8 @@ fn reversed(_: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     vec![back, both_sides]
 }
 
-/// A triangle or a star as it is, with the midpoint of an edge, and with a vertex twice. A quad has no room for a fifth
-/// vertex, so it loses one first.
+/// A triangle or a star as it is, with the midpoint of an edge, and with a vertex twice. A quad has no room
+/// for a fifth vertex, so it loses one first.
 fn inserted(random: &mut Random, given: &EvalPoint) -> Vec<EvalPoint> {
     let mut outline = given.light.shape.vertices().to_vec();
     if given.light.shape.is_convex_quad() {

@@ -1,5 +1,5 @@
-//! Where one form gives way to another: the light stays as it is, and only the center moves that its vertices are offsets from, so
-//! that the form changes, and nothing else but rounding.
+//! Where one form gives way to another: the light stays as it is, and only the center moves that its vertices
+//! are offsets from, so that the form changes, and nothing else but rounding.
 
 use super::{COUNT, PATHS, lambert, outline};
 use arealight::gpu::GpuLight;
@@ -11,8 +11,8 @@ use glam::DVec3;
 /// How much farther a light's farthest vertex is from the second center than from the first.
 const STEP: f64 = 8e-6;
 
-/// Pairs of a light with two centers. From the first one its farthest vertex is `edge` times the center's distance away, but for
-/// half of [`STEP`]; from the second one as much more.
+/// Pairs of a light with two centers. From the first one its farthest vertex is `edge` times the center's
+/// distance away, but for half of [`STEP`]; from the second one as much more.
 fn pairs(level: Level, seed: u64, edge: f64) -> Property<'static> {
     let mut random = Random::new(seed);
     let group = |index| -> Vec<EvalPoint> {

@@ -21,11 +21,13 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Measure what accuracy costs in time on a device: every quality level and what others ship, with error and time.
+/// Measure what accuracy costs in time on a device: every quality level and what others ship, with error and
+/// time.
 ///
-/// Errors are against the integral of the true BRDF in float64, at points about four lights, and split into those of the fit, of
-/// the table and of the integral. Times are of frames of the same points, every method in turn, beside Monte Carlo on the same
-/// device and yardsticks: the form factors that engines ship, by school, on the same work with the same reads.
+/// Errors are against the integral of the true BRDF in float64, at points about four lights, and split into
+/// those of the fit, of the table and of the integral. Times are of frames of the same points, every method
+/// in turn, beside Monte Carlo on the same device and yardsticks: the form factors that engines ship, by
+/// school, on the same work with the same reads.
 #[derive(clap::Args)]
 #[command(args_conflicts_with_subcommands = true)]
 pub struct Arguments {
@@ -86,7 +88,8 @@ impl Ends {
         gpu::host(self.device.device.as_deref())
     }
 
-    /// Writes the tables where they were asked for, and prints them, or JSON where that goes to standard output.
+    /// Writes the tables where they were asked for, and prints them, or JSON where that goes to standard
+    /// output.
     fn report(&self, found: &impl Serialize, markdown: &str, text: &str) -> Result<(), Failure> {
         if let Some(path) = &self.markdown {
             write(path, markdown)?;

@@ -13,8 +13,9 @@ use std::process::ExitCode;
 
 /// Compare two pictures of radiance, such as one of ours with its reference.
 ///
-/// Both are OpenEXR files of one size. The errors are of A against B: the root of the mean squared difference over the mean of B, the ratio of the means, and
-/// the largest difference. For example: arealight compare ours.exr reference.exr -o map.png
+/// Both are OpenEXR files of one size. The errors are of A against B: the root of the mean squared difference
+/// over the mean of B, the ratio of the means, and the largest difference. For example: arealight compare
+/// ours.exr reference.exr -o map.png
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The picture to judge (.exr)
@@ -113,7 +114,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         format!("{value:#}\n")
     } else {
         format!(
-            "RMSE / mean    {:.3} %\nmean / mean    {ratio:.4}\nlargest        {largest:.3e} at pixel ({x}, {y}); the mean is {mean:.3e}\n",
+            "RMSE / mean    {:.3} %\nmean / mean    {ratio:.4}\nlargest        {largest:.3e} at pixel ({x}, \
+            {y}); the mean is {mean:.3e}\n",
             100.0 * error
         )
     };

@@ -11,7 +11,8 @@ use std::process::ExitCode;
 
 /// Say which effects a scene needs, and why.
 ///
-/// Shaders are made for these effects alone; docs/effects.md says what that saves, docs/gpu.md what each costs a GPU.
+/// Shaders are made for these effects alone; docs/effects.md says what that saves, docs/gpu.md what each
+/// costs a GPU.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A .gltf or .glb file

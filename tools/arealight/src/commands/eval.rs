@@ -28,7 +28,8 @@ use std::time::Instant;
 /// Answer a file of shading points, and measure answers against known radiance.
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// The shading points, `-` for standard input (images of lights are in the working folder then); the format is described in tests/data/reference/README.md.
+    /// The shading points, `-` for standard input (images of lights are in the working folder then); the
+    /// format is described in tests/data/reference/README.md.
     cases: PathBuf,
     /// Where the answers go, `-` for standard output. Without it and without --against they are printed.
     #[arg(short, long, value_name = "OUT.json")]
@@ -39,8 +40,8 @@ pub struct Arguments {
     /// Known radiance: prints how far the answers lie from it, a family of cases a line.
     #[arg(long, value_name = "TRUTH.json")]
     against: Option<PathBuf>,
-    /// The largest relative error of an answered case, max |answer - truth| / max truth over its channels: where
-    /// one is larger, or none is answered, the worst case is named and the exit code is 1.
+    /// The largest relative error of an answered case, max |answer - truth| / max truth over its channels:
+    /// where one is larger, or none is answered, the worst case is named and the exit code is 1.
     #[arg(long, value_name = "T", requires = "against", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     #[command(flatten)]

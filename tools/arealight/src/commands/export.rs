@@ -19,8 +19,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use target::TargetArguments;
 
-/// Write what a shader author needs into DIR: the GLSL library, the table as KTX2, DDS and EXR, our kernels as SPIR-V, an
-/// example, and manifest.json, which says what each file is and what your shader defines.
+/// Write what a shader author needs into DIR: the GLSL library, the table as KTX2, DDS and EXR, our kernels
+/// as SPIR-V, an example, and manifest.json, which says what each file is and what your shader defines.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The folder; it is made where it is not there.
@@ -139,7 +139,8 @@ fn summary(arguments: &Arguments, files: &[File], plan: &Plan) -> String {
     }
     let _ = writeln!(
         text,
-        "Next: add {folder}/include to your compiler's include folders, and see {folder}/manifest.json for the \
+        "Next: add {folder}/include to your compiler's include folders, and see {folder}/manifest.json for \
+        the \
          bridges, and {folder}/examples"
     );
     text

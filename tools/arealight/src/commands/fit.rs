@@ -26,7 +26,8 @@ pub struct Arguments {
     /// Nodes a side, 2 to 1024.
     #[arg(long, default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: u32,
-    /// Two matrices, one for the lobe of F0 and one for that of Schlick's weight; or one for all reflectances.
+    /// Two matrices, one for the lobe of F0 and one for that of Schlick's weight; or one for all
+    /// reflectances.
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
     matrices: u8,
     /// Fit no pairs of lobes, which are for `--specular-lobes two` and take twice as long as the rest.
@@ -109,8 +110,10 @@ impl Report {
 
     fn to_text(&self) -> String {
         let mut text = format!(
-            "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about the mirror\n\
-             direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees. The published\n\
+            "\nAbsolute error of the reflected radiance, over {COUNT} random quads of unit radiance (about \
+            the mirror\n\
+             direction, anywhere, across the horizon), roughness 0.1 to 1, view 0 to 89 degrees. The \
+             published\n\
              table is clipped in cosine space only, with one integral.\n\n{}",
             self.table.to_text()
         );

@@ -25,13 +25,14 @@ mod panel;
 mod pyramid;
 mod pyramid_picture;
 
-/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or what a
-/// light's texture becomes.
+/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or
+/// what a light's texture becomes.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The table; the one that is built in if none is given.
     table: Option<PathBuf>,
-    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors, --entries or --pyramid.
+    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors, --entries or
+    /// --pyramid.
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,
     /// The reflectance at normal incidence of the lobes in the picture, 0 to 1.
@@ -40,8 +41,8 @@ pub struct Arguments {
     /// How many lobes stand for the specular one in the picture.
     #[arg(long, value_enum, value_name = "COUNT", default_value_t = LobeCount::One)]
     specular_lobes: LobeCount,
-    /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over roughness and view
-    /// angle, and draw these.
+    /// Measure the errors of the table, of the table-free formula and of other tables (by one lobe) over
+    /// roughness and view angle, and draw these.
     #[arg(long, value_name = "OTHER", num_args = 0.., conflicts_with = "entries")]
     errors: Option<Vec<PathBuf>>,
     /// On how many quads --errors measures each of 32 x 32 cells, 3 to 3000.
@@ -51,14 +52,15 @@ pub struct Arguments {
     /// Draw the table's entries and albedos.
     #[arg(long, requires = "output")]
     entries: bool,
-    /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more than the
-    /// one before. Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
+    /// Draw the pyramid of a light's texture instead, as the GPU makes it: all its levels, each blurred more
+    /// than the one before. Of a scene (.glb, .gltf) or of an image (.png, .jpg, .exr).
     #[arg(long, value_name = "SCENE_OR_IMAGE", conflicts_with_all = ["table", "errors", "entries", "f0", "specular_lobes"])]
     pyramid: Option<PathBuf>,
     /// Which of the scene's light textures --pyramid draws, from 0.
     #[arg(long, value_name = "INDEX", default_value_t = 0, requires = "pyramid")]
     layer: u32,
-    /// The Vulkan device that makes the pyramid: a part of its name, or its number, as `arealight devices` lists them.
+    /// The Vulkan device that makes the pyramid: a part of its name, or its number, as `arealight devices`
+    /// lists them.
     #[arg(long, value_name = "NAME|NUMBER", requires = "pyramid")]
     device: Option<String>,
     /// Print the summary as JSON.
@@ -217,7 +219,8 @@ impl Summary<'_> {
             let label = format!("{}, {}, F0 = {}", map.name.escape_debug(), map.level(), map.f0);
             let _ = write!(
                 text,
-                "\n{label:<30} mean error {:.2e}, most {most:.2e} at roughness {roughness:.2}, view {view:.1}°",
+                "\n{label:<30} mean error {:.2e}, most {most:.2e} at roughness {roughness:.2}, view \
+                {view:.1}°",
                 map.mean()
             );
         }

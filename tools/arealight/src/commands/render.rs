@@ -32,7 +32,8 @@ pub struct Arguments {
     scene: Option<PathBuf>,
     #[command(flatten)]
     lights: LightArguments,
-    /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output; out/SCENE.png if absent
+    /// The picture: .png (exposed and tone-mapped) or .exr (radiance); `-` writes PNG to standard output;
+    /// out/SCENE.png if absent
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Size of the picture in pixels
@@ -46,23 +47,23 @@ pub struct Arguments {
     /// Integrate the true BRDF by Monte Carlo instead, with so many samples a pixel
     #[arg(long, value_name = "SPP", value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     reference: Option<u32>,
-    /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit, lamps apart, have a luminance of at
-    /// most 0.7
+    /// Exposure of a .png in stops: radiance is multiplied by 2^EV; or auto: nine tenths of what is lit,
+    /// lamps apart, have a luminance of at most 0.7
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
     exposure: Exposure,
     /// Samples a pixel along each axis, against jagged edges
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=8))]
     supersample: u32,
-    /// What surfaces are shaded with: `required` (what the scene's need), or a list of `diffuse`, `glossy` and `specular_input`, such as
-    /// diffuse
+    /// What surfaces are shaded with: `required` (what the scene's need), or a list of `diffuse`, `glossy`
+    /// and `specular_input`, such as diffuse
     #[arg(long, value_name = "SET", default_value = "required")]
     surfaces: SurfaceChoice,
-    /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1, without the lights that
-    /// together contribute less than this fraction of what the others do
+    /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1,
+    /// without the lights that together contribute less than this fraction of what the others do
     #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
-    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra (filtered:N). With --reference
-    /// they are exact, or off [default: filtered:4; off with --tiles]
+    /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra
+    /// (filtered:N). With --reference they are exact, or off [default: filtered:4; off with --tiles]
     #[arg(long, value_name = "LEVEL", conflicts_with = "tiles")]
     shadows: Option<Shadows>,
     #[command(flatten)]
@@ -146,8 +147,8 @@ fn effects_of(list: &str) -> Result<Effects, String> {
 }
 
 impl SurfaceChoice {
-    /// The set for `scene`. One that a surface needs more than gives another picture than the scene's: it is for the
-    /// user to state, and said.
+    /// The set for `scene`. One that a surface needs more than gives another picture than the scene's: it is
+    /// for the user to state, and said.
     fn surfaces(self, scene: &Scene, path: &Path) -> Effects {
         let mut required = scene.effects() & Effects::SURFACES;
         // A pass has a lobe, also for a scene without a surface

@@ -27,8 +27,9 @@ enum Command {
     Convert(Convert),
 }
 
-/// Read a table in any format, and write it in the one that OUT's extension stands for: .exr (our own), .ktx2 and .dds
-/// (2D arrays of six layers, for engines), .h (a C array), .glsl (constants and the bridge, no texture).
+/// Read a table in any format, and write it in the one that OUT's extension stands for: .exr (our own), .ktx2
+/// and .dds (2D arrays of six layers, for engines), .h (a C array), .glsl (constants and the bridge, no
+/// texture).
 #[derive(clap::Args)]
 struct Convert {
     /// The table: OpenEXR, KTX2 or DDS, told by content; or `built-in`.
@@ -37,8 +38,8 @@ struct Convert {
     /// Where it goes.
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// The second image of a table in the convention of Heitz et al. 2016, IN being the first: `convert ltc_1.dds OUT
-    /// --magnitude ltc_2.dds`.
+    /// The second image of a table in the convention of Heitz et al. 2016, IN being the first:
+    /// `convert ltc_1.dds OUT --magnitude ltc_2.dds`.
     #[arg(long, value_name = "FILE")]
     magnitude: Option<PathBuf>,
     /// What such a table was fitted to; its images do not say.
@@ -47,8 +48,8 @@ struct Convert {
     /// The floats that are written: 16 bits unless given, in .exr always 32.
     #[arg(long, value_enum)]
     format: Option<Floats>,
-    /// Nodes a side that are written, 2 to 1024: interpolated bilinearly (`arealight fit --size` is better by a little). A .glsl of a
-    /// larger table has 16 unless given, and 64 at most.
+    /// Nodes a side that are written, 2 to 1024: interpolated bilinearly (`arealight fit --size` is better by
+    /// a little). A .glsl of a larger table has 16 unless given, and 64 at most.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1024))]
     size: Option<u32>,
     /// Measure how far the table is from GGX, and write that beside it.

@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 /// Look at a scene: move its lamps and the camera, and see what each quality level errs and takes.
 ///
-/// In a window, which `h` explains the keys of; or, with --record, as pictures of what a script does, without one. For example:
-/// arealight view scenes/room.glb
+/// In a window, which `h` explains the keys of; or, with --record, as pictures of what a script does, without
+/// one. For example: arealight view scenes/room.glb
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A .gltf or .glb file; the built-in demo scene if absent
@@ -35,16 +35,19 @@ pub struct Arguments {
     /// Samples a pixel that each frame adds to the truth, where it is shown
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1024))]
     samples: u32,
-    /// What to do, a line for each event: seconds, and `key NAME`, `press X Y`, `move X Y`, `release` or `wheel STEPS`; the viewer ends with it
+    /// What to do, a line for each event: seconds, and `key NAME`, `press X Y`, `move X Y`, `release` or
+    /// `wheel STEPS`; the viewer ends with it
     #[arg(long, value_name = "FILE")]
     script: Option<PathBuf>,
-    /// Open no window, and write what the script does into this folder: frame-0000.png and so on, and film.gif
+    /// Open no window, and write what the script does into this folder: frame-0000.png and so on, and
+    /// film.gif
     #[arg(long, value_name = "DIR", requires = "script")]
     record: Option<PathBuf>,
     /// Frames a second of a recording
     #[arg(long, value_name = "FPS", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=50))]
     rate: u32,
-    /// Print what each frame of a recording shows as JSON: the quality level, times, and the error as far as it is known
+    /// Print what each frame of a recording shows as JSON: the quality level, times, and the error as far as
+    /// it is known
     #[arg(long, requires = "record")]
     json: bool,
     #[command(flatten)]
@@ -181,6 +184,8 @@ fn show(
 
 #[cfg(not(feature = "view"))]
 fn show(_: &Arguments, _: Viewer<'_>, _: State, _: Option<&Script>, _: &Path) -> Result<ExitCode, Failure> {
-    let message = "this program was built without a window: build it with --features view, or give --record and --script".to_owned();
+    let message = "this program was built without a window: build it with --features view, or give --record \
+    and --script"
+        .to_owned();
     Err(Failure::Argument { argument: "view", message })
 }

@@ -11,8 +11,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason; the others are
-/// answered all the same. `input` is the file of the cases, for errors.
+/// One answer a case, by the GLSL of the shade pass. A case whose light float32 cannot hold gets the reason;
+/// the others are answered all the same. `input` is the file of the cases, for errors.
 pub fn answer(
     cases: &[SupportedCase],
     quality: Quality,

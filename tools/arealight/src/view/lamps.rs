@@ -8,8 +8,8 @@ use glam::DVec3;
 /// How near to the middle of a lamp that no mesh is a click picks it, in heights of the picture.
 const NEAR: f64 = 0.03;
 
-/// The lamp that is seen in a direction from the camera, and how far along the view; `heights` is the direction's place in heights of the
-/// picture from the middle, to the right and down.
+/// The lamp that is seen in a direction from the camera, and how far along the view; `heights` is the
+/// direction's place in heights of the picture from the middle, to the right and down.
 pub fn pick(scene: &Scene, camera: &Camera, heights: [f64; 2]) -> Option<(usize, f64)> {
     let tan = 2.0 * camera.half_height;
     let direction = camera.forward + (camera.right * heights[0] - camera.up * heights[1]) * tan;

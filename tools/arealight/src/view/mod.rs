@@ -1,5 +1,5 @@
-//! The viewer: what a person does to a scene, and what is drawn of it. A window, or a recording without one, gives the events and shows the
-//! frames: `state` knows no device, `viewer` no event.
+//! The viewer: what a person does to a scene, and what is drawn of it. A window, or a recording without one,
+//! gives the events and shows the frames: `state` knows no device, `viewer` no event.
 
 mod lamps;
 mod orbit;

@@ -29,7 +29,8 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Where `camera` is, about the point in front of it that is nearest to the middle of the scene. What it has of a roll is lost.
+    /// Where `camera` is, about the point in front of it that is nearest to the middle of the scene. What it
+    /// has of a roll is lost.
     pub fn new(camera: &Camera, bounds: Bounds) -> Self {
         let ahead = (bounds.center() - camera.position).dot(camera.forward);
         let distance = ahead.max(0.05 * bounds.diagonal()).max(1e-3);
@@ -55,7 +56,8 @@ impl Orbit {
         self.distance = (self.distance * factor).clamp(1e-6, 1e12);
     }
 
-    /// Moves sideways by a drag, in heights of the picture: what is at the center's distance follows the pointer.
+    /// Moves sideways by a drag, in heights of the picture: what is at the center's distance follows the
+    /// pointer.
     pub fn slide(&mut self, drag: [f64; 2]) {
         self.center -= self.offset(drag, self.distance);
     }

@@ -9,9 +9,10 @@ pub struct Script {
 }
 
 impl Script {
-    /// Reads lines such as `1.5 key w`, `2 press 0.4 0.6`, `3 move 0.5 0.6`, `3 release`, `4 wheel -2`: seconds, and what is done. Places are parts of
-    /// the picture's width and height, from its upper left corner. Between two of them the pointer goes in a straight line. `slide` is as `press`, with the second button. What
-    /// follows a `#` is a comment.
+    /// Reads lines such as `1.5 key w`, `2 press 0.4 0.6`, `3 move 0.5 0.6`, `3 release`, `4 wheel -2`:
+    /// seconds, and what is done. Places are parts of the picture's width and height, from its upper left
+    /// corner. Between two of them the pointer goes in a straight line. `slide` is as `press`, with the
+    /// second button. What follows a `#` is a comment.
     ///
     /// # Errors
     /// What is wrong, with the number of its line.
@@ -39,7 +40,8 @@ impl Script {
         self.events.last().map_or(0.0, |(seconds, _)| *seconds)
     }
 
-    /// What happens after `from` and not after `to`, in seconds; and at the end where the pointer is on its way to the next place.
+    /// What happens after `from` and not after `to`, in seconds; and at the end where the pointer is on its
+    /// way to the next place.
     pub fn between(&self, from: f64, to: f64) -> Vec<Event> {
         let place = |event: &Event| match event {
             Event::Press { at, .. } | Event::Move(at) => Some(*at),

@@ -124,7 +124,8 @@ impl FromStr for Key {
     }
 }
 
-/// Something that a person does. Places are parts of the picture's width and height, from its upper left corner.
+/// Something that a person does. Places are parts of the picture's width and height, from its upper left
+/// corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event {
     /// A key goes down.
@@ -217,7 +218,8 @@ impl State {
         }
     }
 
-    /// Whether the picture has shadows. Yardsticks have none, and are wiped against a picture without; what they cost is the same on every level.
+    /// Whether the picture has shadows. Yardsticks have none, and are wiped against a picture without; what
+    /// they cost is the same on every level.
     pub fn has_shadows(&self) -> bool {
         self.shadows && self.mode != Mode::Wipe(Partner::Yardstick) && !self.costs
     }
@@ -227,8 +229,8 @@ impl State {
         self.costs || matches!(self.mode, Mode::Wipe(Partner::Truth) | Mode::Error)
     }
 
-    /// Does what an event asks for. `scene` is the one that is shown, with its lamps where they are; `aspect` is the picture's width over its
-    /// height.
+    /// Does what an event asks for. `scene` is the one that is shown, with its lamps where they are; `aspect`
+    /// is the picture's width over its height.
     pub fn apply(&mut self, event: Event, scene: &Scene, aspect: f64) {
         match event {
             Event::Key(key) => self.press_key(key),

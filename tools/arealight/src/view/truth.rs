@@ -1,4 +1,5 @@
-//! A truth that converges: the mean of independent pictures by Monte Carlo, in two halves that tell its noise.
+//! A truth that converges: the mean of independent pictures by Monte Carlo, in two halves that tell its
+//! noise.
 
 use glam::DVec3;
 
@@ -46,7 +47,8 @@ impl Truth {
         self.sums[0].iter().zip(&self.sums[1]).map(|(a, b)| (*a + *b) * scale).collect()
     }
 
-    /// How far a picture is, over the pixels that count; none before both halves are there, or where the truth is black.
+    /// How far a picture is, over the pixels that count; none before both halves are there, or where the
+    /// truth is black.
     pub fn distance(&self, radiance: &[DVec3], counts: impl Fn(usize) -> bool) -> Option<Distance> {
         let [a, b] = self.samples.map(f64::from);
         if a == 0.0 || b == 0.0 {

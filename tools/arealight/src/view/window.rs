@@ -1,4 +1,5 @@
-//! The viewer in a window of X11 or Wayland. Pictures come from the device through memory: whatever it is, it need not present.
+//! The viewer in a window of X11 or Wayland. Pictures come from the device through memory: whatever it is, it
+//! need not present.
 
 use super::paint;
 use super::script::Script;

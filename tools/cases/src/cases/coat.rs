@@ -17,7 +17,8 @@ pub struct CaseCoat {
     pub f0: f64,
     /// Its normal, not zero, of any length; `None` for the surface's.
     pub normal: Option<DVec3>,
-    /// Whether it is weighted by its albedo at the view, Fresnel term included; else by Schlick's term of the view, as in glTF.
+    /// Whether it is weighted by its albedo at the view, Fresnel term included; else by Schlick's term of the
+    /// view, as in glTF.
     pub by_albedo: bool,
 }
 

@@ -26,7 +26,8 @@ pub trait Number:
     /// The square root; 0 of what is not positive.
     #[must_use]
     fn square_root(self) -> Self;
-    /// The angle in [0, pi] of a sine, which is not negative, and a cosine of one common length; 0 of 0 and 0.
+    /// The angle in [0, pi] of a sine, which is not negative, and a cosine of one common length; 0 of 0 and
+    /// 0.
     fn angle(sine: Self, cosine: Self) -> Self;
 }
 
@@ -54,8 +55,8 @@ impl Number for f64 {
     }
 }
 
-/// The sum `high + low`, with `|low|` at most half a unit in the last place of `high`. Relative errors: 2^-104
-/// for sums, products, quotients and roots, 1e-30 for angles. Not for numbers beyond 1e±150.
+/// The sum `high + low`, with `|low|` at most half a unit in the last place of `high`. Relative errors:
+/// 2^-104 for sums, products, quotients and roots, 1e-30 for angles. Not for numbers beyond 1e±150.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Double {
     high: f64,

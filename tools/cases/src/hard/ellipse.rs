@@ -1,7 +1,7 @@
 //! The hard cases of the ellipse's integral: families of ellipses that break form factors in float32.
 //!
-//! As for polygons (`hard::family`), a case is the same on every machine, and is rounded to float32 before anything is
-//! computed from it.
+//! As for polygons (`hard::family`), a case is the same on every machine, and is rounded to float32 before
+//! anything is computed from it.
 
 use arealight_oracle::ellipse::Ellipse;
 use arealight_oracle::stream::Stream;
@@ -49,7 +49,8 @@ impl Family {
         FAMILIES.iter().find(|family| family.name == name)
     }
 
-    /// The family's case of an index and a seed: numbers that float32 holds. Every other one has slanting axes.
+    /// The family's case of an index and a seed: numbers that float32 holds. Every other one has slanting
+    /// axes.
     pub fn case(&self, index: u64, seed: u64) -> Ellipse {
         let mut stream = Stream::new(self.name, index, seed);
         let ellipse = (self.make)(&mut stream);

@@ -18,8 +18,8 @@ use serde::Serialize;
 pub enum Scope {
     /// All of them.
     Accuracy,
-    /// A number from 0 to 1, whatever the bits: float32 cannot hold the polygon's squares or differences, or a
-    /// device may take its numbers for zero.
+    /// A number from 0 to 1, whatever the bits: float32 cannot hold the polygon's squares or differences, or
+    /// a device may take its numbers for zero.
     Range,
     /// Exactly 0: a vertex is NaN or infinite.
     Zero,
@@ -58,8 +58,8 @@ impl Family {
 
     /// The family's case of an index, for a seed; `table` gives the lobes of those families that have one.
     ///
-    /// Half of the flat polygons come as vertices, their anchor being zero, the others as offsets from an anchor
-    /// in their midst.
+    /// Half of the flat polygons come as vertices, their anchor being zero, the others as offsets from an
+    /// anchor in their midst.
     pub fn case(&self, index: u64, seed: u64, table: &LightTable) -> HardCase {
         let mut stream = Stream::new(self.name, index, seed);
         let case = (self.make)(&mut stream, table);

@@ -81,7 +81,8 @@ impl Judged {
         let error = errors.fold(f64::INFINITY, f64::min);
         // The given polygon is one of those nearby: its value is searched no further where it is close enough
         let bound = promises.backward;
-        // Nor where it is hopelessly far off: away from contact, values nearby differ by little more than the moves
+        // Nor where it is hopelessly far off: away from contact, values nearby differ by little more than the
+        // moves
         let reach = 100.0 * nearby.vertex_count() as f64 * MOVE / reference.rho;
         let searched = error > bound && error <= reach;
         let backward = if searched { nearby.distance(value, bound).min(error) } else { error };

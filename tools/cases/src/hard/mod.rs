@@ -1,5 +1,5 @@
-//! The hard cases of the polygon integral: families of polygons that break form factors in float32, their truth
-//! in 106 bits, and the judgement of a computed value against what is promised.
+//! The hard cases of the polygon integral: families of polygons that break form factors in float32, their
+//! truth in 106 bits, and the judgement of a computed value against what is promised.
 //!
 //! | module | holds |
 //! |---|---|
@@ -26,8 +26,8 @@ pub mod reference;
 
 use arealight_oracle::stream;
 
-/// A polygon in the space whose z axis is the normal, as seen from the shading point at the origin. Its vertices
-/// are the real sums `anchor + offset`, which float32 need not hold.
+/// A polygon in the space whose z axis is the normal, as seen from the shading point at the origin. Its
+/// vertices are the real sums `anchor + offset`, which float32 need not hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HardCase {
     /// What the offsets start from.

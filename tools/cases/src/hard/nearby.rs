@@ -1,12 +1,12 @@
 //! The values of the polygons nearby: how far a computed value is from all that moving each vertex by
-//! [`MOVE`] of its distance can reach. That is the backward error: a result between the values of polygons nearby
-//! is as good as the rounding of the vertices allows.
+//! [`MOVE`] of its distance can reach. That is the backward error: a result between the values of polygons
+//! nearby is as good as the rounding of the vertices allows.
 //!
-//! Where the point lies on the polygon, its value jumps from one side's to the other's, and what is between counts
-//! as reached: there no value is right.
+//! Where the point lies on the polygon, its value jumps from one side's to the other's, and what is between
+//! counts as reached: there no value is right.
 //!
-//! The reachable interval is searched, not known: its ends are values of polygons that were evaluated. A search
-//! that is too weak overstates the error and never understates it.
+//! The reachable interval is searched, not known: its ends are values of polygons that were evaluated. A
+//! search that is too weak overstates the error and never understates it.
 
 use super::HardCase;
 use super::edges::sum_edges;
@@ -29,7 +29,8 @@ const STEPS: usize = 4;
 pub struct Nearby {
     vertices: Vec<DVec3>,
     radii: Vec<f64>,
-    /// Values that differ by whole hemispheres are as good, see [`super::reference::Reference::with_closings`].
+    /// Values that differ by whole hemispheres are as good, see
+    /// [`super::reference::Reference::with_closings`].
     ambiguous: bool,
 }
 
@@ -39,8 +40,8 @@ impl Nearby {
         let anchor = DVec3::from_array(case.anchor.map(f64::from));
         let vertices: Vec<DVec3> =
             case.offsets_exactly().into_iter().map(|o| anchor + DVec3::from_array(o)).collect();
-        // float64 rounds the vertices and the moves, by less than a millionth of them. A vertex at the point itself is
-        // in no direction, and so in any
+        // float64 rounds the vertices and the moves, by less than a millionth of them. A vertex at the point
+        // itself is in no direction, and so in any
         let farthest = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
         let radius =
             |v: &DVec3| if *v == DVec3::ZERO { 1e-9 * farthest } else { v.length() * MOVE * (1.0 - 1e-6) };
@@ -53,16 +54,16 @@ impl Nearby {
         self.vertices.len()
     }
 
-    /// The signed form factor of a polygon nearby, in float64: its error is 1e-16 over rho, and where rho is smaller
-    /// than [`MOVE`], that of a polygon that is nearby too.
+    /// The signed form factor of a polygon nearby, in float64: its error is 1e-16 over rho, and where rho is
+    /// smaller than [`MOVE`], that of a polygon that is nearby too.
     fn signed(&self, moves: &[DVec3]) -> f64 {
         let moved = self.vertices.iter().zip(&self.radii).zip(moves);
         let vertices: Vec<[f64; 3]> = moved.map(|((v, radius), m)| (*v + *m * *radius).to_array()).collect();
         sum_edges::<f64>([0.0; 3], &vertices).signed_form_factor().clamp(-1.0, 1.0)
     }
 
-    /// An upper bound of the distance from `computed`, which is the absolute value of a signed form factor, to the
-    /// interval of the values nearby. Stops searching at `enough`.
+    /// An upper bound of the distance from `computed`, which is the absolute value of a signed form factor,
+    /// to the interval of the values nearby. Stops searching at `enough`.
     pub fn distance(&self, computed: f64, enough: f64) -> f64 {
         if !computed.is_finite() || computed < 0.0 {
             return f64::INFINITY;

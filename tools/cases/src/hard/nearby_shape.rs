@@ -1,8 +1,8 @@
 //! The values of the shapes nearby: how far a computed value is from all that moving a shape's vectors by
 //! [`MOVE`] of their lengths can reach. That is the backward error, as `hard::nearby` has it for polygons.
 //!
-//! The interval is searched, not known: its ends are values of shapes that were evaluated. A search that is too weak
-//! overstates the error and never understates it.
+//! The interval is searched, not known: its ends are values of shapes that were evaluated. A search that is
+//! too weak overstates the error and never understates it.
 
 use crate::hard::promise::MOVE;
 use arealight_oracle::ellipse::{self, Ellipse};
@@ -30,8 +30,9 @@ pub trait Movable {
     /// The form factor of the moved shape, of whatever side is seen.
     fn value(&self, moves: &Moves) -> f64;
 
-    /// The same moves but for the center's, which goes on to where the point lies in the shape's plane, just before it and just
-    /// behind: where a search along gradients steps over. `None` where that is out of reach, or nothing is flat.
+    /// The same moves but for the center's, which goes on to where the point lies in the shape's plane, just
+    /// before it and just behind: where a search along gradients steps over. `None` where that is out of
+    /// reach, or nothing is flat.
     fn contacts(&self, _moves: &Moves) -> Option<[Moves; 2]> {
         None
     }
@@ -88,7 +89,8 @@ impl Movable for Tube {
     }
 }
 
-/// An upper bound of the distance from `computed` to the interval of the values of shapes nearby. Stops searching at `enough`.
+/// An upper bound of the distance from `computed` to the interval of the values of shapes nearby. Stops
+/// searching at `enough`.
 pub fn distance(shape: &impl Movable, computed: f64, enough: f64) -> f64 {
     if !computed.is_finite() || computed < 0.0 {
         return f64::INFINITY;
@@ -223,8 +225,8 @@ mod tests {
 
     #[test]
     fn the_plane_is_found_between_two_sides() {
-        // A case of the long battery: the point is 9e-8 off the plane, and outside of the rim, so that from an ellipse nearby nothing
-        // is seen, and from those beyond as much as before
+        // A case of the long battery: the point is 9e-8 off the plane, and outside of the rim, so that from
+        // an ellipse nearby nothing is seen, and from those beyond as much as before
         let ellipse = crate::hard::ellipse::Family::find("contact-rim").unwrap().case(7037, 0);
         assert!(form_factor(&ellipse).abs() > 4e-3);
         assert!(distance(&ellipse, 0.0, 1e-7) <= 1e-7);

@@ -7,8 +7,8 @@ use serde::Serialize;
 /// nearby: four units in float32's last place.
 pub const MOVE: f64 = 4.0 / (1 << 24) as f64;
 
-/// The largest offset from the anchor, as a part of the farthest vertex's distance, below which the difference
-/// form holds its relative promise: its own switch stands farther out, at a half.
+/// The largest offset from the anchor, as a part of the farthest vertex's distance, below which the
+/// difference form holds its relative promise: its own switch stands farther out, at a half.
 pub const SMALL: f64 = 0.2;
 
 /// What a way to compute form factors promises. All promise a finite number in [0, 1] for any bits, and 0
@@ -21,8 +21,8 @@ pub struct Promises {
     pub forward: f64,
     /// What is added to it, over the distance to the polygon as a part of the farthest vertex's distance.
     pub contact: f64,
-    /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if it
-    /// stood upright at the zenith. `None` promises nothing more for them.
+    /// For small lights, the largest error as a part of area / (pi distance²), what the light would send if
+    /// it stood upright at the zenith. `None` promises nothing more for them.
     pub small_light: Option<f64>,
 }
 

@@ -7,7 +7,8 @@ use super::promise::{MOVE, SMALL};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// What the small lights' promise is a millionth of, over what moving a vertex of four units in the last place does.
+/// What the small lights' promise is a millionth of, over what moving a vertex of four units in the last
+/// place does.
 const PER_AREA: f64 = MOVE / 1e-6;
 
 /// A case's form factor in 106 bits, and what bounds are made of.
@@ -21,8 +22,9 @@ pub struct Reference {
     pub distance: f64,
     /// The polygon's area.
     pub area: f64,
-    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`]. Of a sliver, the area
-    /// that four units in the last place of its offsets are a millionth of: no better is its area known.
+    /// area / (pi distance²) of a light that is small for the difference form, see [`SMALL`]. Of a sliver,
+    /// the area that four units in the last place of its offsets are a millionth of: no better is its area
+    /// known.
     pub small_light_unit: Option<f64>,
 }
 
@@ -32,10 +34,10 @@ impl Reference {
         Self::with_closings(case).0
     }
 
-    /// As [`Reference::new`], and the form factors that are as right: those of the polygon whose parts below the
-    /// horizon are closed the other way around. An outline that is not flat and goes below more than once bounds
-    /// regions that differ by whole hemispheres, and no edge tells which is meant. Flat ones are flat but for their
-    /// rounding, which matters where the point lies in their plane.
+    /// As [`Reference::new`], and the form factors that are as right: those of the polygon whose parts below
+    /// the horizon are closed the other way around. An outline that is not flat and goes below more than once
+    /// bounds regions that differ by whole hemispheres, and no edge tells which is meant. Flat ones are flat
+    /// but for their rounding, which matters where the point lies in their plane.
     pub fn with_closings(case: &HardCase) -> (Self, Vec<f64>) {
         let (anchor, offsets) = (case.anchor.map(f64::from), case.offsets_exactly());
         let edges = sum_edges::<Double>(anchor, &offsets);

@@ -14,8 +14,8 @@ use std::time::Duration;
 /// What a [`Host`] is made with.
 #[derive(Debug, Clone)]
 pub struct HostOptions {
-    /// The device: its index in [`crate::host::devices`], or a part of its name (upper and lower case are the same).
-    /// `None` takes a discrete GPU, else the best kind there is.
+    /// The device: its index in [`crate::host::devices`], or a part of its name (upper and lower case are the
+    /// same). `None` takes a discrete GPU, else the best kind there is.
     pub device: Option<String>,
     /// What the validation layer looks at; [`Host::validation_messages`] has what it says.
     pub validation: Validation,
@@ -102,7 +102,8 @@ impl Host {
             .queue_create_infos(&queues)
             .enabled_features(&enabled_features)
             .enabled_extension_names(&extensions);
-        // SAFETY: What the info points to lives until the call returns, and the instance as long as the device.
+        // SAFETY: What the info points to lives until the call returns, and the instance as long as the
+        // device.
         let device = unsafe { instance.raw.create_device(physical_device, &info, None) };
         let device = device.named("vkCreateDevice")?;
         // SAFETY: The device was made with this queue.
@@ -231,8 +232,8 @@ impl Drop for Inner {
             return;
         }
         // SAFETY: Every object of the device holds the host and is thus gone, and no work is pending, since
-        // submissions are waited for. The allocator frees its memory before the device goes, and the instance,
-        // which is not touched again, goes last.
+        // submissions are waited for. The allocator frees its memory before the device goes, and the
+        // instance, which is not touched again, goes last.
         unsafe {
             drop(allocator);
             self.device.destroy_device(None);
@@ -336,7 +337,8 @@ fn rank(kind: vk::PhysicalDeviceType) -> u32 {
     }
 }
 
-/// Extensions that are enabled: what was asked for, and what must be where the device has it, which is only the one that marks a non-conformant device.
+/// Extensions that are enabled: what was asked for, and what must be where the device has it, which is only
+/// the one that marks a non-conformant device.
 fn extensions(
     instance: &Instance,
     physical_device: vk::PhysicalDevice,

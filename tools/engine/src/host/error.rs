@@ -8,7 +8,8 @@ use ash::vk;
 pub enum HostError {
     /// There is no Vulkan loader.
     #[error(
-        "Vulkan is not installed here: its loader cannot be opened ({0}). Install the loader and a driver; on \
+        "Vulkan is not installed here: its loader cannot be opened ({0}). Install the loader and a driver; \
+        on \
          Debian: apt-get install libvulkan1 mesa-vulkan-drivers (the latter computes on the CPU where there \
          is no GPU)"
     )]
@@ -20,7 +21,8 @@ pub enum HostError {
     LoaderTooOld(String),
     /// The loader finds no driver, or none of its devices has Vulkan 1.1 and a queue that computes.
     #[error(
-        "no usable Vulkan device (found: {}). Install the driver of your GPU, or one that computes on the CPU; \
+        "no usable Vulkan device (found: {}). Install the driver of your GPU, or one that computes on the \
+        CPU; \
          on Debian: apt-get install mesa-vulkan-drivers",
         list(found)
     )]
@@ -83,7 +85,8 @@ pub enum HostError {
     },
     /// The device was lost: the driver reset it, or crashed.
     #[error(
-        "the Vulkan device was lost in {call}: the driver reset it, usually for a dispatch that took too long \
+        "the Vulkan device was lost in {call}: the driver reset it, usually for a dispatch that took too \
+        long \
          or read out of bounds. Try again with less work, and with validation; the system's log may say more"
     )]
     DeviceLost {

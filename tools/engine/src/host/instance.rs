@@ -76,7 +76,8 @@ impl Instance {
             Switch::Settings => info.push_next(&mut settings),
         };
 
-        // SAFETY: What the info points to lives until the call returns, and the log until the instance is gone.
+        // SAFETY: What the info points to lives until the call returns, and the log until the instance is
+        // gone.
         let raw = match unsafe { entry.create_instance(&info, None) } {
             // A loader without any driver says this.
             Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(HostError::NoDevice { found: vec![] }),

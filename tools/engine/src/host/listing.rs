@@ -63,8 +63,8 @@ pub struct DeviceSummary {
 /// Lists every device, in the order that [`crate::host::HostOptions::device`] counts them.
 ///
 /// # Errors
-/// [`HostError::LoaderMissing`] where there is no Vulkan at all, [`HostError::NoDevice`] where it has no driver.
-/// Drivers without a device are an empty list.
+/// [`HostError::LoaderMissing`] where there is no Vulkan at all, [`HostError::NoDevice`] where it has no
+/// driver. Drivers without a device are an empty list.
 pub fn devices() -> Result<Vec<DeviceSummary>, HostError> {
     let instance = Instance::new(Validation::Off)?;
     let candidates = candidates(&instance)?;

@@ -1,9 +1,9 @@
 //! The compiler of a real GPU on a machine that has none: Mesa's RADV with null hardware.
 //!
-//! With `RADV_FORCE_FAMILY` the driver offers a device of that family that compiles pipelines and runs nothing: a submission to
-//! it crashes. [`Compiler`] makes compute pipelines on it and reads what `VK_KHR_pipeline_executable_properties` says of
-//! them. The loader and the driver read the variables when they start, so a process must be started with them
-//! ([`set_environment`]).
+//! With `RADV_FORCE_FAMILY` the driver offers a device of that family that compiles pipelines and runs
+//! nothing: a submission to it crashes. [`Compiler`] makes compute pipelines on it and reads what
+//! `VK_KHR_pipeline_executable_properties` says of them. The loader and the driver read the variables when
+//! they start, so a process must be started with them ([`set_environment`]).
 
 use crate::host::device::candidates;
 use crate::host::error::{HostError, NameCall as _};
@@ -19,8 +19,8 @@ pub fn is_null_hardware(device: &str) -> bool {
     device.contains("Null hardware")
 }
 
-/// The file by which the Vulkan loader finds RADV: one that `VK_DRIVER_FILES` or `VK_ICD_FILENAMES` names, else one of the
-/// loader's folders, whatever those variables name. `None` where RADV is not installed.
+/// The file by which the Vulkan loader finds RADV: one that `VK_DRIVER_FILES` or `VK_ICD_FILENAMES` names,
+/// else one of the loader's folders, whatever those variables name. `None` where RADV is not installed.
 pub fn driver_file() -> Option<PathBuf> {
     let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].into_iter().filter_map(std::env::var_os);
     let mut named = named.flat_map(|files| std::env::split_paths(&files).collect::<Vec<_>>());
@@ -42,7 +42,8 @@ fn is_radv(file: &Path) -> bool {
     file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("radeon_icd"))
 }
 
-/// Lets a process see nothing but null hardware of `family` (`navi21`, `vega10`), by the driver that [`driver_file`] found.
+/// Lets a process see nothing but null hardware of `family` (`navi21`, `vega10`), by the driver that
+/// [`driver_file`] found.
 pub fn set_environment(command: &mut Command, driver: &Path, family: &str) {
     command
         .env("RADV_FORCE_FAMILY", family)
@@ -63,8 +64,8 @@ pub struct ComputeShader {
     pub words: Vec<u32>,
     /// Pairs of specialisation constant id and value.
     pub specialization: Vec<(u32, u32)>,
-    /// Kind and number of descriptors of each binding of set 0, in order. Combined image samplers have an immutable sampler:
-    /// trilinear, clamped to the edge.
+    /// Kind and number of descriptors of each binding of set 0, in order. Combined image samplers have an
+    /// immutable sampler: trilinear, clamped to the edge.
     pub bindings: Vec<(vk::DescriptorType, u32)>,
     /// Size of the push constants in bytes.
     pub push_constant_size: u32,
@@ -113,7 +114,8 @@ impl Compiler {
     /// Opens the null hardware that [`set_environment`] lets this process see.
     ///
     /// # Errors
-    /// [`HostError::NoNullHardware`] where there is none, [`HostError::MissingFeature`] where it gives no statistics.
+    /// [`HostError::NoNullHardware`] where there is none, [`HostError::MissingFeature`] where it gives no
+    /// statistics.
     pub fn new() -> Result<Self, HostError> {
         let instance = Instance::new(Validation::Off)?;
         let found = candidates(&instance)?;
@@ -131,7 +133,8 @@ impl Compiler {
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
             .push_next(&mut statistics);
-        // SAFETY: What the info points to lives until the call returns, and the instance as long as the device.
+        // SAFETY: What the info points to lives until the call returns, and the instance as long as the
+        // device.
         let device = unsafe { instance.raw.create_device(null.physical_device, &info, None) };
         let device = device.map_err(|result| match result {
             vk::Result::ERROR_EXTENSION_NOT_PRESENT | vk::Result::ERROR_FEATURE_NOT_PRESENT => {
@@ -162,8 +165,8 @@ impl Compiler {
     /// Makes a pipeline of a shader, and reads what the compiler says of it.
     ///
     /// # Errors
-    /// [`HostError::Vulkan`] where the pipeline cannot be made, [`HostError::MissingStatistic`] where the driver does not say
-    /// all of [`Statistics`].
+    /// [`HostError::Vulkan`] where the pipeline cannot be made, [`HostError::MissingStatistic`] where the
+    /// driver does not say all of [`Statistics`].
     pub fn statistics(&self, shader: &ComputeShader) -> Result<Statistics, HostError> {
         let mut made = Made::none(&self.device);
         made.make_layout(shader)?;
@@ -178,7 +181,8 @@ impl Compiler {
         let subgroup_size = properties.first().map_or(0, |one| one.subgroup_size);
 
         let info = vk::PipelineExecutableInfoKHR::default().pipeline(made.pipeline).executable_index(0);
-        // SAFETY: Likewise, and it was made to be asked for its statistics; a compute pipeline has one executable.
+        // SAFETY: Likewise, and it was made to be asked for its statistics; a compute pipeline has one
+        // executable.
         let said = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
         let said = said.named("vkGetPipelineExecutableStatisticsKHR")?;
         let number = |name: &'static str| {
@@ -206,7 +210,8 @@ impl Compiler {
 
 impl Drop for Compiler {
     fn drop(&mut self) {
-        // SAFETY: Pipelines are gone with the call that made them, and nothing was submitted. The instance goes after.
+        // SAFETY: Pipelines are gone with the call that made them, and nothing was submitted. The instance
+        // goes after.
         unsafe { self.device.destroy_device(None) };
     }
 }

@@ -3,8 +3,8 @@
 //! A suite that returns early without a device proves nothing, so:
 //! - with `AREALIGHT_REQUIRE_GPU=1` a missing device or validation layer fails the test;
 //! - without, the test says `skipped: …`;
-//! - where `AREALIGHT_GPU_TEST_LOG` names a file, each test appends a line to it, `ran …` or `skipped …`, so that
-//!   a script can list those and insist on how many ran;
+//! - where `AREALIGHT_GPU_TEST_LOG` names a file, each test appends a line to it, `ran …` or `skipped …`, so
+//!   that a script can list those and insist on how many ran;
 //! - what the validation layer says fails the test when the [`TestHost`] is dropped.
 //!
 //! `AREALIGHT_DEVICE` chooses the device, and `AREALIGHT_VALIDATION` (`off`, `core`, `synchronization` or
@@ -47,8 +47,8 @@ impl Drop for TestHost {
     }
 }
 
-/// A validated instance of Vulkan 1.1 alone, for the test of a host that makes its own device. It fails the test as a
-/// [`TestHost`] does.
+/// A validated instance of Vulkan 1.1 alone, for the test of a host that makes its own device. It fails the
+/// test as a [`TestHost`] does.
 pub struct TestInstance {
     /// `None` only while it is being dropped.
     instance: Option<Instance>,
@@ -77,7 +77,8 @@ impl Drop for TestInstance {
     }
 }
 
-/// An instance for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is no device: return then.
+/// An instance for a test, validated as `AREALIGHT_VALIDATION` says. `None` where there is no device: return
+/// then.
 ///
 /// # Panics
 /// As [`device_or_skip`].
@@ -143,8 +144,8 @@ fn test_options(validation: Validation) -> HostOptions {
     HostOptions { device: std::env::var("AREALIGHT_DEVICE").ok(), validation, ..HostOptions::default() }
 }
 
-/// The file of the driver whose compiler a test asks ([`crate::host::null_hardware`]). `None` where it is not installed: return then.
-/// A test that runs says so by [`ran`].
+/// The file of the driver whose compiler a test asks ([`crate::host::null_hardware`]). `None` where it is not
+/// installed: return then. A test that runs says so by [`ran`].
 ///
 /// # Panics
 /// Where `AREALIGHT_REQUIRE_GPU=1` and it is missing.

@@ -30,9 +30,9 @@ pub struct ShadowedView {
     blockers: [Buffer; 2],
 }
 
-/// A kernel of another's that shades with shadows. Its bindings are the lights and their vertices, the G-buffer's position, normal, base colour and
-/// reflectance, the radiance that it adds to or multiplies, and [`arealight::Blockers`]' nodes and triangles; its push constants are
-/// [`ShadeConstants`].
+/// A kernel of another's that shades with shadows. Its bindings are the lights and their vertices, the
+/// G-buffer's position, normal, base colour and reflectance, the radiance that it adds to or multiplies, and
+/// [`arealight::Blockers`]' nodes and triangles; its push constants are [`ShadeConstants`].
 #[derive(Clone, Copy)]
 pub struct OtherShadows<'a> {
     /// The kernel.
@@ -76,8 +76,8 @@ impl ShadowedView {
         Ok(())
     }
 
-    /// What the last run's rays found: of each pixel the part of its light that arrives, the penumbra's width, 1 where there is light, and the
-    /// number of rays.
+    /// What the last run's rays found: of each pixel the part of its light that arrives, the penumbra's
+    /// width, 1 where there is light, and the number of rays.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.
@@ -97,7 +97,8 @@ impl ShadowedView {
     }
 }
 
-/// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they are.
+/// What of a scene blocks light: every triangle but those of lamps, which would hide the lights that they
+/// are.
 fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
     let triangles = scene.triangles.iter().filter(|triangle| triangle.flags & GpuTriangle::LAMP == 0);
     let triangles: Vec<_> =
@@ -106,7 +107,8 @@ fn blockers(scene: &SceneBuffers) -> Result<Blockers, BufferError> {
 }
 
 impl SceneRenderer<'_> {
-    /// Makes what shading this view of `scene` with shadows needs. `options` have shadow rays; radiance is added to the image of the view.
+    /// Makes what shading this view of `scene` with shadows needs. `options` have shadow rays; radiance is
+    /// added to the image of the view.
     ///
     /// # Errors
     /// [`EngineError`] says why the device fails, or which option no shadow can be made with.
@@ -124,7 +126,8 @@ impl SceneRenderer<'_> {
             let output = ShadowOptions { filter, history, output: Output::Add };
             (ShadePass::new(engine.context(), options)?, ShadowPass::new(engine.context(), options, output)?)
         };
-        let blockers = blockers(scene)?; // Blockers::new of the scene's triangles; upload its nodes and triangles
+        // Blockers::new of the scene's triangles; upload its nodes and triangles
+        let blockers = blockers(scene)?;
         // doc end
         let image = |name, format| {
             let usage = vk::ImageUsageFlags::STORAGE;
@@ -213,8 +216,8 @@ impl SceneRenderer<'_> {
             }
             self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
             // doc: record
-            // SAFETY: The commands are being recorded outside a render pass; the sets were written with images of the frame's size, and
-            // submissions are waited for.
+            // SAFETY: The commands are being recorded outside a render pass; the sets were
+            // written with images of the frame's size, and submissions are waited for.
             unsafe {
                 view.shade.record(commands, view.sets[0], &shade)?;
                 self.engine.compute_barrier(commands);
@@ -225,8 +228,8 @@ impl SceneRenderer<'_> {
         })
     }
 
-    /// The first step of [`SceneRenderer::shade_shadowed`], as a submission of its own to tell its time apart: shades without shadows, and picks
-    /// lights and lobes for the rays.
+    /// The first step of [`SceneRenderer::shade_shadowed`], as a submission of its own to tell its time
+    /// apart: shades without shadows, and picks lights and lobes for the rays.
     ///
     /// # Errors
     /// [`EngineError`] where the device fails.

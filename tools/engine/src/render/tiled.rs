@@ -30,9 +30,11 @@ pub struct TiledView {
 /// What was found of a view's tiles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TileCounts {
-    /// How many tiles each class had; none where the frame was shaded without tiles ([`TileOptions::least_quads`]).
+    /// How many tiles each class had; none where the frame was shaded without tiles
+    /// ([`TileOptions::least_quads`]).
     pub classes: Vec<(TileClass, u32)>,
-    /// How many lights of all kinds the tiles' lists held in all; a tile that was shaded by all of the frame's counts those.
+    /// How many lights of all kinds the tiles' lists held in all; a tile that was shaded by all of the
+    /// frame's counts those.
     pub lights: u64,
 }
 
@@ -203,8 +205,8 @@ impl SceneRenderer<'_> {
             }
             let took = self.engine.host().try_submit_timed(|commands| {
                 self.g_buffer.radiance.transition(commands, Usage::COMPUTE_WRITE, Usage::COMPUTE_WRITE);
-                // SAFETY: The commands are being recorded outside a render pass; the set was written with images of
-                // the frame's size, and submissions are waited for.
+                // SAFETY: The commands are being recorded outside a render pass; the set was written with
+                // images of the frame's size, and submissions are waited for.
                 unsafe { view.pass.record(commands, view.set, &part) }?;
                 Ok::<_, EngineError>(())
             })?;

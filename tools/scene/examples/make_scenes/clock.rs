@@ -1,5 +1,5 @@
-//! A station's clock that hangs over a floor which is a mirror on the left and rough on the right: a textured disk, on
-//! both sides.
+//! A station's clock that hangs over a floor which is a mirror on the left and rough on the right: a textured
+//! disk, on both sides.
 
 use crate::screen::{ground, texture};
 use crate::shapes::{disk, panel};

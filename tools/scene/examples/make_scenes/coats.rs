@@ -1,5 +1,5 @@
-//! Spheres with a clear coat, and behind them the same without: metallic paint, plastic, hammered metal below a smooth coat, and a
-//! coat that is uneven itself.
+//! Spheres with a clear coat, and behind them the same without: metallic paint, plastic, hammered metal below
+//! a smooth coat, and a coat that is uneven itself.
 
 use crate::screen::texture;
 use crate::shapes::{floor, panel, sphere};

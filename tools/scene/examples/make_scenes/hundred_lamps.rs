@@ -1,5 +1,5 @@
-//! A hundred small rectangles of many sizes, heights and colours above a floor with boxes, of satin or of metal: of some lights of many the shadow
-//! matters.
+//! A hundred small rectangles of many sizes, heights and colours above a floor with boxes, of satin or of
+//! metal: of some lights of many the shadow matters.
 
 use crate::shapes::{cuboid, floor, panel};
 use crate::sweep::turn_around;

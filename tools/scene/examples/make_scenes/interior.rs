@@ -1,4 +1,5 @@
-//! A living room: light through a window, a globe under the ceiling, a lamp with a round shade, a sofa on a rug.
+//! A living room: light through a window, a globe under the ceiling, a lamp with a round shade, a sofa on a
+//! rug.
 
 use crate::shapes::{cylinder, floor, panel, rounded_box, sphere, turned};
 use crate::writer::{Writer, look_at};

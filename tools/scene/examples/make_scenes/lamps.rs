@@ -1,4 +1,5 @@
-//! Disks, spheres and tubes of every kind about a floor of four roughnesses: each lamp's mesh says what it stands for.
+//! Disks, spheres and tubes of every kind about a floor of four roughnesses: each lamp's mesh says what it
+//! stands for.
 
 use crate::shapes::{capsule, cylinder, disk, floor, panel, rounded_box, sphere};
 use crate::writer::{Shape, Writer, look_at};

@@ -1,4 +1,5 @@
-//! A ball of each material that is supported, in four rows: what every surface has, layers, lobes of two roughnesses, and thin films.
+//! A ball of each material that is supported, in four rows: what every surface has, layers, lobes of two
+//! roughnesses, and thin films.
 
 use crate::screen::texture;
 use crate::shapes::{floor, panel, sphere};

@@ -1,4 +1,5 @@
-//! A paper screen with a lamp behind it and a vase between the two, and leaves in the light of a window: thin surfaces that let light through.
+//! A paper screen with a lamp behind it and a vase between the two, and leaves in the light of a window: thin
+//! surfaces that let light through.
 
 use crate::shapes::{cuboid, floor, panel, polygon, sphere, turned};
 use crate::sweep::turn_around;

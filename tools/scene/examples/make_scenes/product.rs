@@ -1,4 +1,5 @@
-//! A product on a table: a bottle of lacquer, a tin of brushed metal and a box, under a softbox that fades and two strips.
+//! A product on a table: a bottle of lacquer, a tin of brushed metal and a box, under a softbox that fades
+//! and two strips.
 
 use crate::screen::texture;
 use crate::shapes::{backdrop, panel, rounded_box, turned};

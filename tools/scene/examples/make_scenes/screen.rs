@@ -1,5 +1,5 @@
-//! A television at the back of a floor that is a mirror on the left and rough on the right, a sign that shows its
-//! image on both sides, and a lamp without one.
+//! A television at the back of a floor that is a mirror on the left and rough on the right, a sign that shows
+//! its image on both sides, and a lamp without one.
 
 use crate::shapes::{floor, panel, polygon, rounded_box, sphere};
 use crate::test_card;

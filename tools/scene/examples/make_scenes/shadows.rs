@@ -1,4 +1,5 @@
-//! Blockers of many sizes and heights under one rectangle: shadows that are hard where things touch the floor, and wide above it.
+//! Blockers of many sizes and heights under one rectangle: shadows that are hard where things touch the
+//! floor, and wide above it.
 
 use crate::shapes::{cuboid, cylinder, floor, panel, sphere};
 use crate::writer::Writer;

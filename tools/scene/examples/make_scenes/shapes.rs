@@ -35,7 +35,8 @@ impl Shape {
         self.with_image_along(1, 1.0)
     }
 
-    /// The shape, in the plane y = 0, with an image that fills its box; seen from above, its top is at negative z.
+    /// The shape, in the plane y = 0, with an image that fills its box; seen from above, its top is at
+    /// negative z.
     pub fn with_image_from_above(self) -> Self {
         self.with_image_along(2, -1.0)
     }
@@ -246,8 +247,8 @@ pub fn rounded_box(size: [f64; 3], rounding: f64, steps: u32) -> Shape {
     shape
 }
 
-/// A surface of revolution about +Y through (radius, height) points from the bottom to the top outside, smooth but where a point is there
-/// twice.
+/// A surface of revolution about +Y through (radius, height) points from the bottom to the top outside,
+/// smooth but where a point is there twice.
 pub fn turned(outline: &[[f64; 2]], segments: u32) -> Shape {
     let point = |i: usize| DVec2::from(outline[i]);
     let along = |i: usize| {
@@ -259,7 +260,8 @@ pub fn turned(outline: &[[f64; 2]], segments: u32) -> Shape {
     lathe(&profile, segments)
 }
 
-/// A floor of the width and depth that bends up at its back, with a radius, into a wall of the height: no edge behind what stands on it.
+/// A floor of the width and depth that bends up at its back, with a radius, into a wall of the height: no
+/// edge behind what stands on it.
 pub fn backdrop([width, depth, height]: [f64; 3], bend: f64) -> Shape {
     const STEPS: u32 = 16;
     let mut shape = Shape::default();

@@ -1,4 +1,5 @@
-//! Spheres of cloth, in two rows: below without sheen, above with it, from satin to velvet; one's colour and one's roughness are textures.
+//! Spheres of cloth, in two rows: below without sheen, above with it, from satin to velvet; one's colour and
+//! one's roughness are textures.
 
 use crate::shapes::{floor, panel, sphere};
 use crate::sweep::turn_around;

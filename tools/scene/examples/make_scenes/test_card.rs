@@ -8,8 +8,8 @@ pub const HEIGHT: u32 = 288;
 const WHITE: Rgb<u8> = Rgb([235, 235, 235]);
 const BLACK: Rgb<u8> = Rgb([12, 12, 12]);
 
-/// A television's test card: a grid, bars of colours and of lines, a circle, letters, and a mark of its own in three
-/// corners.
+/// A television's test card: a grid, bars of colours and of lines, a circle, letters, and a mark of its own
+/// in three corners.
 pub fn card() -> RgbImage {
     let mut card = RgbImage::from_pixel(WIDTH, HEIGHT, Rgb([92, 92, 96]));
     // A grid of squares, and a border of blocks

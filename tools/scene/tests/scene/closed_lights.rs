@@ -28,7 +28,8 @@ fn solids() -> [(&'static str, Shape); 4] {
     ]
 }
 
-/// What the lights send to a surface, by the form factors of their faces: radiance's first channel times the part of a half space.
+/// What the lights send to a surface, by the form factors of their faces: radiance's first channel times the
+/// part of a half space.
 fn analytic(lights: &[Light], position: DVec3, normal: DVec3) -> f64 {
     let (x, y) = normal.any_orthonormal_pair();
     let local = |vertex: &DVec3| {
@@ -45,7 +46,8 @@ fn analytic(lights: &[Light], position: DVec3, normal: DVec3) -> f64 {
     lights.iter().map(of_light).sum()
 }
 
-/// The same by rays, which see the triangles of the file and know nothing of lights: as the cosine falls, from a grid of 256 x 256.
+/// The same by rays, which see the triangles of the file and know nothing of lights: as the cosine falls,
+/// from a grid of 256 x 256.
 fn by_rays(scene: &Scene, position: DVec3, normal: DVec3) -> f64 {
     const SIDE: u32 = 256;
     let buffers = SceneBuffers::new(scene, position).unwrap();
@@ -120,8 +122,8 @@ fn each_part_of_a_mesh_is_judged_by_itself() {
     assert_eq!(sides, [(6, false), (1, true)]);
 }
 
-/// A doubly sided cube of two primitives: all but its last face, which emits, and a lid of another material. Both have the corners of the
-/// cube.
+/// A doubly sided cube of two primitives: all but its last face, which emits, and a lid of another material.
+/// Both have the corners of the cube.
 fn with_lid(lid: Value) -> Writer {
     let cube = cuboid([1.0; 3]);
     let (sides, face) = cube.indices.split_at(30);

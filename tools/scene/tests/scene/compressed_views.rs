@@ -118,7 +118,8 @@ fn compressed(index_size: usize, mode: &str) -> File {
     file
 }
 
-/// The largest differences of positions, normals, coordinates and colours between corners. The encoder begins a triangle with any corner.
+/// The largest differences of positions, normals, coordinates and colours between corners. The encoder begins
+/// a triangle with any corner.
 fn differences(a: &Scene, b: &Scene) -> [f64; 4] {
     assert_eq!(a.triangles.len(), b.triangles.len());
     let mut worst = [0.0_f64; 4];
@@ -150,7 +151,8 @@ fn compressed_views_are_what_they_were() {
         let scene = Scene::from_bytes(&file.glb(), "test.glb").unwrap();
         let worst = differences(&scene, &plain);
         println!("{mode} of {index_size} bytes: {worst:?}");
-        // 15 bits of 1.5 and a quaternion of 16; an octahedron of 8 bits; nothing; 8 bits of each of three mixed colours
+        // 15 bits of 1.5 and a quaternion of 16; an octahedron of 8 bits; nothing; 8 bits of each of three
+        // mixed colours
         let bounds = [2e-4, 0.02, 1e-9, 0.03];
         assert!(
             worst.iter().zip(bounds).all(|(worst, bound)| *worst < bound),

@@ -53,7 +53,8 @@ fn data_that_are_only_in_an_extension_are_refused_by_its_name() {
     let mut writer = panel_with(json!({}));
     writer.root["textures"] = json!([{ "extensions": { "KHR_texture_basisu": { "source": 0 } } }]);
     let error = error(writer);
-    let text = "textures[0]: is only there in KHR_texture_basisu, which is not supported; export the scene without it";
+    let text = "textures[0]: is only there in KHR_texture_basisu, which is not supported; export the scene \
+    without it";
     assert!(error.contains(text), "{error}");
 }
 
@@ -184,7 +185,8 @@ fn textures_are_scaled_turned_and_moved() {
     assert_eq!(transform(json!({ "texCoord": 1, "scale": [2, 2] })), [[1.0, 0.5]; 2]);
 }
 
-/// The rows of docs/gltf.md whose words no source of the program has or their test does not expect, or that say nothing of what is lost.
+/// The rows of docs/gltf.md whose words no source of the program has or their test does not expect, or that
+/// say nothing of what is lost.
 fn wrong_rows(document: &str) -> Vec<String> {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let sources = std::fs::read_dir(folder.join("src")).unwrap();

@@ -197,9 +197,8 @@ fn what_is_wrong_with_a_coat_is_named() {
         "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1 } } } });
     assert_eq!(
         warnings(&load(textured(clearcoat(&transformed)))),
-        [
-            "material '#0': clearcoatTexture: mapped otherwise than clearcoatRoughnessTexture, drawn as that is"
-        ]
+        ["material '#0': clearcoatTexture: mapped otherwise than clearcoatRoughnessTexture, drawn as that \
+            is"]
     );
 }
 
@@ -350,7 +349,8 @@ fn texture_features_that_are_missing_are_said() {
     attributes.as_object_mut().unwrap().remove("TEXCOORD_0");
     let expected = [
         "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_0: its emissive texture is read at (0, 0)",
-        "material '#0': normalTexture, emissiveTexture, specularTexture: mapped otherwise than baseColorTexture, drawn as that is",
+        "material '#0': normalTexture, emissiveTexture, specularTexture: mapped otherwise than \
+        baseColorTexture, drawn as that is",
         "meshes[0] 'panel'.primitives[0]: has no TEXCOORD_1: its textures are read at (0, 0)",
     ];
     assert_eq!(warnings(&load(writer)), expected);
@@ -469,7 +469,8 @@ fn diffuse_transmission_is_read_with_both_textures() {
         (surface.diffuse_albedo, read.material.other_side().diffuse_albedo.x),
         (DVec3::splat(0.25), 0.75 * 0.25)
     );
-    // None without the extension, nor of its textures where the factor is zero, which is the default; nor of a metal
+    // None without the extension, nor of its textures where the factor is zero, which is the default; nor of
+    // a metal
     for without in [json!({}), with_transmission(&json!({ "diffuseTransmissionTexture": { "index": 0 } }))] {
         let scene = load(textured(without));
         assert_eq!((scene.materials[0].transmission_texture, scene.textures.len()), (None, 0));

@@ -327,7 +327,8 @@ fn each_light_is_one_lamp_s_and_a_lamp_is_what_it_looks_like() {
         let of_lamps: usize = scene.lamps.iter().map(|lamp| lamp.triangles.len()).sum();
         assert_eq!(of_lamps, scene.triangles.iter().filter(|triangle| triangle.lamp).count(), "{name}");
         for lamp in scene.lamps.iter().filter(|lamp| !lamp.triangles.is_empty()) {
-            // What looks like a light is where it is, and about as large: a tube in place of a capsule lacks the ends
+            // What looks like a light is where it is, and about as large: a tube in place of a capsule lacks
+            // the ends
             let corners = scene.triangles[lamp.triangles.clone()].iter().flat_map(|t| t.positions);
             let seen: arealight_scene::Bounds = corners.collect();
             let shines: arealight_scene::Bounds =

@@ -8,8 +8,9 @@ use glam::{DVec3, Vec3};
 use serde_json::json;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// A panel from (-1, -0.5) to (1, 0.5) on a node far away, whose left edge hangs on a joint that stays where it was bound, and its right
-/// edge, by `right`, on that one and one that has moved by (0, 2, 1). The second was bound at (1, 0, 0).
+/// A panel from (-1, -0.5) to (1, 0.5) on a node far away, whose left edge hangs on a joint that stays where
+/// it was bound, and its right edge, by `right`, on that one and one that has moved by (0, 2, 1). The second
+/// was bound at (1, 0, 0).
 fn skinned(right: [f32; 2]) -> Writer {
     let mut writer = emitter_with(
         &panel(2.0, 1.0),

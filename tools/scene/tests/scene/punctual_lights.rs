@@ -1,4 +1,5 @@
-//! `KHR_lights_punctual`: spheres and disks of the same intensity where a size is given, else left out with a warning.
+//! `KHR_lights_punctual`: spheres and disks of the same intensity where a size is given, else left out with a
+//! warning.
 
 use crate::writer::Writer;
 use crate::{panel_with, warnings};
@@ -98,9 +99,8 @@ fn what_has_no_size_or_no_sense_is_left_out_and_said() {
     let point = || json!({ "type": "point" });
     assert_eq!(
         of(&point(), None),
-        [
-            "KHR_lights_punctual: points have no area: lights without a size are left out (--light-size gives them one)"
-        ]
+        ["KHR_lights_punctual: points have no area: lights without a size are left out (--light-size \
+            gives them one)"]
     );
     for (light, size, words) in [
         (json!({ "type": "lamp" }), RADIUS, "type 'lamp' is not known: left out"),

@@ -150,7 +150,8 @@ fn letter(i: u32) -> [DVec2; 2] {
     [size * DVec2::new(f64::from(i % 13), f64::from(i / 13)) + 0.02, size]
 }
 
-/// Ninety-one objects in 7 rows of 13 of an atlas, each with a material and a texture of its own; the last one's is of image `last`.
+/// Ninety-one objects in 7 rows of 13 of an atlas, each with a material and a texture of its own; the last
+/// one's is of image `last`.
 fn letters(last: u32) -> Scene {
     let (mut writer, _) = textured(&picture());
     let again = writer.root["images"][0].clone();
@@ -256,7 +257,8 @@ fn one_color_needs_no_texture() {
     let two = RgbImage::from_fn(2, 1, |x, _| Rgb([x as u8 * 255; 3]));
     let scene = scene_of(&two, &[screen(|uv| DVec2::new(0.25 + 0.5 * uv.x, 0.5))], &json!({}));
     assert!((scene.lights[0].radiance - Vec3::new(1.5, 1.0, 0.5)).length() < 1e-3);
-    // An image of one texel; no coordinates, which is (0, 0): the mean of the corners around it, when repeated
+    // An image of one texel; no coordinates, which is (0, 0): the mean of the corners around it, when
+    // repeated
     let gray = RgbImage::from_pixel(1, 1, Rgb([188; 3]));
     let scene = scene_of(&gray, &[screen(|uv| uv)], &json!({}));
     assert!((scene.lights[0].radiance.x - 3.0 * 0.502_886).abs() < 1e-5);
@@ -365,7 +367,8 @@ fn there_are_only_so_many_layers() {
     let plain = scene.lights.iter().filter(|light| light.texture.is_none());
     assert_eq!(plain.clone().count(), 10);
     assert!(plain.clone().all(|light| light.radiance.x < 2.9 && light.radiance.x > 0.0));
-    let text = "light 'tv' and 9 more: emissiveTexture: there are too many light textures: its mean colour is everywhere";
+    let text = "light 'tv' and 9 more: emissiveTexture: there are too many light textures: its mean colour \
+    is everywhere";
     assert_eq!(warnings(&scene), [text]);
     // So many of them are small
     let size = scene.light_texture_size(4096).unwrap();

@@ -9,8 +9,8 @@ use std::process::ExitCode;
 
 /// Compare two runs of `arealight bench --save`.
 ///
-/// Two errors agree where they are the same to the digits that are shown, two times where their quartiles overlap. Printed are
-/// the numbers that do not agree. Exit code 1 where there are any.
+/// Two errors agree where they are the same to the digits that are shown, two times where their quartiles
+/// overlap. Printed are the numbers that do not agree. Exit code 1 where there are any.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// What one run wrote.

@@ -21,12 +21,13 @@ const UPDATE: &str = "arealight bench compiled --family navi21,vega10 --update -
 
 /// Ask a GPU's compiler what it makes of the kernels: registers, waves, instructions, estimated cycles.
 ///
-/// Mesa's driver of Radeon cards (RADV) compiles for any family of them without a card; nothing runs. Each row is a kernel, a kind
-/// of light and a quality level, as a pass hands it to the driver; beside them are other methods with the same reads. The ratio is that
-/// of inverse throughput to the clipless method's in a kernel of the same form. These are a compiler's statistics, not times: docs/gpu.md explains them.
+/// Mesa's driver of Radeon cards (RADV) compiles for any family of them without a card; nothing runs. Each
+/// row is a kernel, a kind of light and a quality level, as a pass hands it to the driver; beside them are
+/// other methods with the same reads. The ratio is that of inverse throughput to the clipless method's in a
+/// kernel of the same form. These are a compiler's statistics, not times: docs/gpu.md explains them.
 ///
-/// Exit code 1 if --check finds a spill, or a row that takes more than the file says or that the file lacks; 6 if the driver is not
-/// installed, or is another version than the file's.
+/// Exit code 1 if --check finds a spill, or a row that takes more than the file says or that the file lacks;
+/// 6 if the driver is not installed, or is another version than the file's.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Families of GPU, as Mesa names them: navi21, vangogh, navi10, vega10, polaris10, gfx1100 and so on.
@@ -50,8 +51,8 @@ pub struct Arguments {
     /// Write the rows to such a file; its other families stay.
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "only")]
     update: Option<PathBuf>,
-    /// Model frames of our scenes: which paths through the code of quads waves take, counted on a device (lavapipe will do), times
-    /// what each path costs by these statistics. Beside the clipless method.
+    /// Model frames of our scenes: which paths through the code of quads waves take, counted on a device
+    /// (lavapipe will do), times what each path costs by these statistics. Beside the clipless method.
     #[arg(long, conflicts_with_all = ["only", "check", "update", "json", "save"])]
     model: bool,
     /// Compile here, where the environment names the driver and the family, and print each row as it is done.
@@ -93,7 +94,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
 
     let driver = driver_file().ok_or_else(|| {
-        let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install mesa-vulkan-drivers";
+        let message = "RADV, Mesa's driver of Radeon cards, is not installed: on Debian, apt-get install \
+        mesa-vulkan-drivers";
         Failure::NoCompiler(message.to_owned())
     })?;
     if arguments.model {

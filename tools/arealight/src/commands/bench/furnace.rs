@@ -7,10 +7,11 @@ use arealight_benches::furnace::{self, Options};
 use arealight_benches::sections::Markers;
 use std::process::ExitCode;
 
-/// Measure what each quality level loses and gains of light from everywhere, on surfaces that reflect all of it.
+/// Measure what each quality level loses and gains of light from everywhere, on surfaces that reflect all of
+/// it.
 ///
-/// The white furnace: GGX of F0 = 1, every roughness, views to 89.9 degrees, below a light that fills the hemisphere. What a level finds is held against
-/// the lobe's true albedo.
+/// The white furnace: GGX of F0 = 1, every roughness, views to 89.9 degrees, below a light that fills the
+/// hemisphere. What a level finds is held against the lobe's true albedo.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Roughnesses, and as many views.

@@ -11,8 +11,9 @@ use std::process::ExitCode;
 
 /// Measure what each material of a scene errs.
 ///
-/// The scene is rendered at the exact level, and by Monte Carlo of the true BRDF, both without shadows. A row of the table is a material: its
-/// mean radiance over that of the reference, and the root of the mean squared difference over the mean, without the reference's noise.
+/// The scene is rendered at the exact level, and by Monte Carlo of the true BRDF, both without shadows. A row
+/// of the table is a material: its mean radiance over that of the reference, and the root of the mean squared
+/// difference over the mean, without the reference's noise.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// A scene in place of the balls that are built in

@@ -1,4 +1,5 @@
-//! The report: one page that needs nothing else. Charts are drawn, pictures are within it, and it has no script.
+//! The report: one page that needs nothing else. Charts are drawn, pictures are within it, and it has no
+//! script.
 
 mod charts;
 mod images;
@@ -35,7 +36,8 @@ pub fn page(found: &Ladder, pictures: &Pictures) -> Result<String, Failure> {
     let title = format!("What accuracy costs: {}", found.device);
     Ok(format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n<style>\n{STYLE}</style>\n\
+         <meta name=\"viewport\" content=\"width=device-width, \
+         initial-scale=1\">\n<title>{}</title>\n<style>\n{STYLE}</style>\n\
          </head>\n<body>\n{body}</body>\n</html>\n",
         escape(&title)
     ))
@@ -67,9 +69,12 @@ fn head(found: &Ladder) -> String {
         }
     }
     format!(
-        "<h1>What accuracy costs in time</h1>\n<p class=\"soft\">Area lights by linearly transformed cosines: our quality \
-         levels and what others ship, on one device. Again: <code>{}</code> ({:.0} s).</p>\n<div class=\"facts\">{}</div>\n<p class=\"soft\">Errors are against the \
-         integral of the true BRDF in float64 at {} points, over its mean. Times are of frames of {} pixels under {} lights, every \
+        "<h1>What accuracy costs in time</h1>\n<p class=\"soft\">Area lights by linearly transformed \
+        cosines: our quality \
+         levels and what others ship, on one device. Again: <code>{}</code> ({:.0} s).</p>\n<div \
+         class=\"facts\">{}</div>\n<p class=\"soft\">Errors are against the \
+         integral of the true BRDF in float64 at {} points, over its mean. Times are of frames of {} pixels \
+         under {} lights, every \
          method in turn for {} rounds ({clock}); ranges are quartiles. {READS}</p>\n",
         escape(&found.command),
         found.seconds,
@@ -86,9 +91,12 @@ fn find<'a>(found: &'a Ladder, name: &str) -> Option<&'a Row> {
 }
 
 fn says_methods() -> &'static str {
-    "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same G-buffer, lights, lobes and table, \
-         so that the form factor alone differs. Those of <em>published quality</em> look up a table with one matrix for every \
-         reflectance instead, whose errors are those of the table published with Heitz et al. 2016 within 10 %."
+    "Yardsticks are named by their school. They run in kernels of ours, on the same work: the same G-buffer, \
+    lights, lobes and table, \
+         so that the form factor alone differs. Those of <em>published quality</em> look up a table with one \
+         matrix for every \
+         reflectance instead, whose errors are those of the table published with Heitz et al. 2016 within 10 \
+         %."
 }
 
 /// Every method of the first lights in a line.
@@ -138,8 +146,10 @@ fn says_parts(found: &Ladder) -> String {
         ours.map(pick).fold(0.0, f64::max)
     };
     format!(
-        "Of our levels the shape of the fitted lobe is most of the error (up to {}). The table adds at most {}, and the device's float32 \
-         integral at most {}. A yardstick's integral error is what its horizon costs. With a table of published quality, fit and table \
+        "Of our levels the shape of the fitted lobe is most of the error (up to {}). The table adds at most \
+        {}, and the device's float32 \
+         integral at most {}. A yardstick's integral error is what its horizon costs. With a table of \
+         published quality, fit and table \
          are one part.",
         percent(largest(|row| row.errors.fit)),
         percent(largest(|row| row.errors.table.unwrap_or(0.0))),
@@ -148,9 +158,12 @@ fn says_parts(found: &Ladder) -> String {
 }
 
 fn says_effects() -> &'static str {
-    "Blue: the time that an effect adds to the default level by being in the set, on a frame in which no light needs it; of a \
-     lobe, which every pixel has, what it adds. Orange: lights that need it, beside quads. What is not in the set costs nothing, \
-     so blue is what a set that is too large costs. Instructions are of the shade kernel's SPIR-V, specialised and optimised."
+    "Blue: the time that an effect adds to the default level by being in the set, on a frame in which no \
+    light needs it; of a \
+     lobe, which every pixel has, what it adds. Orange: lights that need it, beside quads. What is not in \
+     the set costs nothing, \
+     so blue is what a set that is too large costs. Instructions are of the shade kernel's SPIR-V, \
+     specialised and optimised."
 }
 
 fn says_growth(found: &Ladder) -> String {
@@ -169,15 +182,20 @@ fn says_growth(found: &Ladder) -> String {
 }
 
 fn says_pixels() -> &'static str {
-    "Where the line is straight and steep the device is full; where it is flat, a dispatch's own cost is what is seen."
+    "Where the line is straight and steep the device is full; where it is flat, a dispatch's own cost is \
+    what is seen."
 }
 
 fn says_pictures(pictures: &Pictures) -> String {
     format!(
-        "The scene '{}' under {} lights, without shadows, as in every method. Below each picture its difference from the reference \
-         (Monte Carlo of {} samples a pixel, whose own noise shows in it), over the reference's mean; lights themselves are left out. \
-         The errors in the captions are free of that noise: the reference is two independent halves, and what these differ by is \
-         subtracted. In brackets is what the noise leaves uncertain, by 95 %. Yardsticks have a table of published quality.",
+        "The scene '{}' under {} lights, without shadows, as in every method. Below each picture its \
+        difference from the reference \
+         (Monte Carlo of {} samples a pixel, whose own noise shows in it), over the reference's mean; lights \
+         themselves are left out. \
+         The errors in the captions are free of that noise: the reference is two independent halves, and \
+         what these differ by is \
+         subtracted. In brackets is what the noise leaves uncertain, by 95 %. Yardsticks have a table of \
+         published quality.",
         escape(&pictures.scene),
         pictures.lights,
         pictures.samples
@@ -186,8 +204,10 @@ fn says_pictures(pictures: &Pictures) -> String {
 
 fn says_numbers(found: &Ladder) -> String {
     format!(
-        "Milliseconds are for a light and a megapixel. Ratios of time are to clipless with our table, on this device. {READS} Equal samples: those \
-         of Monte Carlo with the same error, and with the same time. Fit, table and integral are the parts of the error, seed {}.",
+        "Milliseconds are for a light and a megapixel. Ratios of time are to clipless with our table, on \
+        this device. {READS} Equal samples: those \
+         of Monte Carlo with the same error, and with the same time. Fit, table and integral are the parts \
+         of the error, seed {}.",
         found.seed
     )
 }
@@ -206,7 +226,8 @@ fn caption(error: &PictureError) -> String {
 fn show(pictures: &Pictures) -> Result<String, Failure> {
     let [low, high] = differences::SCALE;
     let mut html = format!(
-        "<div class=\"scale\"><span>{}</span><div style=\"background:{}\"></div><span>{} of the mean, logarithmic</span></div>\n\
+        "<div class=\"scale\"><span>{}</span><div style=\"background:{}\"></div><span>{} of the mean, \
+        logarithmic</span></div>\n\
          <div class=\"pictures\">\n",
         percent(low),
         differences::gradient(),
@@ -218,7 +239,8 @@ fn show(pictures: &Pictures) -> Result<String, Failure> {
     };
     let _ = writeln!(
         html,
-        "<figure><img alt=\"reference\" src=\"{}\"><figcaption><b>reference</b><br>Monte Carlo, {} samples</figcaption></figure>",
+        "<figure><img alt=\"reference\" src=\"{}\"><figcaption><b>reference</b><br>Monte Carlo, {} \
+        samples</figcaption></figure>",
         whole(&pictures.reference)?,
         pictures.samples
     );
@@ -233,7 +255,8 @@ fn show(pictures: &Pictures) -> Result<String, Failure> {
         let name = escape(name);
         let _ = writeln!(
             html,
-            "<figure><img alt=\"{name}\" src=\"{}\"><img alt=\"difference of {name}\" src=\"{map}\"><figcaption><b>{name}</b><br>\
+            "<figure><img alt=\"{name}\" src=\"{}\"><img alt=\"difference of {name}\" \
+            src=\"{map}\"><figcaption><b>{name}</b><br>\
              error {}, {} ms</figcaption></figure>",
             whole(reflected)?,
             caption(error),
@@ -251,7 +274,8 @@ fn tables(found: &Ladder) -> String {
         let open = if index == 0 { " open" } else { "" };
         let _ = write!(
             html,
-            "<details{open}><summary>{}: {}</summary><div class=\"table\"><table><tr><th>method</th><th>RMSE</th><th>fit</th>\
+            "<details{open}><summary>{}: {}</summary><div \
+            class=\"table\"><table><tr><th>method</th><th>RMSE</th><th>fit</th>\
              <th>table</th><th>integral</th><th>p99</th><th>worst</th><th>bias</th><th>NaN</th><th>ms</th><th>clipless = 1</th>\
              <th>quartiles</th><th>equal error</th><th>equal time</th></tr>",
             escape(name),

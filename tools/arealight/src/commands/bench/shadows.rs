@@ -15,21 +15,24 @@ use std::process::ExitCode;
 
 /// Measure what shadows err at each level, and what they take.
 ///
-/// Pictures of scenes by every level, and by area sampling with as many rays, are held against the Monte Carlo reference with shadows: the part of
-/// each pixel's light that arrives, in all lit pixels and in penumbra alone, and the radiance. Times are of each pass of a frame.
+/// Pictures of scenes by every level, and by area sampling with as many rays, are held against the Monte
+/// Carlo reference with shadows: the part of each pixel's light that arrives, in all lit pixels and in
+/// penumbra alone, and the radiance. Times are of each pass of a frame.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// Scenes to measure in place of those that are built in
     #[arg(value_name = "SCENE")]
     scenes: Vec<PathBuf>,
-    /// Films instead, in which the camera and the light move: errors with and without a history, each frame beside its own truth.
+    /// Films instead, in which the camera and the light move: errors with and without a history, each frame
+    /// beside its own truth.
     #[arg(long)]
     motion: bool,
-    /// Pixels to a side of the pictures; of films, which are 16:9, the height [default: 192; 90 with --motion]
+    /// Pixels to a side of the pictures; of films, which are 16:9, the height [default: 192; 90 with
+    /// --motion]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: Option<u32>,
-    /// Samples a pixel of the reference, of which there are two, and less where there are many lights; of films, frames of four rays [default: 256;
-    /// 64 with --motion]
+    /// Samples a pixel of the reference, of which there are two, and less where there are many lights; of
+    /// films, frames of four rays [default: 256; 64 with --motion]
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=65_536))]
     samples: Option<u32>,
     /// Rounds in which time is taken.
@@ -38,7 +41,8 @@ pub struct Arguments {
     /// Judge every so many of a film's 64 frames.
     #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=64), requires = "motion")]
     every: u32,
-    /// Draw four frames of the first film in which everything moves: the truth, and one ray a pixel without and with a history (.png).
+    /// Draw four frames of the first film in which everything moves: the truth, and one ray a pixel without
+    /// and with a history (.png).
     #[arg(long, value_name = "FILE", requires = "motion")]
     strip: Option<PathBuf>,
     #[command(flatten)]

@@ -13,12 +13,12 @@ use std::process::ExitCode;
 
 /// Hold every level of the form factor to its promises, on families of hard cases.
 ///
-/// Each family's polygons go through every level on the device, and through yardsticks, which are what engines ship:
-/// `sphere-horizon`, `clipless`, `clip-by-cases`, and `clip-and-acos`. The results' bits are judged against a reference of 106 bits. Printed
-/// are, for each family: the largest error; the largest distance to the values between those of polygons whose
-/// vertices differ in float32's last places; of small lights the error in parts of their solid angle over pi; how
-/// many results were NaN or infinite; and whether the promises were kept. Families are printed where one of our levels falls short; with
-/// --verbose all are.
+/// Each family's polygons go through every level on the device, and through yardsticks, which are what
+/// engines ship: `sphere-horizon`, `clipless`, `clip-by-cases`, and `clip-and-acos`. The results' bits are
+/// judged against a reference of 106 bits. Printed are, for each family: the largest error; the largest
+/// distance to the values between those of polygons whose vertices differ in float32's last places; of small
+/// lights the error in parts of their solid angle over pi; how many results were NaN or infinite; and whether
+/// the promises were kept. Families are printed where one of our levels falls short; with --verbose all are.
 ///
 /// Exit code 1 if a level falls short of its promises; what the yardsticks do changes nothing.
 #[derive(clap::Args)]
@@ -87,10 +87,13 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
 /// What is promised of shapes, for the document.
 const SHAPE_PROMISES: &str = "\
-Each result is held against float64, by its bits: a finite number in [0, 1]; a backward error (the distance to the values of shapes \
+Each result is held against float64, by its bits: a finite number in [0, 1]; a backward error (the distance \
+to the values of shapes \
 whose numbers differ by 4 x 2^-24 of their lengths) of at most 1e-6; of far lights (disks and tubes by the \
-difference form; tubes whose radius is a 64th of their distance or less) an error of at most 1e-5 of what they would send from the zenith. Beside the \
-disks is the published disk, its discriminant kept from being negative, on the same device: how many of its results are not finite, \
+difference form; tubes whose radius is a 64th of their distance or less) an error of at most 1e-5 of what \
+they would send from the zenith. Beside the \
+disks is the published disk, its discriminant kept from being negative, on the same device: how many of its \
+results are not finite, \
 and the largest error of those that are.";
 
 fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
@@ -102,7 +105,8 @@ fn run_shapes(arguments: &Arguments) -> Result<ExitCode, Failure> {
 
     let table = shape_stability::markdown(&rows);
     let document = format!(
-        "# Hard disks, spheres and tubes\n\nMade by `arealight bench stability --shapes --samples {} --seed {} --markdown FILE` on \
+        "# Hard disks, spheres and tubes\n\nMade by `arealight bench stability --shapes --samples {} --seed \
+        {} --markdown FILE` on \
          {}.\n\n{SHAPE_PROMISES}\n\n{table}",
         arguments.samples,
         arguments.seed,

@@ -8,10 +8,10 @@ use std::process::ExitCode;
 
 /// Hold every lookup of light textures to its error.
 ///
-/// Rectangles that show pictures are seen by surfaces of every roughness, on the device and through its pyramid, by each level
-/// and by the filter of Heitz et al. 2016. Judged are the answers against the integral of picture times lobe in float64:
-/// the root of their mean square error over the mean, the median of the relative ones, and whether they are too bright
-/// on average. Times are of the same points in the same run.
+/// Rectangles that show pictures are seen by surfaces of every roughness, on the device and through its
+/// pyramid, by each level and by the filter of Heitz et al. 2016. Judged are the answers against the integral
+/// of picture times lobe in float64: the root of their mean square error over the mean, the median of the
+/// relative ones, and whether they are too bright on average. Times are of the same points in the same run.
 ///
 /// Exit code 1 if a level misses its bar; what the article's filter does changes nothing.
 #[derive(clap::Args)]

@@ -84,7 +84,8 @@ pub fn by_header(library: &[(&str, &str)]) -> BTreeMap<String, BTreeSet<String>>
 mod tests {
     use super::*;
 
-    const ONE: &str = "#ifndef ONE\n#define ONE\n// The host's\n// table.\nvec4 arealight_bridge_table(int layer);\n\
+    const ONE: &str = "#ifndef ONE\n#define ONE\n// The host's\n// table.\nvec4 arealight_bridge_table(int \
+    layer);\n\
         float arealight_one() {\n    return 2.0 * arealight_bridge_table(0);\n}\n#endif\n";
     const TWO: &str = "#ifndef TWO\n#include \"arealight/one.glsl\"\n#if AREALIGHT_IMAGES\n// An image.\n\
         vec3 arealight_bridge_image(uint layer);\n#endif\n#endif\n";

@@ -1,4 +1,5 @@
-//! What a translated kernel binds, and how its buffers are laid out, for the manifest: read from the kernel itself.
+//! What a translated kernel binds, and how its buffers are laid out, for the manifest: read from the kernel
+//! itself.
 
 use super::translate::Slot;
 use naga::{AddressSpace, ImageClass, Module, ScalarKind, StructMember, TypeInner};

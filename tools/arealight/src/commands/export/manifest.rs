@@ -16,7 +16,8 @@ pub const NAME: &str = "manifest.json";
 /// What tells an export's manifest from another program's.
 const GENERATOR: &str = "arealight export";
 
-/// The manifest of `files`, of which `library` are the GLSL library and its examples; `targets` says what of them is in other languages.
+/// The manifest of `files`, of which `library` are the GLSL library and its examples; `targets` says what of
+/// them is in other languages.
 pub fn manifest(files: &[File], library: &[(&str, &str)], targets: &Map<String, Value>) -> Value {
     json!({
         "generator": GENERATOR,
@@ -37,15 +38,19 @@ pub fn manifest(files: &[File], library: &[(&str, &str)], targets: &Map<String, 
 const CONVENTIONS: [&str; 7] = [
     "SI radiometry, linear Rec. 709 colour; radiance in W/(m^2 sr).",
     "Right-handed; matrices are column-major and act on column vectors; angles in radians.",
-    "roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing and Schlick's \
+    "roughness is perceptual, alpha = roughness^2; GGX with height-correlated Smith masking-shadowing and \
+    Schlick's \
      Fresnel term.",
     "A light's front is the right-hand side of its vertex order: seen from the front, the vertices run \
      counter-clockwise.",
-    "Positions are relative to an origin near the camera that the host chooses; a light's vertices are relative to the \
+    "Positions are relative to an origin near the camera that the host chooses; a light's vertices are \
+    relative to the \
      light's center.",
-    "The table's axes are roughness (x) and sqrt(1 - cos theta_view) (y), nodes at both ends; texels are read \
+    "The table's axes are roughness (x) and sqrt(1 - cos theta_view) (y), nodes at both ends; texels are \
+    read \
      unfiltered.",
-    "A layer of the light textures is a pyramid that the kernels texture_load and texture_blur make; it is read \
+    "A layer of the light textures is a pyramid that the kernels texture_load and texture_blur make; it is \
+    read \
      trilinearly, clamped to the edge, at an explicit level.",
 ];
 

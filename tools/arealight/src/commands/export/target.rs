@@ -117,7 +117,9 @@ fn frozen(effects: Effects, position: Position) -> Result<Vec<u32>, Failure> {
         SHADE_PORTABLE.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
     freeze(&words, &shade_specialization(options, lights)).ok_or_else(|| Failure::Argument {
         argument: "--target",
-        message: "the kernel computes of its constants what cannot be known before it runs; this is a fault of Arealight".into(),
+        message: "the kernel computes of its constants what cannot be known before it runs; this is a fault \
+        of Arealight"
+            .into(),
     })
 }
 
@@ -125,8 +127,8 @@ fn frozen(effects: Effects, position: Position) -> Result<Vec<u32>, Failure> {
 mod tests {
     use super::*;
 
-    /// Sets from the least to everything, with the most bytes of WGSL that they may have: a tenth more than they have, so that an effect that
-    /// gets into a kernel which does not need it shows.
+    /// Sets from the least to everything, with the most bytes of WGSL that they may have: a tenth more than
+    /// they have, so that an effect that gets into a kernel which does not need it shows.
     const SETS: [(&str, usize); 9] = [
         ("diffuse,glossy", 79_000),
         ("diffuse,glossy,polygon,two_sided", 103_000),

@@ -154,7 +154,8 @@ fn to_msl(module: &Module, info: &ModuleInfo) -> Result<(String, String, Vec<Slo
     Ok((text, name, slots))
 }
 
-/// Numbers buffers, textures and samplers apart, each in the order of bindings. naga wants a buffer more: the sizes of arrays.
+/// Numbers buffers, textures and samplers apart, each in the order of bindings. naga wants a buffer more: the
+/// sizes of arrays.
 fn metal_slots(module: &Module) -> (msl::EntryPointResources, Vec<Slot>) {
     let mut globals: Vec<_> = module
         .global_variables

@@ -79,8 +79,8 @@ pub fn middle(cell: usize) -> (f64, f64) {
     (at(ROUGHNESS, cell % CELLS), at(VIEW, cell / CELLS))
 }
 
-/// Measures all subjects on the same `quads` quads a cell; maps of the first subject at each of [`REFLECTANCES`], then of
-/// the next. `progress` is called from any thread after each cell.
+/// Measures all subjects on the same `quads` quads a cell; maps of the first subject at each of
+/// [`REFLECTANCES`], then of the next. `progress` is called from any thread after each cell.
 pub fn measure(subjects: &[Subject], quads: usize, progress: &(dyn Fn() + Sync)) -> Vec<ErrorMap> {
     let quads = random_quads(quads, SEED);
     let cells: Vec<Vec<f64>> = (0..CELLS * CELLS)
@@ -119,8 +119,8 @@ fn measure_cell(subjects: &[Subject], quads: &[Quad], cell: usize) -> Vec<f64> {
     means
 }
 
-/// A quad of a report as it would have been drawn for another roughness and view: those about the mirror direction move
-/// with it, and their distance from it grows with alpha.
+/// A quad of a report as it would have been drawn for another roughness and view: those about the mirror
+/// direction move with it, and their distance from it grows with alpha.
 fn aimed(quad: &Quad, roughness: f64, cos_view: f64) -> Quad {
     let mut quad = quad.clone();
     if quad.family == Family::Mirror {

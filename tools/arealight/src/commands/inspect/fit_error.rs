@@ -11,7 +11,8 @@ pub struct FitErrors<'a> {
     pub errors: Vec<(f64, f64)>,
 }
 
-/// What is measured, and the numbers of each level: `what; one lobe: 4e-4 at F0 = 0.02, 5e-4 at F0 = 0.04; ...`. None of words of another kind.
+/// What is measured, and the numbers of each level:
+/// `what; one lobe: 4e-4 at F0 = 0.02, 5e-4 at F0 = 0.04; ...`. None of words of another kind.
 pub fn parse(text: &str) -> Option<(&str, Vec<FitErrors<'_>>)> {
     let (what, levels) = text.split_once("; ")?;
     Some((what, levels.split("; ").map(parse_level).collect::<Option<_>>()?))

@@ -35,7 +35,8 @@ struct Cell {
     peak: f64,
 }
 
-/// What is drawn of a table: lobes of a reflectance at normal incidence (and 1 at grazing), as a level makes them.
+/// What is drawn of a table: lobes of a reflectance at normal incidence (and 1 at grazing), as a level makes
+/// them.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
     pub f0: f64,
@@ -142,8 +143,8 @@ impl Lobe {
     }
 }
 
-/// The direction of a place in the disc, by Lambert's equal-area projection seen from above, so that areas are
-/// solid angles. The mirror direction lies on the right.
+/// The direction of a place in the disc, by Lambert's equal-area projection seen from above, so that areas
+/// are solid angles. The mirror direction lies on the right.
 fn direction(x: f64, y: f64) -> DVec3 {
     let square = (x * x + y * y).min(1.0);
     let sine = (2.0 - square).sqrt();

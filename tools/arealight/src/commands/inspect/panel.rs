@@ -28,8 +28,8 @@ impl Axes {
         }
     }
 
-    /// Draws a map whose top left corner is `corner`: the colours of a function of the place within it, (0, 0) at the
-    /// bottom left to (1, 1), under two lines of text.
+    /// Draws a map whose top left corner is `corner`: the colours of a function of the place within it, (0,
+    /// 0) at the bottom left to (1, 1), under two lines of text.
     pub fn draw(
         &self,
         canvas: &mut Canvas,

@@ -65,7 +65,8 @@ fn pixel(level: &Level, [x, y]: [i32; 2], cell: (i32, i32)) -> DVec3 {
         / count
 }
 
-/// What makes the brightest texel white, and what to say of it; images within what a screen shows stay as they are.
+/// What makes the brightest texel white, and what to say of it; images within what a screen shows stay as
+/// they are.
 fn exposure(level: &Level) -> (f64, String) {
     let texels = level.texels.iter();
     let peak = texels.flat_map(|texel| &texel[..3]).fold(0.0_f32, |peak, channel| peak.max(*channel));

@@ -7,7 +7,8 @@ use std::ops::Range;
 /// Samples that are on the device at once: 170 bytes each, 1.4 GB.
 pub const MOST_SAMPLES: u64 = 1 << 23;
 
-/// Rows beyond a band that its shadows are filtered with: the filter reads 6, and what it reads has read 6 more.
+/// Rows beyond a band that its shadows are filtered with: the filter reads 6, and what it reads has read 6
+/// more.
 const MARGIN: u32 = 16;
 
 /// Rows of a picture that are rendered together.

@@ -46,7 +46,8 @@ pub fn plane_inside(stream: &mut Stream, _: &LightTable) -> HardCase {
 }
 
 pub fn plane_concave(stream: &mut Stream, _: &LightTable) -> HardCase {
-    // In the gap of a U, or anywhere about a star or comb; in a plane of any tilt, or as flat as rounding has it
+    // In the gap of a U, or anywhere about a star or comb; in a plane of any tilt, or as flat as rounding has
+    // it
     let (outline, at) = match stream.below(3) {
         0 => (outline::u(stream), [0.0, stream.between(0.0, 0.9)]),
         1 => (outline::star(stream), stream.circle().map(|c| c * 0.9)),

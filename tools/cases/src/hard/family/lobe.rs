@@ -1,4 +1,5 @@
-//! Polygons in the cosine space of a GGX lobe: the table's transforms are as anisotropic as their alpha is low.
+//! Polygons in the cosine space of a GGX lobe: the table's transforms are as anisotropic as their alpha is
+//! low.
 
 use super::super::HardCase;
 use super::super::outline::{Place, plain};

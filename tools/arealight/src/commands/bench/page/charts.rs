@@ -168,7 +168,8 @@ pub fn effects(found: &Ladder) -> String {
             drawing.text("", "start", [end.max(high) + 6.0, y + 11.0], &text);
         }
     }
-    let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>in the set (of a lobe: what it adds)</span>\
+    let key = "<div class=\"key\"><span><i style=\"background:var(--ours)\"></i>in the set (of a lobe: what \
+    it adds)</span>\
         <span><i style=\"background:var(--theirs)\"></i>lights that need it</span></div>";
     drawing.into_html() + key
 }

@@ -17,8 +17,8 @@ const INK: Colour = [230, 233, 238];
 /// Hundredths of a second that a frame is shown.
 const DELAY: u16 = 7;
 
-/// Scenes with the lights where they are in each frame: `degrees` to either side about the vertical through the scene's middle, once
-/// to and fro.
+/// Scenes with the lights where they are in each frame: `degrees` to either side about the vertical through
+/// the scene's middle, once to and fro.
 pub fn swing(scene: &Scene, frames: u32, degrees: f64) -> Vec<Scene> {
     let middle = scene.bounds.center();
     let frame = |index: u32| {

@@ -1,4 +1,5 @@
-//! Ours, a yardstick with the published table, and the truth, side by side or below each other, with maps of the differences.
+//! Ours, a yardstick with the published table, and the truth, side by side or below each other, with maps of
+//! the differences.
 
 #![expect(clippy::cast_possible_wrap, reason = "pictures are far smaller than 2^31 pixels")]
 
