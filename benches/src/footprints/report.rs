@@ -117,7 +117,7 @@ impl Footprints {
         }
     }
 
-    /// The document `docs/textures.md`.
+    /// The document `docs/data/textures.md`.
     pub fn to_markdown(&self) -> String {
         let made = format!(
             "Made by `arealight bench textures --poses {} --seed {} --markdown FILE` on {}.",

@@ -1,4 +1,4 @@
-//! Steps that Heitz et al. 2016 and the article of docs/traceability.md derive on the way, and that no
+//! Steps that Heitz et al. 2016 and the article of docs/data/traceability.md derive on the way, and that no
 //! function of its own implements.
 
 use crate::common::{direction, matrix, star, view_angle, view_at};

@@ -80,7 +80,7 @@ impl Arguments {
             command.push(' ');
             command.push_str(&path.display().to_string());
         }
-        format!("{command} {options} --markdown docs/shadows.md")
+        format!("{command} {options} --markdown docs/data/shadows.md")
     }
 
     /// Writes a section of a document, and prints.
