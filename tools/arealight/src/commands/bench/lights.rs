@@ -61,8 +61,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
-    let section =
-        found.to_markdown("arealight bench lights --markdown docs/data/tiles.md --svg docs/images/lights.svg");
+    let section = found
+        .to_markdown("arealight bench lights --markdown docs/data/tiles.md --svg docs/images/lights.svg");
     let whole = ends.markdown.as_deref().map(|path| document(path, Markers::LIGHTS, &section));
     if let Some(path) = svg {
         write(path, &found.to_svg())?;
