@@ -31,7 +31,7 @@ fn shade(criterion: &mut Criterion) {
             return;
         }
     };
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let engine = Engine::new(host, &table, arealight_vk::TableFormat::default()).expect("the table uploads");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/room.glb");
     let scene = Scene::load(path).expect("our own scene loads");

@@ -10,7 +10,7 @@ use std::hint::black_box;
 const COUNT: usize = 1024;
 
 fn table(criterion: &mut Criterion) {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let mut random = Stream::new("lookups", 0, 0);
     let places: Vec<[f64; 2]> = (0..COUNT).map(|_| [random.unit(), random.unit()]).collect();
     let mut group = criterion.benchmark_group("table lookup");

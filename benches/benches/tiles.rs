@@ -148,7 +148,7 @@ fn lamp_frames(engine: &Engine, rounds: usize) -> Result<(Vec<TiledFrame>, Strin
 
 fn main() -> Result<(), Box<dyn Error>> {
     let Some((host, rounds)) = start(ROUNDS) else { return Ok(()) };
-    let mut engine = Engine::new(host, &arealight_table::ggx(), arealight_vk::TableFormat::default())?;
+    let mut engine = Engine::new(host, &arealight::LightTable::ggx(), arealight_vk::TableFormat::default())?;
     let device = engine.host().device_name();
     println!("{device}, {rounds} rounds\n");
     let named = |part: &str| std::env::args().any(|argument| argument == part);

@@ -4,12 +4,12 @@
 
 use arealight_benches::published;
 use arealight_fit::report::{COUNT, Level, PUBLISHED, SEED, cases, measure};
-use arealight_table::{Precision, ggx, rounded, save};
+use arealight_table::{Precision, rounded, save};
 use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Rounded to float16, which changes the errors by less than their third digit and halves the file
-    let table = rounded(&published::fit(&ggx())?, Precision::Half)?;
+    let table = rounded(&published::fit(&arealight::LightTable::ggx())?, Precision::Half)?;
     if let Some(path) = std::env::args_os().nth(1).map(PathBuf::from) {
         save(&table, &path)?;
     }

@@ -29,7 +29,7 @@ mod tests {
     #[test]
     fn every_drawing_is_made_again_as_the_documents_have_it() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/images");
-        for (name, drawing) in drawings(&arealight_table::ggx()) {
+        for (name, drawing) in drawings(&LightTable::ggx()) {
             assert!(!drawing.contains("NaN") && !drawing.contains("inf"), "{name}");
             let stored = std::fs::read_to_string(folder.join(name)).unwrap();
             assert!(

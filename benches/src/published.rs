@@ -244,13 +244,13 @@ mod tests {
         // What a yardstick may be off without misleading anybody; it is 1.022
         assert!(ratio < 1.1, "{ratio}");
         // The twin: our own table, four times better for metals
-        let ratio = largest_ratio(&measure(&arealight_table::ggx(), Level::default(), &cases));
+        let ratio = largest_ratio(&measure(&LightTable::ggx(), Level::default(), &cases));
         assert!(ratio > 3.0, "{ratio}");
     }
 
     #[test]
     fn it_differs_from_ours_by_one_matrix_alone() {
-        let (table, ours) = (table(), arealight_table::ggx());
+        let (table, ours) = (table(), LightTable::ggx());
         assert!(table.schlick_matrix().is_none() && table.size() == 64);
         assert_eq!(table.description().ggx_dip, ours.description().ggx_dip);
         for (a, b) in table.magnitude().as_flattened().iter().zip(ours.magnitude().as_flattened()) {

@@ -6,7 +6,7 @@ use arealight_oracle::shading::ltc;
 use libfuzzer_sys::fuzz_target;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<arealight::LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<arealight::LightTable> = LazyLock::new(arealight::LightTable::ggx);
 
 fuzz_target!(|text: &str| {
     let Ok(cases) = read_cases(text) else { return };

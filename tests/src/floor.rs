@@ -85,7 +85,7 @@ impl<'a> Floor<'a> {
             bytes(bytemuck::cast_slice(&packed.vertices), "vertices"),
             bytes(bytemuck::cast_slice(&packed.shapes), "shapes"),
         ];
-        let horizons = arealight_table::ggx().lobe_horizons(SpecularLobes::default());
+        let horizons = LightTable::ggx().lobe_horizons(SpecularLobes::default());
         Self {
             engine,
             lights: packed,
@@ -145,7 +145,7 @@ impl<'a> Floor<'a> {
         tiles: bool,
         (resources, frame, is_pushed): (&ShadeResources, &ShadeFrame, bool),
     ) -> Vec<Vec4> {
-        let (host, table) = (self.engine.host(), arealight_table::ggx());
+        let (host, table) = (self.engine.host(), LightTable::ggx());
         let every_frame = TileOptions { least_quads: 0, ..TileOptions::default() };
         self.radiance.upload(&vec![BEFORE.to_array(); pixels().count()], Usage::COMPUTE_WRITE).unwrap();
         // SAFETY: Host::submit waits, and everything here is dropped before the engine.
@@ -179,7 +179,7 @@ impl<'a> Floor<'a> {
     /// The radiance of a pixel by the oracle, from these of its lights.
     pub fn expected(&self, pixel: [u32; 2], lights: impl Fn(usize) -> bool) -> DVec3 {
         let all = self.radiance_of_lights.get_or_init(|| {
-            let (table, surface) = (arealight_table::ggx(), floor_material().surface());
+            let (table, surface) = (LightTable::ggx(), floor_material().surface());
             let one = |pixel, light| one_light(&table, &surface, DVec3::Z, position(pixel).as_dvec3(), light);
             self.unpacked.iter().map(|light| pixels().map(|pixel| one(pixel, light)).collect()).collect()
         });

@@ -77,7 +77,7 @@ impl TestEngine {
 
     fn of_host(host: TestHost, format: TableFormat) -> Self {
         let engine =
-            Engine::new((*host).clone(), &arealight_table::ggx(), format).expect("the table uploads");
+            Engine::new((*host).clone(), &arealight::LightTable::ggx(), format).expect("the table uploads");
         Self { engine, host }
     }
 

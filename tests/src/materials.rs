@@ -8,7 +8,7 @@ use arealight_oracle::shading::{RelativeLight, ltc_on, shape_ltc_on};
 use glam::{DVec3, Vec3};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// The ways to a surface's lobes: both horizons, two lobes, half vectors, formulas.
 pub fn lobe_qualities() -> [Quality; 5] {

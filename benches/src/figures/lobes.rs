@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn lobes_lean_away_from_the_view() {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let distribution = lobe(table.lookup(0.5, 50.0_f64.to_radians().cos()).inverse);
         let [x, _] = place([0.0, 0.0], distribution.transform(DVec3::Z), 1.0);
         assert!(x > 0.3, "{x}");

@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn the_drawn_light_is_in_front_in_both_spaces_and_the_clipped_one_crosses() {
-        let inverse = inverse(&arealight_table::ggx());
+        let inverse = inverse(&LightTable::ggx());
         assert!(light().iter().all(|vertex| vertex.z > 0.0 && (inverse * *vertex).z > 0.0));
         let below = wall();
         assert!(below.iter().any(|vertex| vertex.z < 0.0) && below.iter().any(|vertex| vertex.z > 0.0));

@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn the_parts_of_an_error_are_told_apart() {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let workload = &super::super::methods::workloads()[0];
         let mut known = Known::new(workload, 24, 5, &table, &pictures(), &|_| {});
         let exact = workload.methods.iter().find(|method| method.name == "exact").unwrap().method;

@@ -123,7 +123,7 @@ pub unsafe extern "C" fn arealight_create(
 /// `table` is null or valid, with its bytes.
 unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableFormat), Failure> {
     if table.is_null() {
-        return Ok((arealight_table::ggx(), TableFormat::Rgba32Float));
+        return Ok((LightTable::ggx(), TableFormat::Rgba32Float));
     }
     // SAFETY: the same contract.
     let table = unsafe { arguments::read(table, "table") }?;
@@ -134,7 +134,7 @@ unsafe fn read_table(table: *const ArealightTable) -> Result<(LightTable, TableF
         other => return Err(Failure::argument(format!("table.format: {other} is no AREALIGHT_TABLE_*"))),
     };
     if table.bytes.is_null() && table.size == 0 {
-        return Ok((arealight_table::ggx(), format));
+        return Ok((LightTable::ggx(), format));
     }
     // SAFETY: the same contract.
     let bytes = unsafe { arguments::array(table.bytes, table.size, "table.bytes") }?;

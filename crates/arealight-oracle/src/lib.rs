@@ -19,7 +19,7 @@
 //! let view = DVec3::new(0.6, 0.0, 0.8);
 //!
 //! let truth = truth(&floor, DVec3::Z, view, &light, &Settings::default());
-//! let fitted = ltc(&arealight_table::ggx(), &floor, DVec3::Z, view, &light);
+//! let fitted = ltc(&arealight::LightTable::ggx(), &floor, DVec3::Z, view, &light);
 //! assert!((fitted - truth.radiance).abs().max_element() < 0.01);
 //! ```
 //!

@@ -147,7 +147,7 @@ pub enum FileError {
 #[non_exhaustive]
 pub enum WriteError {
     /// The file's name does not say what to write.
-    #[error("extension `{extension}`: tables are written as .exr, .ktx2, .dds, .h (C) or .glsl")]
+    #[error("extension `{extension}`: tables are written as .exr, .ktx2, .dds, .h (C), .glsl or .f32 (raw)")]
     Extension {
         /// What the file's name ends with.
         extension: String,

@@ -69,11 +69,14 @@ pub enum Target {
     CHeader(Precision),
     /// A GLSL array of 16-bit floats, and the functions of the bridge that read it.
     Glsl,
+    /// [`arealight::LightTable::numbers`] as little-endian 32-bit floats and nothing else: what the built-in table is
+    /// embedded as.
+    Raw,
 }
 
 impl Target {
-    /// What a path's extension stands for: `exr`, `ktx2`, `dds`, `h` or `glsl`. Without a precision, EXR is
-    /// written in 32-bit floats, and everything else in 16-bit ones.
+    /// What a path's extension stands for: `exr`, `ktx2`, `dds`, `h`, `glsl` or `f32`. Without a precision, EXR
+    /// is written in 32-bit floats, and everything else in 16-bit ones.
     ///
     /// # Errors
     /// [`WriteError::Extension`] for another one, [`WriteError::Precision`] where the format has no choice.
@@ -88,6 +91,8 @@ impl Target {
             ("h", _) => Ok(Self::CHeader(chosen)),
             ("glsl", None | Some(Precision::Half)) => Ok(Self::Glsl),
             ("glsl", Some(Precision::Single)) => Err(WriteError::Precision { format: "GLSL", bits: 16 }),
+            ("f32", None | Some(Precision::Single)) => Ok(Self::Raw),
+            ("f32", Some(Precision::Half)) => Err(WriteError::Precision { format: "raw", bits: 32 }),
             _ => Err(WriteError::Extension { extension }),
         }
     }
@@ -95,7 +100,7 @@ impl Target {
     /// The precision that texels are rounded to.
     pub fn precision(self) -> Precision {
         match self {
-            Self::Exr => Precision::Single,
+            Self::Exr | Self::Raw => Precision::Single,
             Self::Ktx2(precision) | Self::Dds(precision) | Self::CHeader(precision) => precision,
             Self::Glsl => Precision::Half,
         }

@@ -1,10 +1,11 @@
-//! Light tables to and from files, and the table that is built in.
+//! Light tables to and from files.
 //!
 //! # Start here
 //! ```
+//! use arealight::LightTable;
 //! use arealight::glam::DVec3;
 //!
-//! let table = arealight_table::ggx(); // the built-in one, of GGX
+//! let table = LightTable::ggx(); // the built-in one
 //! let sample = table.lookup(0.3, 0.7); // roughness, cosine of the view
 //! assert!(sample.albedo > 0.9 && sample.albedo <= 1.0);
 //! // Towards the light the lobe is a cosine about z, after this matrix
@@ -81,23 +82,10 @@ pub use source::MAX_GLSL_SIZE;
 /// The largest file that is read: the largest table, uncompressed, and a header.
 pub const MAX_FILE_BYTES: u64 = (arealight::table::MAX_SIZE as u64).pow(2) * 96 + (1 << 20);
 
-static GGX: &[u8] = include_bytes!("../tables/ggx.exr");
-
-/// The table for GGX that is built in: 64 nodes a side, two matrices, made by `arealight fit -o fitted.exr`
-/// and `arealight table convert fitted.exr tables/ggx.exr --measure`.
-///
-/// # Panics
-/// Never: a test reads the embedded file.
-pub fn ggx() -> LightTable {
-    ggx_file().table
-}
-
-/// The built-in table with what its file says beside it.
-///
-/// # Panics
-/// Never: a test reads the embedded file.
+/// The built-in table, [`LightTable::ggx`], with its measured error.
 pub fn ggx_file() -> TableFile {
-    TableFile::read(GGX).expect("the embedded table is valid, as a test shows")
+    let fit_error = include_str!("../tables/ggx-fit-error.txt").trim_end();
+    TableFile { table: LightTable::ggx(), fit_error: Some(fit_error.into()) }
 }
 
 /// What a table file holds.
@@ -153,6 +141,7 @@ impl TableFile {
                 return Err(WriteError::TooLarge { size: file.table.size() });
             }
             Target::Glsl => source::glsl(&file).into_bytes(),
+            Target::Raw => file.table.numbers().iter().flat_map(|number| number.to_le_bytes()).collect(),
         })
     }
 

@@ -12,7 +12,7 @@
 //! |---|---|
 //! | from your handles | [`Context::new`], [`Context::with_pipeline_cache`] |
 //! | a pass for your G-buffer | [`ShadePass::new`]; for many lights [`ShadePass::with_tiles`] |
-//! | the table, in memory of yours | `arealight_table::ggx`, [`TableImage`] |
+//! | the table, in memory of yours | `arealight::LightTable::ggx`, [`TableImage`] |
 //! | your images and buffers | [`ShadeResources`], [`ShadePass::write_set`] |
 //! | your barriers | [`ShadePass::accesses`] |
 //! | a frame | [`arealight::PackedLights`], [`ShadeFrame`], [`ShadePass::record`] |

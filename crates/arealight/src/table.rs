@@ -39,6 +39,7 @@
 
 use glam::{DMat3, DVec3};
 
+mod built_in;
 mod grazing;
 mod horizons;
 mod sample;

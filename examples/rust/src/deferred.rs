@@ -53,7 +53,7 @@ impl<'a> Deferred<'a> {
         // light. It adds to the emission that was drawn
         let options = ShadeOptions { from_depth: true, output: Output::Add, ..ShadeOptions::default() };
         GBuffer::FORMATS.check(options)?; // says which image has another format than it should
-        let table = arealight_table::ggx();
+        let table = arealight::LightTable::ggx();
         // With tiles, for scenes of many lights; without, ShadePass::new. (TileOptions::default() classifies
         // no frame of two.)
         let tiles = TileOptions { least_quads: 0, ..TileOptions::default() };

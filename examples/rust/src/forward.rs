@@ -172,7 +172,7 @@ impl<'a> Forward<'a> {
 /// The table on the device, with its memory.
 fn upload_table<'a>(gpu: &'a Gpu<'a>, frames: &mut Frames<'_>) -> Result<(TableImage, Memory<'a>)> {
     // doc: table
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     // SAFETY: the handles are of one device, which goes after the image, which goes after the frames.
     let mut image = unsafe {
         let context = Context::new(gpu.instance, gpu.physical_device, &gpu.device)?;

@@ -218,7 +218,7 @@ unsafe fn upload_table(
     context: &Context,
     hal: &wgpu::hal::vulkan::Device,
 ) -> Result<(TableImage, vk::DeviceMemory)> {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     // SAFETY: the caller's duty.
     let mut image = unsafe { TableImage::new(context, &table, TableFormat::Rgba16Float) }?;
     let needed = image.memory_requirements();

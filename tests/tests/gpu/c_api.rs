@@ -446,7 +446,7 @@ fn c_lights_reach_as_far_as_rust_says() {
         arealight_lobe_density(library.arealight, AREALIGHT_SPECULAR_LOBES_ONE, roughness, density)
     };
     good(asked(0.3, &mut density));
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     assert_eq!(density.to_bits(), table.lobe_density(arealight::SpecularLobes::One, 0.3).to_bits());
     refused(asked(1.5, &mut density), ErrorArgument, "roughness: 1.5 must be from 0 to 1");
     // SAFETY: as above.

@@ -11,7 +11,7 @@ use arealight_oracle::shading::poses::{Bar, Family};
 fn every_level_is_within_its_bars_and_the_article_is_not() {
     let Some(host) = device_or_skip() else { return };
     let options = Options { poses: 20, rounds: 0, ..Options::default() };
-    let found = run(&host, &arealight_table::ggx(), &options, &|_| {}).unwrap();
+    let found = run(&host, &arealight::LightTable::ggx(), &options, &|_| {}).unwrap();
     let judged = found.rows.iter().filter(|row| row.bar.is_some()).count();
     assert_eq!(judged, 9, "three quality levels on three families");
     assert_eq!(found.shortfalls().count(), 0, "{}", found.to_text());

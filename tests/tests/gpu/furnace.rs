@@ -7,7 +7,7 @@ use arealight_engine::host::testing::device_or_skip;
 #[test]
 fn both_horizons_lose_at_most_a_thousandth_of_light_from_everywhere() {
     let Some(host) = device_or_skip() else { return };
-    let found = run(&host, &arealight_table::ggx(), &Options { steps: 71 }, &|_| {}).unwrap();
+    let found = run(&host, &arealight::LightTable::ggx(), &Options { steps: 71 }, &|_| {}).unwrap();
     println!("{}", found.to_text());
     let row = |name: &str| -> &Row { found.rows.iter().find(|row| row.level == name).unwrap() };
     // The table's albedo between its nodes, and float32; float16 rounds albedos above 1/2 by 2.4e-4

@@ -114,7 +114,7 @@ fn a_set_that_points_at_a_destroyed_table_is_refused() {
     unsafe {
         let pass = ComputePass::new(engine.context(), &arealight_tool_kernels::kernels::EVAL, &[]).unwrap();
         let mut table =
-            TableImage::new(engine.context(), &arealight_table::ggx(), TableFormat::default()).unwrap();
+            TableImage::new(engine.context(), &arealight::LightTable::ggx(), TableFormat::default()).unwrap();
         let memory = host.with_allocator(|allocator| table.allocate(allocator)).unwrap();
         let pool = host.descriptor_pool(1, &pass.pool_sizes(1)).unwrap();
         let set = pool.allocate(pass.set_layout()).unwrap();
@@ -184,7 +184,7 @@ fn objects_are_named_and_commands_labelled_where_the_host_can() {
     let instance = lying_instance(&engine, &[(c"vkGetDeviceProcAddr", find as *const c_void)]);
     // SAFETY: the instance's functions for debuggers are the ones above.
     let context = unsafe { engine.context().clone().with_debug_utils(&instance) };
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     // SAFETY: the submission is waited for before anything is dropped; the staging buffer holds the table.
     unsafe {
         let mut image = TableImage::new(&context, &table, TableFormat::default()).unwrap();

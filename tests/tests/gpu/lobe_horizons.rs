@@ -34,7 +34,7 @@ struct Lookup {
 
 /// The built-in table at each of [`views`].
 fn looked_up(lobes: SpecularLobes) -> Vec<Lookup> {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let horizons = table.lobe_horizons(lobes);
     let cells = table.size() as usize - 1;
     let view = |(roughness, cos_view): (f64, f64)| {

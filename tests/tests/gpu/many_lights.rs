@@ -17,7 +17,7 @@ fn lists_of_lights_leave_out_no_more_than_they_may() {
     ];
     let options =
         Options { counts: vec![200], size: [160, 96], rounds: 1, ways: ways.to_vec(), ..Options::default() };
-    let found = run(&host, &arealight_table::ggx(), &options, &|_| {}).unwrap();
+    let found = run(&host, &arealight::LightTable::ggx(), &options, &|_| {}).unwrap();
     println!("{}", found.to_text());
     let [all, tiles, culled, clusters, near, nearest] = &found.rows[..] else { panic!("a row for each way") };
     assert_eq!(all.lights_per_pixel, 200.0);

@@ -74,7 +74,7 @@ fn assert_tiles(name: &str) {
 /// The errors of a scene's materials at a small size.
 fn errors(engine: &TestEngine, scene: &Scene) -> MaterialErrors {
     let options = Options { size: [160, 90], samples: 256 };
-    materials::run(engine.host(), &arealight_table::ggx(), scene, &options, &|_| {}).unwrap()
+    materials::run(engine.host(), &arealight::LightTable::ggx(), scene, &options, &|_| {}).unwrap()
 }
 
 #[test]

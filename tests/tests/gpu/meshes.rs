@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const SIZE: [u32; 2] = [64, 36];
 

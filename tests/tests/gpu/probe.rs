@@ -152,7 +152,7 @@ fn largest_entry(matrix: &DMat3) -> f64 {
 #[test]
 fn the_table_is_looked_up_as_in_float64() {
     let Some(engine) = TestEngine::new() else { return };
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let mut random = Random::new(53);
     let given: Vec<Arguments> = (0..20_000)
         .map(|index| {

@@ -18,7 +18,7 @@ use glam::DVec3;
 use relations::{HOLE, RELATIONS};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// Groups of each property.
 const COUNT: usize = 300;

@@ -11,7 +11,7 @@ use arealight_vk::Resource;
 use glam::{DVec3, Vec3};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const THRESHOLD: f64 = 0.01;
 const LEAST_ROUGHNESS: f64 = 0.3;

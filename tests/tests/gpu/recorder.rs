@@ -139,7 +139,7 @@ fn accesses_and_pool_sizes_say_what_the_manifest_says() {
 #[test]
 fn a_table_image_without_memory_is_refused() {
     let Some(engine) = TestEngine::new() else { return };
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     // SAFETY: No submission uses it.
     let image = unsafe { TableImage::new(engine.context(), &table, TableFormat::Rgba16Float) }.unwrap();
     let size = u64::from(table.size());

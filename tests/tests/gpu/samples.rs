@@ -161,8 +161,7 @@ fn texels(samples: u32, from_depth: bool) -> Vec<Texel> {
 fn pixels_of_several_samples_are_the_mean_over_their_surfaces() {
     let Some(engine) = TestEngine::new() else { return };
     let floor = Floor::new(&engine, &lamps());
-    let oracle =
-        Oracle { table: arealight_table::ggx(), surface: floor_material().surface(), floor: lamps() };
+    let oracle = Oracle { table: LightTable::ggx(), surface: floor_material().surface(), floor: lamps() };
     for (samples, from_depth, tiles, output) in [
         (4, true, false, Output::Overwrite),
         (4, true, true, Output::Overwrite),

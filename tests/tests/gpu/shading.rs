@@ -11,7 +11,7 @@ use std::sync::LazyLock;
 
 const COUNT: usize = 4000;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 fn expected(point: &EvalPoint) -> DVec3 {
     expected_with(&TABLE, point)

@@ -25,7 +25,7 @@ fn every_level_errs_as_little_as_it_is_for() {
     let Some(host) = device_or_skip() else { return };
     let scenes = SCENES.map(|(name, bytes)| Scene::from_bytes(bytes, name).unwrap());
     let options = Options { size: 96, samples: 64, rounds: 1 };
-    let found = run(&host, &arealight_table::ggx(), &scenes, &options, &|_| {}).unwrap();
+    let found = run(&host, &arealight::LightTable::ggx(), &scenes, &options, &|_| {}).unwrap();
     println!("{}", found.to_text());
     for scene in &found.scenes {
         let rmse = |level| find(scene, level).errors.rmse;

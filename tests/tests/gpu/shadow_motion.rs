@@ -14,7 +14,7 @@ fn a_history_errs_less_than_none_whatever_moves() {
     let options = Options { size: [80, 45], frames: 24, every: 8, truth: 12 };
     let stills = RefCell::new(vec![]);
     let show = |still: Still| stills.borrow_mut().push(still);
-    let found = run(&host, &arealight_table::ggx(), &scenes, &options, &|_| {}, &show).unwrap();
+    let found = run(&host, &arealight::LightTable::ggx(), &scenes, &options, &|_| {}, &show).unwrap();
     println!("{}", found.to_text());
     let film = |motion, history| *found.scenes[0].find(motion, Scheme { rays: 1, history }).unwrap();
     let rest = film(Motion::Rest, false);

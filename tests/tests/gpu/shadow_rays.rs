@@ -110,7 +110,7 @@ fn errors(cases: &[SupportedCase], answers: impl Fn(usize, &SupportedCase) -> DV
 #[test]
 fn shadows_by_256_rays_are_those_of_the_reference() {
     let Some(engine) = TestEngine::new() else { return };
-    let (cases, table) = (cases(), arealight_table::ggx());
+    let (cases, table) = (cases(), LightTable::ggx());
     let rays = rays(&engine, &cases, 256);
     let by_rays = |index: usize, case: &SupportedCase| {
         unshadowed(&table, case) * shadow(case, &rays[index], |target| is_hidden(target, &case.blockers))

@@ -144,7 +144,7 @@ fn half_of_every_symmetric_light_arrives_where_half_of_it_is_hidden() {
 
 /// What is visible of a quad by the oracle, as a part of its unshadowed light.
 fn exact(light: &Light, patch: &ShadowPatch) -> f64 {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let whole = RelativeLight::new(light, DVec3::ZERO);
     let blockers: Vec<_> = patch.blockers.iter().map(|t| t.map(Vec3::as_dvec3)).collect();
     let surface = patch.material.surface();

@@ -18,7 +18,7 @@ use ash::vk;
 use glam::{DVec3, Vec3, Vec4};
 use std::sync::{Arc, LazyLock};
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const PIXELS: usize = 512;
 const CAMERA: DVec3 = DVec3::new(0.5, -4.0, 3.0);

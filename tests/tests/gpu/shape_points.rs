@@ -79,7 +79,7 @@ fn widened(radiance: Vec3) -> [f64; 3] {
 
 /// Compares answers with the oracle's, and returns how many a lobe of another roughness would have noticed.
 fn compare_with_oracle(cases: &[(ShapeCase, bool)], found: &[Vec3], quality: Quality, bound: f64) -> usize {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let mut comparison = Comparison::new(format!("shapes, {quality:?}"));
     let mut twin = 0;
     for ((case, diffuse), found) in cases.iter().zip(found) {
@@ -160,7 +160,7 @@ fn shapes_are_cut_at_both_horizons() {
     let found = engine.eval_shapes(&points(&cases), quality).unwrap();
     compare_with_oracle(&cases, &found, quality, ROUNDING);
     // The twin: one horizon is another answer
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let noticed = cases.iter().zip(&found).filter(|((case, _), found)| {
         let ShapeCase { surface, normal, view, light, .. } = case;
         let one = shape_ltc_on(Quality::default(), &table, surface, *normal, *view, light).unwrap();

@@ -18,7 +18,7 @@ const SAMPLES: u64 = 400;
 fn short(host: &arealight_engine::host::Host, methods: impl Fn(&&Method) -> bool) -> Stability {
     let methods = METHODS.iter().filter(methods).collect();
     let options = Options { samples: SAMPLES, methods, ..Options::default() };
-    run(host, &arealight_table::ggx(), &options, &|_| {}).unwrap()
+    run(host, &arealight::LightTable::ggx(), &options, &|_| {}).unwrap()
 }
 
 #[test]
@@ -80,7 +80,7 @@ fn the_yardsticks_are_what_they_are_named_for() {
     }
 
     // Every case of vertices above the horizon that a convex quad has was among them
-    let (table, method) = (arealight_table::ggx(), Method::find("clip-by-cases").unwrap());
+    let (table, method) = (arealight::LightTable::ggx(), Method::find("clip-by-cases").unwrap());
     let family = Family::find("crossing").unwrap();
     let cases = (0..SAMPLES).map(|index| family.case(index, 0, &table));
     let above = |case: HardCase| -> Vec<bool> {
@@ -97,7 +97,7 @@ fn the_yardsticks_are_what_they_are_named_for() {
 fn spoiled_results_are_found_out() {
     let Some(host) = device_or_skip() else { return };
     let (family, method) = (Family::find("crossing").unwrap(), Method::find("polygon-exact").unwrap());
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let cases: Vec<_> = (0..100).map(|index| family.case(index, 0, &table)).collect();
     let results = FormFactorKernel::new(&host, &[method]).unwrap().run(&cases).unwrap().remove(0);
     let broken = |spoil: &dyn Fn(u32) -> u32| {
@@ -125,7 +125,7 @@ fn spoiled_results_are_found_out() {
 fn an_edge_through_the_point_is_closed_on_its_own_side() {
     let Some(host) = device_or_skip() else { return };
     let family = Family::find("antipodal").unwrap();
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     for (name, index) in [("quad-exact", 9356), ("polygon-exact", 3976)] {
         let method = Method::find(name).unwrap();
         let case = family.case(index, 0, &table);
@@ -146,7 +146,7 @@ fn an_edge_through_the_point_is_closed_on_its_own_side() {
 #[test]
 fn the_last_guard_survives_the_compilers() {
     let Some(host) = device_or_skip() else { return };
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let unguarded = Method::find("clip-and-acos").unwrap();
     let ours = METHODS.iter().filter(|method| !method.is_yardstick);
     let methods: Vec<_> = ours.chain([unguarded]).collect();

@@ -11,7 +11,7 @@ use glam::DVec3;
 use half::f16;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// Points of each family.
 const COUNT: usize = 2000;

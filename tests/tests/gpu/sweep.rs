@@ -14,7 +14,7 @@ use ash::vk;
 use glam::{DQuat, DVec3, Vec3};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const FRAMES: usize = 1000;
 

@@ -172,7 +172,7 @@ fn disk(pose: &Pose, layer: u32) -> EvalPoint {
 #[test]
 fn lookups_are_within_the_bars_of_polygons() {
     let Some(engine) = engine() else { return };
-    let (table, textures) = (arealight_table::ggx(), textures());
+    let (table, textures) = (arealight::LightTable::ggx(), textures());
     // More of them by hand, for the table of docs/textures.md
     let count = std::env::var("AREALIGHT_POSES").ok().and_then(|text| text.parse().ok()).unwrap_or(12);
     for family in Family::ALL {

@@ -124,7 +124,7 @@ fn shade(
     shots: &[Shot],
     frames: &[ShadeFrame],
 ) -> Vec<Vec4> {
-    let (host, table) = (engine.host(), arealight_table::ggx());
+    let (host, table) = (engine.host(), arealight::LightTable::ggx());
     let (sampled, float) = (vk::ImageUsageFlags::SAMPLED, vk::Format::R32G32B32A32_SFLOAT);
     let side = options.texels_per_pixel;
     // Where no shot is, what an earlier frame left
@@ -191,7 +191,7 @@ fn texels() -> impl Iterator<Item = [u32; 2]> {
 
 /// The largest difference from the oracle, of pixels that some shot has; others are as they were.
 fn worst(options: ShadeOptions, shots: &[Shot], found: &[Vec4]) -> f64 {
-    let (table, lights, surface) = (arealight_table::ggx(), lights(), dielectric());
+    let (table, lights, surface) = (arealight::LightTable::ggx(), lights(), dielectric());
     let (mut worst, mut lit) = (0.0_f64, 0);
     for (pixel, found) in texels().zip(found) {
         let Some(shot) = shots.iter().find(|shot| shot.has(pixel, 1)) else {

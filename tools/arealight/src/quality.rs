@@ -149,7 +149,7 @@ impl QualityArguments {
     /// A file that cannot be read, or holds no table.
     pub fn table(&self) -> Result<LightTable, Failure> {
         match &self.table {
-            None => Ok(arealight_table::ggx()),
+            None => Ok(LightTable::ggx()),
             Some(path) => arealight_table::load(path).map_err(|error| Failure::input(path, error)),
         }
     }

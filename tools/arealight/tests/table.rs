@@ -2,7 +2,7 @@
 
 mod common;
 
-use arealight_table::{Format, Precision, TableFile, ggx, resampled, rounded};
+use arealight_table::{Format, Precision, TableFile, resampled, rounded};
 use common::run;
 use std::path::Path;
 
@@ -34,7 +34,7 @@ fn a_table_goes_through_every_format() {
     convert(folder, &["b.dds", "c.exr"]);
     // Nothing is lost but what 16 bits lose
     let file = TableFile::load(&folder.join("c.exr")).unwrap();
-    assert_eq!(file.table, rounded(&ggx(), Precision::Half).unwrap());
+    assert_eq!(file.table, rounded(&arealight::LightTable::ggx(), Precision::Half).unwrap());
     assert_eq!(file.fit_error, arealight_table::ggx_file().fit_error);
     for (name, format) in [("a.ktx2", Format::Ktx2), ("b.dds", Format::Dds), ("c.exr", Format::Exr)] {
         assert_eq!(Format::detect(&std::fs::read(folder.join(name)).unwrap()), Some(format));
@@ -53,7 +53,10 @@ fn sources_and_sizes() {
     assert!(said.starts_with("wrote t.glsl: 16 x 16 nodes"), "{said}");
     convert(folder, &["built-in", "t.dds", "--size", "22"]);
     let file = TableFile::load(&folder.join("t.dds")).unwrap();
-    assert_eq!(file.table, rounded(&resampled(&ggx(), 22).unwrap(), Precision::Half).unwrap());
+    assert_eq!(
+        file.table,
+        rounded(&resampled(&arealight::LightTable::ggx(), 22).unwrap(), Precision::Half).unwrap()
+    );
     // What was measured is another table
     assert_eq!(file.fit_error, None);
 }

@@ -10,7 +10,7 @@ use arealight_oracle::shading::{ltc_on, truth};
 use glam::DVec3;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 fn read(file: &str) -> String {
     let path = format!("{}/../../tests/data/reference/{file}", env!("CARGO_MANIFEST_DIR"));

@@ -51,7 +51,7 @@ impl Seen {
 }
 
 /// The table that is built in, which takes a while to read.
-static BUILT_IN: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static BUILT_IN: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// What a surface reflects of a light, by a fitted table in float64.
 #[pyfunction]

@@ -8,8 +8,7 @@
 //! Tests are no exception. A published crate carries its tests and names what they depend on, so that an
 //! unpublished tool would keep it from being published; and who changes a crate can run its tests without
 //! building a renderer. A test that needs more than `crates/` lies in `tests/`, or with the tool that it
-//! needs. Tests may use crates in the rules' direction: the oracle's and the fit's use `arealight-table`, for
-//! the built-in table.
+//! needs. Tests may use crates in the rules' direction.
 
 use crate::TaskError;
 use crate::cargo::metadata;

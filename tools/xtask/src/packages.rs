@@ -11,9 +11,15 @@ use std::path::Path;
 const NEEDED: [(&str, &[&str]); 3] = [
     (
         "arealight",
-        &["spirv/shade.spv", "spirv/texture_load.spv", "spirv/texture_blur.spv", "spirv/manifest.json"],
+        &[
+            "spirv/shade.spv",
+            "spirv/texture_load.spv",
+            "spirv/texture_blur.spv",
+            "spirv/manifest.json",
+            "tables/ggx.f32",
+        ],
     ),
-    ("arealight-table", &["tables/ggx.exr"]),
+    ("arealight-table", &["tables/ggx-fit-error.txt"]),
     ("arealight-capi", &["include/arealight.h", "arealight.pc.in", "cmake/arealight-config.cmake.in"]),
 ];
 
@@ -174,8 +180,11 @@ mod tests {
     fn a_package_without_its_kernels_or_licence_is_found_out() {
         let mut files: BTreeSet<String> = NEEDED_BY_ALL.iter().map(ToString::to_string).collect();
         assert_eq!(missing("arealight-vk", &files), Vec::<String>::new());
-        assert_eq!(missing("arealight-table", &files), ["the package arealight-table lacks tables/ggx.exr"]);
-        assert_eq!(missing("arealight", &files).len(), 4);
+        assert_eq!(
+            missing("arealight-table", &files),
+            ["the package arealight-table lacks tables/ggx-fit-error.txt"]
+        );
+        assert_eq!(missing("arealight", &files).len(), 5);
         files.remove("LICENSE-MIT");
         assert_eq!(missing("arealight-vk", &files), ["the package arealight-vk lacks LICENSE-MIT"]);
     }

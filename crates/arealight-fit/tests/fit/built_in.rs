@@ -10,7 +10,7 @@ use arealight_oracle::cubature::{Region, Settings};
 use arealight_oracle::ggx::Ggx;
 use arealight_oracle::polygon::transformed_form_factor;
 use arealight_oracle::shading::lobe_integrals;
-use arealight_table::{Precision, ggx, rounded};
+use arealight_table::{Precision, rounded};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::LazyLock;
@@ -20,7 +20,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| cases(COUNT, SEED, &|| {}))
 #[test]
 fn it_is_better_than_the_published_table_at_every_reflectance() {
     for ((ours, published), f0) in
-        measure(&ggx(), Level::default(), &CASES).iter().zip(&PUBLISHED).zip(REFLECTANCES)
+        measure(&LightTable::ggx(), Level::default(), &CASES).iter().zip(&PUBLISHED).zip(REFLECTANCES)
     {
         assert_eq!((ours.f0, published.f0), (f0, f0));
         assert!(ours.mean < published.mean && ours.max < published.max, "{ours:?} {published:?}");
@@ -29,7 +29,7 @@ fn it_is_better_than_the_published_table_at_every_reflectance() {
 
 #[test]
 fn the_measure_sees_a_lobe_that_is_too_wide() {
-    let table = ggx();
+    let table = LightTable::ggx();
     let widened = measure_lookup(
         |roughness, cos_view| table.lookup(1.1 * roughness, cos_view),
         Level::default(),
@@ -40,7 +40,7 @@ fn the_measure_sees_a_lobe_that_is_too_wide() {
 
 #[test]
 fn its_albedos_are_true_at_its_nodes() {
-    let table = ggx();
+    let table = LightTable::ggx();
     let (size, albedos) = (table.size(), table.albedos());
     let region = Region::sphere().clipped(DVec3::Z);
     let settings = Settings { relative_tolerance: 1e-5, max_evaluations: 2_000_000 };
@@ -80,7 +80,7 @@ fn largest_albedo_errors(table: &LightTable) -> [f64; 2] {
 
 #[test]
 fn its_albedos_are_near_between_nodes() {
-    let table = ggx();
+    let table = LightTable::ggx();
     // What the dip's coefficients and the last rows were chosen for; to 89.9 degrees the first is 1.0e-3
     let errors = largest_albedo_errors(&table);
     println!("{errors:?}");
@@ -104,7 +104,7 @@ fn its_albedos_are_near_between_nodes() {
 #[test]
 fn its_lobes_integrate_to_one() {
     // Six faces of a box around the point hold every direction
-    let table = ggx();
+    let table = LightTable::ggx();
     let corner = |i: usize, s: f64| {
         let axis = DVec3::AXES[i];
         let (u, v) = (DVec3::AXES[(i + 1) % 3], DVec3::AXES[(i + 2) % 3]);
@@ -124,7 +124,8 @@ fn its_lobes_integrate_to_one() {
 
 #[test]
 fn it_is_what_the_fitter_makes() {
-    let (checked_in, fitted) = (ggx(), fit(&GgxBrdf, &FitSettings::default(), &|_, _| {}).unwrap());
+    let (checked_in, fitted) =
+        (LightTable::ggx(), fit(&GgxBrdf, &FitSettings::default(), &|_, _| {}).unwrap());
     assert_eq!(checked_in.description(), fitted.description());
     let matrices = |table: &LightTable| {
         let pairs = table.pairs().unwrap();

@@ -6,7 +6,6 @@ use arealight_fit::report::{
 };
 use arealight_fit::{Brdf, FitError, GgxBrdf, formula};
 use arealight_oracle::formula::{Formula, MIN_COS_VIEW};
-use arealight_table::ggx;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -30,7 +29,7 @@ fn difference(a: &Formula, b: &Formula) -> f64 {
 
 #[test]
 fn it_is_what_the_fitter_makes_of_the_built_in_table() {
-    let fitted = formula::fit(&GgxBrdf, &ggx()).unwrap();
+    let fitted = formula::fit(&GgxBrdf, &LightTable::ggx()).unwrap();
     // To all six digits on the machine that made it. Another one's sines may move a node across a probe's
     // edge; if that happened at every texel, as it does when entries are off by 1e-6, coefficients would
     // change by 1e-5
@@ -40,7 +39,7 @@ fn it_is_what_the_fitter_makes_of_the_built_in_table() {
 #[test]
 fn the_refit_would_notice_another_table() {
     // Lobes that are a hundredth narrower across the plane of incidence
-    let table = ggx();
+    let table = LightTable::ggx();
     let narrower = table.matrix().iter().map(|&[a, b, c, d]| [1.01 * a, b, c, d]).collect();
     let table =
         LightTable::new(table.description().clone(), 64, narrower, table.magnitude().to_vec()).unwrap();
@@ -71,7 +70,8 @@ fn what_is_checked_in_is_what_is_printed() {
 #[test]
 fn it_does_nearly_as_well_as_the_table() {
     let lookup = |roughness, cos_view| Formula::GGX.lookup(roughness, cos_view);
-    let (by_formula, by_table) = (measure_lookup(lookup, BY_F0, &CASES), measure(&ggx(), BY_F0, &CASES));
+    let (by_formula, by_table) =
+        (measure_lookup(lookup, BY_F0, &CASES), measure(&LightTable::ggx(), BY_F0, &CASES));
     for ((formula, table), published) in by_formula.iter().zip(&by_table).zip(&PUBLISHED) {
         // The bar is 1.5 times. At F0 = 1 it is 1.404, since the table's albedos are true at grazing views
         assert!(formula.mean < 1.41 * table.mean, "{formula:?} {table:?}");
@@ -87,7 +87,8 @@ fn it_does_nearly_as_well_as_the_table() {
 #[test]
 fn the_comparison_with_the_table_can_fail() {
     let lookup = |roughness: f64, cos_view| Formula::GGX.lookup(1.1 * roughness, cos_view);
-    let (by_formula, by_table) = (measure_lookup(lookup, BY_F0, &CASES), measure(&ggx(), BY_F0, &CASES));
+    let (by_formula, by_table) =
+        (measure_lookup(lookup, BY_F0, &CASES), measure(&LightTable::ggx(), BY_F0, &CASES));
     assert!(by_formula.iter().zip(&by_table).any(|(formula, table)| formula.mean > 1.5 * table.mean));
 }
 
@@ -121,7 +122,7 @@ fn its_albedos_are_near_the_truth() {
 
 #[test]
 fn a_table_of_one_matrix_makes_one_lobe() {
-    let two = ggx();
+    let two = LightTable::ggx();
     let one = LightTable::new(two.description().clone(), 64, two.matrix().to_vec(), two.magnitude().to_vec());
     let formula = formula::fit(&GgxBrdf, &one.unwrap()).unwrap();
     assert_eq!(formula.lobe, Formula::GGX.lobe);
@@ -132,7 +133,7 @@ fn a_table_of_one_matrix_makes_one_lobe() {
 
 #[test]
 fn too_small_a_table_is_refused() {
-    let description = ggx().description().clone();
+    let description = LightTable::ggx().description().clone();
     let table = LightTable::new(description, 2, vec![[1.0, 0.0, 0.0, 1.0]; 4], vec![[0.9, 0.1]; 4]).unwrap();
     let error = formula::fit(&GgxBrdf, &table).unwrap_err();
     assert!(matches!(error, FitError::Setting { setting: "size", value: 2.0, .. }), "{error}");

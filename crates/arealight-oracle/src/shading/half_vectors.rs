@@ -197,7 +197,7 @@ mod tests {
     /// The least and the most that light from everywhere counts over its mean normal, for every alpha and
     /// view.
     fn means(f0: f64) -> [f64; 2] {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for (i, j) in (0..=30).flat_map(|i| (0..=30).map(move |j| (f64::from(i) / 30.0, f64::from(j) / 30.0)))
         {

@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 fn coated(coat: Coat) -> Surface {
     Surface { diffuse_albedo: DVec3::ONE, coat: Some(coat), ..Surface::default() }

@@ -11,7 +11,7 @@ use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// A white Lambert lobe alone, below an interface that itself reflects nothing to the viewer.
 fn below(f0: f64, f90: f64) -> Surface {

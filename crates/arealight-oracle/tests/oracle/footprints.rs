@@ -22,7 +22,7 @@ const FILTERS: [(&str, Filter); 4] = [
 
 /// Errors of each filter through the pyramid, for poses of a family that show each of `textures`.
 fn measure(family: Family, textures: &[Arc<Texture>], count: usize) -> Vec<Summary> {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let size = PyramidSize::new(SIDE as u32, SIDE as u32).unwrap();
     let pyramids: Vec<Pyramid> = textures.iter().map(|texture| Pyramid::new(texture, size)).collect();
     let mut errors: Vec<Errors> = FILTERS.iter().map(|_| Errors::default()).collect();

@@ -11,7 +11,7 @@ use glam::{DMat3, DVec3};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 const LAMPS: usize = 150;
 

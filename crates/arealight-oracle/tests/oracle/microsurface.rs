@@ -10,7 +10,7 @@ use arealight_oracle::stream::Stream;
 use glam::DVec3;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 fn view_at(theta: f64) -> DVec3 {
     DVec3::new(theta.sin(), 0.0, theta.cos())

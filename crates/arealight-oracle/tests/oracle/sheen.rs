@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// Degrees from the normal, to where formulas end (`MIN_COS_VIEW`).
 const ANGLES: [f64; 10] = [0.0, 1e-5, 1.0, 20.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9];

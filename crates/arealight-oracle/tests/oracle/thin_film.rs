@@ -11,7 +11,7 @@ use arealight_oracle::thin_film::ThinFilm;
 use glam::DVec3;
 use std::sync::LazyLock;
 
-static TABLE: LazyLock<LightTable> = LazyLock::new(arealight_table::ggx);
+static TABLE: LazyLock<LightTable> = LazyLock::new(LightTable::ggx);
 
 /// A surface under a film, seen at a view, with a light where it mirrors something.
 #[derive(Clone)]

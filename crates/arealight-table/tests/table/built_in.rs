@@ -1,27 +1,30 @@
 //! The table that is built in.
 
 use arealight::LightTable;
-use arealight_table::{ggx, ggx_file};
+use arealight_table::{TableFile, Target, ggx_file, hash};
 
 #[test]
 fn it_reads() {
-    let table = ggx();
+    let table = LightTable::ggx();
     assert_eq!(table.size(), 64);
     assert_eq!(table.description().brdf, "ggx-correlated-smith");
     assert!(ggx_file().fit_error.unwrap().contains("two lobes: 3.37e-4 at F0 = 0.02"));
 }
 
 #[test]
-fn its_file_is_small_and_as_this_version_writes_it() {
-    let bytes = include_bytes!("../../tables/ggx.exr");
-    assert!(bytes.len() < 350_000, "{} bytes", bytes.len());
-    // Compression may differ in a newer library; what is compressed may not
-    assert_eq!(arealight_table::read(&arealight_table::write(&ggx())).unwrap(), ggx());
+fn it_is_embedded_as_the_command_writes_it() {
+    let raw = ggx_file().write(Target::Raw).unwrap();
+    assert!(raw == include_bytes!("../../../arealight/tables/ggx.f32"), "{} bytes", raw.len());
+    // Through a file, which says what the texels must be, and to the same bytes again
+    let hashed = "sha256:d8dc7d4b032b32f880f0ed749e3dec563ac4ce2c4a5c89950af50f1e99de6bfe";
+    assert_eq!(hash(&LightTable::ggx()), hashed);
+    let read = TableFile::read(&ggx_file().write(Target::Exr).unwrap()).unwrap();
+    assert_eq!((&read, read.write(Target::Raw).unwrap()), (&ggx_file(), raw));
 }
 
 #[test]
 fn seen_from_the_normal_its_lobes_are_round() {
-    let table = ggx();
+    let table = LightTable::ggx();
     let [first, second] = &table.pairs().unwrap().matrices;
     for layer in [table.matrix(), table.schlick_matrix().unwrap(), first, second] {
         for texel in &layer[..table.size() as usize] {
@@ -34,7 +37,7 @@ fn seen_from_the_normal_its_lobes_are_round() {
 fn neighbouring_nodes_differ_little() {
     // Entries are of order 1. The largest step, 0.27, is one of q20 towards the last row, where lobes become
     // fans; in all rows but the last five, up to 85 degrees, steps are below 0.08
-    let table = ggx();
+    let table = LightTable::ggx();
     let worst = largest_steps(&table, table.matrix());
     assert!(worst[0] < 0.1 && worst[1] < 0.3, "{worst:?}");
     // The lobe of Schlick's weight turns from that of F0 to its own where it begins to count: entries up to 9
@@ -65,14 +68,14 @@ fn largest_steps(table: &LightTable, texels: &[[f32; 4]]) -> [f32; 2] {
 #[test]
 fn a_white_rough_surface_seen_from_the_normal_reflects_one_minus_ln_two() {
     // In closed form for alpha = 1
-    let table = ggx();
+    let table = LightTable::ggx();
     let sample = table.lookup(1.0, 1.0);
     assert!((sample.albedo - (1.0 - 2.0_f64.ln())).abs() < 1e-7, "{sample:?}");
 }
 
 #[test]
 fn a_lookup_anywhere_is_a_lobe() {
-    let table: LightTable = ggx();
+    let table: LightTable = LightTable::ggx();
     for i in 0..=200 {
         for j in 0..=200 {
             let sample = table.lookup(f64::from(i) / 200.0, f64::from(j) / 200.0);

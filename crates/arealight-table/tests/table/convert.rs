@@ -1,14 +1,15 @@
 //! Tables of another size.
 
 use arealight::TableError;
-use arealight_table::{ggx, resampled};
+use arealight_table::resampled;
 
 use crate::draft::{table, table_of_pairs};
 
 #[test]
 fn nodes_that_coincide_keep_their_numbers() {
     // 64 nodes are 63 steps: every third of them makes 22 nodes
-    let (fine, coarse) = (ggx(), resampled(&ggx(), 22).unwrap());
+    let (fine, coarse) =
+        (arealight::LightTable::ggx(), resampled(&arealight::LightTable::ggx(), 22).unwrap());
     for (x, y) in (0..22 * 22).map(|i| (i % 22, i / 22)) {
         let (fine_node, node) = (3 * y * 64 + 3 * x, y * 22 + x);
         assert_eq!(coarse.matrix()[node], fine.matrix()[fine_node]);

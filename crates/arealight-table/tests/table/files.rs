@@ -1,7 +1,7 @@
 //! Tables to files and back.
 
 use arealight::{LightTable, TableDescription};
-use arealight_table::{FileError, ReadError, TableFile, Target, ggx, hash, load, read, save, write};
+use arealight_table::{FileError, ReadError, TableFile, Target, hash, load, read, save, write};
 use exr::prelude::{AttributeValue, Compression};
 
 use crate::draft::{Draft, table, table_of_pairs, table_of_two};
@@ -49,7 +49,7 @@ fn a_file_of_version_2_has_no_grazing_dip() {
 
 #[test]
 fn a_grazing_dip_comes_back_and_counts_in_the_hash() {
-    let dipped = ggx();
+    let dipped = LightTable::ggx();
     assert!(dipped.description().ggx_dip);
     assert_eq!(read(&write(&dipped)).unwrap(), dipped);
     // The same texels are another table without it

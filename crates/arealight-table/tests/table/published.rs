@@ -2,7 +2,7 @@
 
 use arealight::table::inverse_from_texel;
 use arealight::{LightTable, TableDescription};
-use arealight_table::{Adjusted, PublishedError, ReadError, ggx, read_published, resampled};
+use arealight_table::{Adjusted, PublishedError, ReadError, read_published, resampled};
 use exr::prelude::*;
 use glam::DMat3;
 
@@ -19,7 +19,7 @@ enum Storage {
 
 /// The lobes of our table with other albedos, which their images hold as they are, of 8 nodes a side.
 fn table() -> LightTable {
-    let table = resampled(&ggx(), SIZE).unwrap();
+    let table = resampled(&LightTable::ggx(), SIZE).unwrap();
     let magnitude = (0..SIZE * SIZE).map(|i| [1.0 - 0.005 * i as f32, 0.005 * i as f32]).collect();
     LightTable::new(TableDescription::default(), SIZE, table.matrix().to_vec(), magnitude)
         .and_then(|plain| plain.with_schlick_matrix(table.schlick_matrix().unwrap().to_vec()))

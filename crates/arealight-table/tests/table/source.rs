@@ -1,7 +1,7 @@
 //! C and GLSL: what their compilers make of the text.
 
 use arealight::LightTable;
-use arealight_table::{Precision, TableFile, Target, WriteError, ggx, resampled, rounded};
+use arealight_table::{Precision, TableFile, Target, WriteError, resampled, rounded};
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -49,7 +49,7 @@ int main(void) {
 #[test]
 fn a_c_compiler_finds_the_same_numbers() {
     for precision in [Precision::Half, Precision::Single] {
-        let table = resampled(&ggx(), 5).unwrap();
+        let table = resampled(&LightTable::ggx(), 5).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         std::fs::write(at("table.h"), text(&table, Target::CHeader(precision))).unwrap();
@@ -97,7 +97,7 @@ fn compile_glsl(constants: &str) -> Option<Output> {
 
 #[test]
 fn a_glsl_compiler_takes_the_bridge_with_the_library() {
-    for table in [resampled(&ggx(), 16).unwrap(), table(16), ggx()] {
+    for table in [resampled(&LightTable::ggx(), 16).unwrap(), table(16), LightTable::ggx()] {
         let Some(output) = compile_glsl(&text(&table, Target::Glsl)) else { return };
         assert_success(&output);
     }

@@ -2,7 +2,7 @@
 
 use arealight::LightTable;
 use arealight_table::{
-    Format, Precision, ReadError, TableFile, Target, WriteError, ggx, hash, load, read, resampled, rounded,
+    Format, Precision, ReadError, TableFile, Target, WriteError, hash, load, read, resampled, rounded,
 };
 use half::f16;
 
@@ -32,19 +32,22 @@ fn refusal(file: &[u8]) -> String {
 #[test]
 fn a_table_comes_back_rounded_to_the_precision_and_no_further() {
     for target in targets() {
-        for table in [table(2), table(7), table_of_two(16), table_of_pairs(5), ggx()] {
+        for table in [table(2), table(7), table_of_two(16), table_of_pairs(5), LightTable::ggx()] {
             let file = TableFile::read(&write(&table, target)).unwrap();
             assert_eq!(file.table, rounded(&table, target.precision()).unwrap(), "{target:?}");
             assert_eq!(file.fit_error.as_deref(), Some("none"));
         }
         // Or else the above would show little
-        assert_eq!(read(&write(&ggx(), target)).unwrap() == ggx(), target.precision() == Precision::Single);
+        assert_eq!(
+            read(&write(&LightTable::ggx(), target)).unwrap() == LightTable::ggx(),
+            target.precision() == Precision::Single
+        );
     }
 }
 
 #[test]
 fn half_floats_err_by_their_last_bit_at_most() {
-    let (table, half) = (ggx(), rounded(&ggx(), Precision::Half).unwrap());
+    let (table, half) = (LightTable::ggx(), rounded(&LightTable::ggx(), Precision::Half).unwrap());
     for (a, b) in table.texels().as_flattened().iter().zip(half.texels().as_flattened()) {
         // Half a unit of 11 bits; below 6e-5, of a subnormal number
         assert!((a - b).abs() <= a.abs() / 2048.0 + 3e-8, "{a} {b}");
@@ -53,7 +56,7 @@ fn half_floats_err_by_their_last_bit_at_most() {
 
 #[test]
 fn what_the_gpu_reads_says_if_a_dip_was_added() {
-    for (table, dip) in [(table_of_two(4), 0.0), (resampled(&ggx(), 4).unwrap(), 1.0)] {
+    for (table, dip) in [(table_of_two(4), 0.0), (resampled(&LightTable::ggx(), 4).unwrap(), 1.0)] {
         assert!(table.texels()[16..32].iter().all(|texel| texel[2] == dip), "{dip}");
         let glsl = String::from_utf8(write(&table, Target::Glsl)).unwrap();
         assert!(glsl.contains(&format!("+ node]), {dip:?}, ")), "{glsl}");

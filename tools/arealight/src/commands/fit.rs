@@ -300,7 +300,7 @@ mod tests {
 
     #[test]
     fn json_holds_what_the_text_says() {
-        let (arguments, table) = (arguments(), arealight_table::ggx());
+        let (arguments, table) = (arguments(), LightTable::ggx());
         let horizons = || Horizons { cosine_space: comparison(), both_horizons: comparison() };
         let report = Some(Report { table: horizons(), formula: Some(horizons()) });
         let formula = Some(Formula::GGX);

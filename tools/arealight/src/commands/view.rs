@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     }
 
     // Draw
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let mut engine = gpu::engine(arguments.device.device.as_deref(), &table)?;
     engine
         .load_scene_textures(&scene, super::render::TEXTURE_SIZE)

@@ -15,7 +15,7 @@ fn vertices(case: &HardCase) -> Vec<DVec3> {
 }
 
 fn cases(name: &str, count: u64) -> Vec<HardCase> {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     (0..count).map(|index| Family::find(name).unwrap().case(index, 0, &table)).collect()
 }
 
@@ -168,7 +168,7 @@ fn what_is_not_finite_must_be_zero() {
 #[test]
 fn a_small_light_is_held_to_its_own_size() {
     let family = Family::find("far").unwrap();
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let index = (0..1000).find(|i| {
         let reference = Reference::new(&family.case(*i, 0, &table));
         reference.small_light_unit.is_some_and(|unit| unit < 1e-9) && reference.form_factor > 1e-12
@@ -182,7 +182,7 @@ fn a_small_light_is_held_to_its_own_size() {
 
 #[test]
 fn every_family_is_what_it_says() {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     for family in FAMILIES {
         let again = |index| family.case(index, 0, &table);
         assert!((0..20).any(|index| again(index) != family.case(index, 1, &table)), "{}: seeds", family.name);

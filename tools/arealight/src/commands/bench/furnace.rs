@@ -25,8 +25,9 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Arguments { steps, ends } = arguments;
     let host = ends.host()?;
     let bar = progress::bar(furnace::levels().len() as u64, "levels");
-    let found =
-        furnace::run(&host, &arealight_table::ggx(), &Options { steps: *steps }, &|count| bar.inc(count));
+    let found = furnace::run(&host, &arealight::LightTable::ggx(), &Options { steps: *steps }, &|count| {
+        bar.inc(count);
+    });
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 

@@ -67,7 +67,7 @@ pub fn run(arguments: &LadderArguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.steps(), "steps");
-    let found = ladder::run(&host, &arealight_table::ggx(), &scene, &options, &|count| bar.inc(count));
+    let found = ladder::run(&host, &arealight::LightTable::ggx(), &scene, &options, &|count| bar.inc(count));
     bar.finish_and_clear();
     let (mut found, pictures) = found.map_err(|error| Failure::Device(error.to_string()))?;
     found.command = arguments.command();

@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         ..Options::default()
     };
     let bar = progress::bar(many_lights::steps(&options), "frames");
-    let found = many_lights::run(&host, &arealight_table::ggx(), &options, &|count| bar.inc(count));
+    let found = many_lights::run(&host, &arealight::LightTable::ggx(), &options, &|count| bar.inc(count));
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 

@@ -43,7 +43,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = ends.host()?;
 
     let bar = progress::bar(2 * u64::from(*samples), "samples a pixel");
-    let found = materials::run(&host, &arealight_table::ggx(), &read, &options, &|count| bar.inc(count));
+    let found =
+        materials::run(&host, &arealight::LightTable::ggx(), &read, &options, &|count| bar.inc(count));
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 

@@ -104,7 +104,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     };
     let view = View { size: arguments.size, samples: arguments.samples, repeats: 0 };
     let bar = progress::bar(STEPS_BESIDE_THE_TRUTH * scenes.len() as u64, "steps");
-    let found = beside_the_truth(&host, &arealight_table::ggx(), &scenes, view, &|count| bar.inc(count));
+    let found =
+        beside_the_truth(&host, &arealight::LightTable::ggx(), &scenes, view, &|count| bar.inc(count));
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 

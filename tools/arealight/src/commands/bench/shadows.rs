@@ -111,7 +111,7 @@ fn run_levels(arguments: &Arguments) -> Result<(), Failure> {
 
     let bar = progress::bar(options.steps(scenes.len()), "steps");
     let found =
-        shadow_levels::run(&host, &arealight_table::ggx(), &scenes, &options, &|count| bar.inc(count));
+        shadow_levels::run(&host, &arealight::LightTable::ggx(), &scenes, &options, &|count| bar.inc(count));
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 
@@ -141,7 +141,7 @@ fn run_motion(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let advance = |count| bar.inc(count);
-    let found = shadow_motion::run(&host, &arealight_table::ggx(), &scenes, &options, &advance, &show);
+    let found = shadow_motion::run(&host, &arealight::LightTable::ggx(), &scenes, &options, &advance, &show);
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
     if let Some(path) = &arguments.strip {

@@ -74,7 +74,7 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let host = arguments.ends.host()?;
 
     let bar = progress::bar(options.samples * options.families.len() as u64, "polygons");
-    let found = stability::run(&host, &arealight_table::ggx(), &options, &|count| bar.inc(count));
+    let found = stability::run(&host, &arealight::LightTable::ggx(), &options, &|count| bar.inc(count));
     bar.finish_and_clear();
     let found = found.map_err(|error| Failure::Device(error.to_string()))?;
 

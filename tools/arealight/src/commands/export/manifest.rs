@@ -87,7 +87,7 @@ fn effects() -> Map<String, Value> {
 
 /// Bytes on the GPU, before the alignment that the driver adds.
 fn memory() -> Value {
-    let table = arealight_table::ggx();
+    let table = arealight::LightTable::ggx();
     let bytes = |format: TableFormat| format.bytes(&table).len();
     let layer = |side: u32| {
         let size = PyramidSize::new(side, side).ok()?;

@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn maps_agree_with_the_report() {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let levels = [SpecularLobes::One, SpecularLobes::Two];
         let subjects = levels.map(|specular_lobes| Subject {
             name: String::new(),

@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn a_fit_looks_like_its_brdf() {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let metal = Material { f0: 1.0, specular_lobes: SpecularLobes::One };
         // The colours' whole range
         assert!(worst(&table, (0.75, 0.8), metal) < FULL_ERROR);
@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn every_matrix_is_drawn() {
-        let table = arealight_table::ggx();
+        let table = LightTable::ggx();
         let (matrix, magnitude) = (table.matrix().to_vec(), table.magnitude().to_vec());
         let first_only =
             LightTable::new(table.description().clone(), table.size(), matrix, magnitude).unwrap();

@@ -68,7 +68,7 @@ pub fn make(path: &Path, layer: u32, device: Option<&str>) -> Result<Pyramid, Fa
         _ => (path.display().to_string(), Input::Image(Loaded::encoded(path)?)),
     };
     // Make the pyramid, and read it back
-    let mut engine = gpu::engine(device, &arealight_table::ggx())?;
+    let mut engine = gpu::engine(device, &arealight::LightTable::ggx())?;
     match input {
         Input::Scene(scene) => engine.load_scene_textures(&scene, LARGEST),
         Input::Image(image) => image.load(&mut engine),

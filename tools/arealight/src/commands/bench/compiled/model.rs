@@ -23,7 +23,7 @@ const SCENES: [(&str, &[u8]); 3] = [
 /// Counts the paths of our scenes, and prices them by the statistics of each family.
 pub fn run(found: &Compiled, document_path: Option<&Path>) -> Result<ExitCode, Failure> {
     let failed = |error: &dyn std::fmt::Display| Failure::Device(error.to_string());
-    let engine = gpu::engine(None, &arealight_table::ggx())?;
+    let engine = gpu::engine(None, &arealight::LightTable::ggx())?;
     let mut scenes = vec![];
     for (name, bytes) in SCENES {
         let scene = Scene::from_bytes(bytes, name).map_err(|error| Failure::Scene(error.to_string()))?;
