@@ -50,7 +50,7 @@ const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;
 
-// Which kinds of lights there may be beside convex quads without an image.
+// Which kinds of lights there may be, apart from convex quads without an image.
 const bool HAS_POLYGONS = (EFFECTS & EFFECTS_OF_POLYGONS) != 0u;
 const bool HAS_MESHES = (EFFECTS & EFFECT_MESH) != 0u;
 const bool HAS_SHAPES = (EFFECTS & EFFECTS_OF_SHAPES) != 0u;

@@ -1,8 +1,8 @@
 #ifndef OUTPUT_TEXEL_GLSL
 #define OUTPUT_TEXEL_GLSL
 
-// Texels of the images that radiance goes to. The including kernel has the constant OUTPUT: bits, of which
-// none overwrites one image of 32-bit floats.
+// Texels of the images that radiance goes to. The including kernel has the constant OUTPUT: bits; 0
+// overwrites one image of 32-bit floats.
 
 #include "half.glsl"
 
@@ -12,9 +12,8 @@ const int OUTPUT_APART = 2; // the glossy lobe's radiance goes to an image of it
 // The images are rgba16f: so the recorder writes it into the module, Kernel::words_for
 const int OUTPUT_HALF = 4;
 
-// A texel as it is stored, of which `coverage` is the part that has a surface, if it has any. What sixteen
-// bits cannot hold becomes the largest number that they can: an infinite texel would spread over the picture
-// in whatever filter comes next.
+// A texel as it is stored; `coverage` is the part that has a surface. Clamped to the largest half float: an
+// infinite texel would spread over the picture in later filters.
 vec4 output_texel(vec3 radiance, bool hit, float coverage) {
     if ((OUTPUT & OUTPUT_HALF) != 0) {
         radiance = round_to_half(min(radiance, vec3(LARGEST_HALF)));

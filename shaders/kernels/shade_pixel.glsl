@@ -3,8 +3,8 @@
 
 // Shades a pixel with a list of lights. The including kernel, shade.comp or shade_portable.comp, has a struct
 // LightList with quad_count, light_count and shape_count, and
-// - uint light_at(LightList list, uint index): a polygon of the list, of which the first quad_count are
-//   convex quads without an image;
+// - uint light_at(LightList list, uint index): a polygon of the list; the first quad_count are convex quads
+//   without an image;
 // - uint shape_at(LightList list, uint index): a disk, sphere or tube of the list;
 // - HAS_LIGHTS, HAS_QUADS, HAS_POLYGONS, HAS_SHAPES: whether a pixel may have any light, such quads, other
 //   polygons and meshes, shapes.
@@ -98,9 +98,9 @@ PixelRadiance shade_surface(ivec2 pixel, ArealightSurface surface, LightList lis
     return sum;
 }
 
-// Takes those out of the bits `samples` of a texel that hold `surface`, too: the same but for a position that
-// is no farther from its plane than half the samples' distance across the view. How many. So are the samples
-// that a fragment wrote, whose normal leans from its triangle's.
+// Clears from the bits `samples` of a texel those that show the same surface, and returns how many: equal
+// numbers, and a position no farther from its plane than half the samples' distance across the view, as a
+// fragment with a bent normal writes them.
 int take_samples_of(ivec2 texel, ivec2 pixel, ArealightSurface surface, inout uint samples) {
     int count = 0;
     for (int index = 1; index < G_BUFFER_SAMPLES; index++) {

@@ -21,7 +21,7 @@ layout(push_constant, std430) uniform TextureLoadConstants {
     uint layer;
 } constants;
 
-// What the pipeline can do beside copying texels one to one, by bits; what is not needed costs nothing.
+// What the pipeline can do besides copying texels one to one, by bits; unused steps cost nothing.
 layout(constant_id = 9) const uint LOAD_STEPS = 3u;
 const uint STEP_RESAMPLING = 1u;
 const uint STEP_DECODING = 2u;

@@ -435,10 +435,9 @@ typedef struct ArealightReach {
     double center[3];
     // How far from there it may reflect more than the threshold; infinite where nothing bounds it.
     double radius;
-    // The corners of a box outside of which it does not either: smaller for flat lights that shine to one
-    // side.
+    // The lower corner of a box with the same bound: smaller for flat one-sided lights.
     double low[3];
-    // Likewise.
+    // The upper corner.
     double high[3];
 } ArealightReach;
 
@@ -546,7 +545,7 @@ typedef struct ArealightImage {
 typedef struct ArealightResources {
     // ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
     struct ArealightBuffer lights;
-    // ArealightPackedLights.vertices, likewise.
+    // ArealightPackedLights.vertices; without lights, any buffer of 64 bytes or more.
     struct ArealightBuffer light_vertices;
     // ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     struct ArealightBuffer shapes;

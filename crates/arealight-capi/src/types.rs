@@ -223,10 +223,9 @@ pub struct ArealightReach {
     pub center: [f64; 3],
     /// How far from there it may reflect more than the threshold; infinite where nothing bounds it.
     pub radius: f64,
-    /// The corners of a box outside of which it does not either: smaller for flat lights that shine to one
-    /// side.
+    /// The lower corner of a box with the same bound: smaller for flat one-sided lights.
     pub low: [f64; 3],
-    /// Likewise.
+    /// The upper corner.
     pub high: [f64; 3],
 }
 
@@ -296,7 +295,7 @@ pub struct ArealightBuffer {
 pub struct ArealightResources {
     /// ArealightPackedLights.lights; without lights, any buffer of 64 bytes or more.
     pub lights: ArealightBuffer,
-    /// ArealightPackedLights.vertices, likewise.
+    /// ArealightPackedLights.vertices; without lights, any buffer of 64 bytes or more.
     pub light_vertices: ArealightBuffer,
     /// ArealightPackedLights.shapes. May be 0 where no frame has disks, spheres or tubes.
     pub shapes: ArealightBuffer,

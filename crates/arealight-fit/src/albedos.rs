@@ -6,7 +6,7 @@ use glam::{DMat3, DVec3};
 
 use crate::brdf::{Brdf, Magnitude};
 
-/// Rows of nodes that are balanced: the last ones, beyond which interpolation errs by less than 5e-4.
+/// Rows of nodes that are balanced: the last ones, beyond which interpolation has an error of less than 5e-4.
 pub(crate) const ROWS: usize = 3;
 
 /// Views of a cell that count.

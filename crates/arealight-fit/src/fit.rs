@@ -23,8 +23,8 @@ pub struct Settings {
     pub size: u32,
     /// The lobes that are fitted at each node.
     pub aim: Aim,
-    /// Whether pairs of lobes are fitted beside them ([`arealight::table::LobePairs`]), which takes twice as
-    /// long as the rest.
+    /// Whether pairs of lobes are fitted too ([`arealight::table::LobePairs`]), which takes twice as long as
+    /// the rest.
     pub pairs: bool,
 }
 

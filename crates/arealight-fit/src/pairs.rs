@@ -18,8 +18,8 @@ const PARAMETERS: usize = 10;
 /// more to decide.
 const ANCHOR: f64 = 1e-2;
 
-/// What the dielectric's squares count beside those of a reflectance of 1. Its lobe is held against others of
-/// the same energy, but has a tenth of it or less: with 1 metals would pay for what nobody sees.
+/// Weight of the dielectric's squares; those of a reflectance of 1 have 1. A dielectric's lobe has a tenth of
+/// a metal's energy or less: at equal weight metals would pay for differences that nobody sees.
 const DIELECTRIC_WEIGHT: f64 = 0.1;
 
 /// At the first node the first lobe is begun half as wide as one lobe, the second twice as wide, and with

@@ -87,7 +87,7 @@ pub struct Surface {
     pub anisotropy: Option<Anisotropy>,
 }
 
-/// A GGX distribution of two alphas, of which this is one.
+/// The tangent and the second alpha of a GGX distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Anisotropy {
     /// Any length and any angle to the surface, onto which it is projected; zero and one along the normal

@@ -159,7 +159,7 @@ pub fn form_factor(tube: &Tube) -> f64 {
 }
 
 /// The integral of a linearly transformed cosine over a tube, in [0, 1]. `inverse` takes directions of the
-/// surface frame into cosine space, of which only the horizon is clipped.
+/// surface frame into cosine space; only the horizon of that is clipped.
 pub fn transformed_form_factor(inverse: &DMat3, tube: &Tube) -> f64 {
     const SEGMENTS: usize = 100;
     match tube.silhouette() {

@@ -174,8 +174,8 @@ pub fn matrix_count(table: &LightTable) -> u32 {
 ///
 /// Over the size and the number of matrices as `u32`, then the matrix, the magnitude and Schlick's matrix if
 /// there is one, then the matrices of pairs and the second lobe's shares if there are any, texel by texel as
-/// `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. What the table says
-/// of itself beside that does not count.
+/// `f32`, all in little-endian order; then, if the magnitudes have a dip added, its name. Other metadata does
+/// not count.
 pub fn hash(table: &LightTable) -> String {
     let schlick_matrix = table.schlick_matrix();
     let mut hasher = Sha256::new();

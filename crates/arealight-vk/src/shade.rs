@@ -65,8 +65,8 @@ pub struct ShadeFrame {
     pub light_offsets: [u32; 3],
 }
 
-/// Pixels are shaded whose stencil is equal to the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`.
-/// By default all are.
+/// Shades pixels whose stencil equals the reference in the bits of the mask: `VK_COMPARE_OP_EQUAL`. By
+/// default all are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StencilTest {
     /// The bits that are compared.
@@ -76,10 +76,10 @@ pub struct StencilTest {
 }
 
 impl ShadeFrame {
-    /// The frame in parts of whole rows of workgroups, none with more than `most` pairs of a pixel and a
-    /// light, but for one that is a single row of workgroups (8 rows of pixels), which is the least. What a
-    /// light costs a pixel is in docs/gpu.md; 2^24 pairs take less than two seconds on a device that does ten
-    /// million a second. Tiles leave out pairs that are counted here.
+    /// The frame in parts of whole rows of workgroups, each with at most `most` pairs of a pixel and a light;
+    /// the smallest part is a row of workgroups (8 rows of pixels). docs/gpu.md has the cost of a light; 2^24
+    /// pairs take less than two seconds on a device that does ten million a second. Tiles leave out pairs
+    /// that are counted here.
     pub fn parts(&self, most: u64) -> impl Iterator<Item = Self> + use<> {
         let frame = *self;
         let [first, end] = frame.rows.unwrap_or([0, frame.size[1]]);
@@ -112,7 +112,7 @@ pub struct ShadePass {
 }
 
 impl ShadePass {
-    /// Makes what all pipelines of the pass have in common.
+    /// Creates the set and pipeline layouts.
     ///
     /// # Safety
     /// As [`crate::ComputePass::new`]: drop the pass when no recorded use of it is pending, before the device

@@ -79,7 +79,7 @@ pub(crate) fn view_of(options: ShadeOptions, frame: &ShadeFrame) -> Result<View,
     Ok(View { position_from_clip, camera: frame.camera.to_array() })
 }
 
-/// Kernels count pixels in signed integers, of which a G-buffer's texels are a multiple.
+/// Kernels count a G-buffer's texels, a multiple of the pixels, in signed integers.
 const MOST_PIXELS: u64 = i32::MAX as u64 / ShadeOptions::MOST_TEXELS_PER_PIXEL as u64;
 
 impl Viewport {

@@ -55,18 +55,17 @@ pub enum RadianceFormat {
     Rgba16Float = 4,
 }
 
-/// Everything that a shade pipeline is specialised for beside a frame's lights.
+/// Options fixed at pipeline creation.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of its own")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ShadeOptions {
-    /// What the host's surfaces need, of [`Effects::SURFACES`]; other effects are a frame's lights' to say,
-    /// and are not read here.
+    /// What the host's surfaces need, of [`Effects::SURFACES`]; light bits are ignored, since they come from
+    /// [`LightSummary`].
     pub surfaces: Effects,
-    /// What accuracy the host pays for.
+    /// The quality level.
     pub quality: Quality,
-    /// What the binding `g_position` holds. Depth as stored, in either direction, of which exactly 0 or 1,
-    /// one of which every depth buffer is cleared to, marks a pixel without a surface; or else positions
-    /// relative to the origin, of which w = 0 does.
+    /// If true, `g_position` is the depth buffer as stored, reversed or not: exactly 0 or 1 is background.
+    /// Else it holds positions relative to the origin, with w = 0 for background.
     pub from_depth: bool,
     /// How surfaces are stored.
     pub g_buffer: GBufferLayout,
@@ -90,16 +89,16 @@ pub struct ShadeOptions {
     /// shadow rays, unless it is 1.
     pub texels_per_pixel: u32,
     /// How many samples the texels of the G-buffer have: 1, 2, 4 or 8, in Vulkan's standard places. A pixel's
-    /// radiance is the mean over its samples, of which those with the same surface in the same plane are
-    /// shaded once; `a` is the part that has a surface. Without shadow rays and half resolution, unless it is
+    /// radiance is the mean over its samples; samples with the same surface in the same plane are shaded
+    /// once; `a` is the part that has a surface. Without shadow rays and half resolution, unless it is
     /// 1.
     pub samples: u32,
     /// Whether frames have a stencil test: pixels that fail it stay as they are, with either [`Output`].
     /// Without shadow rays.
     pub stencil: bool,
-    /// Whether how many lights a frame has is read from a buffer, [`LightCounts`](crate::gpu::LightCounts),
-    /// when the commands run: for lights that the GPU culled or made. What [`LightSummary`] says is the most
-    /// then. Costs a storage buffer more.
+    /// Whether the number of lights is read from a buffer, [`LightCounts`](crate::gpu::LightCounts), when the
+    /// commands run: for lights that the GPU culled or made. What [`LightSummary`] says is the most then.
+    /// Costs a storage buffer more.
     pub light_counts: bool,
 }
 
@@ -235,8 +234,8 @@ impl TileOptions {
 }
 
 impl Default for TileOptions {
-    /// Lists of 128 lights, of which none is culled that contributes anything; frames of four quads and more
-    /// are classified.
+    /// Lists of 128 lights, no culling of lights that contribute; frames of four quads and more are
+    /// classified.
     fn default() -> Self {
         Self { capacity: 128, cull_threshold: 0.0, least_quads: 4 }
     }

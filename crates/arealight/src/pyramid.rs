@@ -184,7 +184,7 @@ fn gaussian(variance: f64, taps: u32) -> [f64; MOST_TAPS] {
     samples.map(|sample| sample / sum)
 }
 
-/// The variance of a whole kernel, of which this is half.
+/// The variance of a symmetric kernel, given its half.
 fn discrete_variance(half: &[f64]) -> f64 {
     2.0 * half.iter().enumerate().map(|(i, weight)| weight * (i as f64 + 0.5).powi(2)).sum::<f64>()
 }

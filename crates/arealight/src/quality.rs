@@ -1,4 +1,4 @@
-//! Quality levels: what accuracy costs is the host's choice, made for each pass.
+//! Quality levels, chosen by the host for each pass.
 
 /// How the arcs that a polygon's edges subtend are summed to a form factor.
 ///
@@ -40,16 +40,15 @@ pub enum SpecularLobes {
     #[default]
     One = 0,
     /// Two integrals a light, at .6 to .8 times the error of one, exact in the reflectance and its colour. Of
-    /// a surface that has sheen the second goes to that, at a third to a half of its error. One all the same
-    /// where the lobes are formulas ([`Lobes::Formula`]), and of a table that has no pairs.
+    /// a surface that has sheen the second goes to that, at a third to a half of its error. Falls back to one
+    /// with [`Lobes::Formula`] and with a table that has no pairs.
     Two = 1,
     /// No transformed cosine: GGX itself, integrated over the half vectors of a light's outline, for three to
-    /// four times the instructions of one integral. Lobes of two roughnesses ([`crate::Effects::ANISOTROPY`])
-    /// err a tenth to a thirtieth of what two lobes do under lamps, others as much or down to a third; of
-    /// lights that fill the lobe, as a sky does, two to three times as much, but that light from everywhere
-    /// is exact. Lights that are polygons or meshes without an image alone; all others have
-    /// [`SpecularLobes::One`]. The table is read for albedos. Sheen has two lobes, as with
-    /// [`SpecularLobes::Two`]. Tiles cull no such light.
+    /// four times the instructions of one integral. Error relative to two lobes: under lamps, a tenth to a
+    /// thirtieth for two roughnesses ([`crate::Effects::ANISOTROPY`]), a third to the same for one; two to
+    /// three times for lights that fill the lobe, as a sky does; light from everywhere is exact. Only for
+    /// polygons and meshes without an image; other lights have [`SpecularLobes::One`]. The table is read for
+    /// albedos. Sheen has two lobes, as with [`SpecularLobes::Two`]. Tiles cull no such light.
     HalfVectors = 2,
 }
 

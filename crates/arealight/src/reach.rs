@@ -33,9 +33,9 @@ pub fn radius(light: &Light, threshold: f64, density: f64) -> f64 {
     if radius.is_finite() { radius } else { f64::INFINITY }
 }
 
-/// The smallest and the largest corner of a box along the axes outside of which the light is of no more
-/// matter than outside of [`radius`], in world positions: of the sphere, or of its half before a flat light
-/// that shines to one side.
+/// The corners of an axis-aligned box, in world positions, outside of which a surface reflects no more of the
+/// light than outside of [`radius`]: the box of that sphere, or of the half in front of a flat one-sided
+/// light.
 pub fn bounds(light: &Light, radius: f64) -> [DVec3; 2] {
     let (center, size) = (light.shape.center(), size_about(&light.shape));
     let shines_to_one_side = light.shape.is_flat() && !light.two_sided;

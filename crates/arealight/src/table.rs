@@ -52,7 +52,7 @@ pub use sample::TableSample;
 /// The largest `size` that a table may have: far beyond any use, and small enough to allocate.
 pub const MAX_SIZE: u32 = 1024;
 
-/// What a table says of itself beside its texels.
+/// A table's metadata.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TableDescription {
     /// The BRDF that was fitted, for example `ggx-correlated-smith`.
@@ -60,7 +60,7 @@ pub struct TableDescription {
     /// What made it, for people: program, version, settings.
     pub made_by: String,
     /// Whether [`ggx_grazing_dip`] is added to the albedos in the magnitude texels, and taken away again by a
-    /// lookup. Without, for a BRDF of which nothing is known, they are the albedos.
+    /// lookup. False for other BRDFs: the texels are the albedos.
     pub ggx_dip: bool,
 }
 
@@ -312,8 +312,8 @@ impl LightTable {
     /// The [`LAYERS`] layers as the GPU image has them, four `f32` a texel: layer 0 the matrix; layer 1 the
     /// magnitude in its first two channels, and in the third how much of GGX's dip was added to it, 1 or 0;
     /// layer 2 the matrix of Schlick's weight; layers 3 and 4 those of [`LobePairs`]; layer 5 its shares in
-    /// the first two channels. A table of one matrix has that again in layer 2; one without pairs has its
-    /// matrices in layers 3 and 4, of which the second has no share at a reflectance of 1.
+    /// the first two channels. A table of one matrix has that again in layer 2; one without pairs has its own
+    /// matrices in layers 3 and 4, with no share for the second at a reflectance of 1.
     pub fn texels(&self) -> Vec<[f32; 4]> {
         let dip = f32::from(u8::from(self.description.ggx_dip));
         let magnitude = self.magnitude.iter().map(|m| [m[0], m[1], dip, 0.0]);

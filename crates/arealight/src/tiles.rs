@@ -1,9 +1,9 @@
 //! Tiles of a picture, classified by the lights that contribute to them: what the kernels `classify` and
 //! `shade` share.
 //!
-//! A frame may have many lights of every kind, of which few contribute to a pixel. Each tile of 8 × 8 pixels
-//! gets a list of the lights that contribute to it, and each class of tiles has a pipeline with no more code
-//! than their lights need. docs/tiles.md has measurements.
+//! A frame may have many lights of every kind, and few contribute to a pixel. Each tile of 8 × 8 pixels gets
+//! a list of the lights that contribute to it, and each class of tiles has a pipeline with no more code than
+//! their lights need. docs/tiles.md has measurements.
 
 use crate::LightSummary;
 use crate::plan::Output;
@@ -50,7 +50,7 @@ impl TileClass {
         }
     }
 
-    /// Whether frames of these lights may have such tiles, of which pixels are written.
+    /// Whether frames with these lights may have such tiles, and pixels are written for them.
     pub fn is_dispatched(self, frame: LightSummary, output: Output) -> bool {
         match self {
             Self::Empty => output == Output::Overwrite,

@@ -97,8 +97,8 @@ float arealight_settled_height(float height, float width) {
     return abs(height) > width ? height : 0.0;
 }
 
-// Whether x is neither infinite nor NaN, by its bits, of which no compiler may assume anything. Of a light's
-// record, which all of a wave read, GPUs with scalar units compute this once for the wave.
+// Whether x is neither infinite nor NaN, by its bits, so that no compiler can assume it. For a light's
+// record, GPUs with scalar units compute this once per wave.
 bool arealight_is_finite(float x) {
     return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u;
 }

@@ -26,7 +26,7 @@ float arealight_ggx_visibility(vec3 view, vec3 light, vec2 alpha) {
     return 0.5 / max(by_view + by_light, 1e-30);
 }
 
-// (1 - cos theta_vh)^5, of which Schlick's Fresnel term is f0 + (f90 - f0) times that.
+// (1 - cos theta_vh)^5: Schlick's Fresnel term is f0 + (f90 - f0) times this.
 float arealight_schlick_weight(vec3 view, vec3 half_vector) {
     float weight = 1.0 - clamp(dot(view, half_vector), 0.0, 1.0);
     float weight2 = weight * weight;

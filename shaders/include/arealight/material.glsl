@@ -74,8 +74,8 @@ void arealight_put_two_lobes(inout ArealightPoint point, ArealightSurface surfac
     point.lobes[AREALIGHT_LOBE_SECOND] = arealight_lobe(second, second_albedo);
 }
 
-// Puts the specular lobes of a surface into `point`; what there may not be is a branch of its own, which is
-// removed before a driver gets it. Their albedos, without Fresnel term and of Schlick's weight.
+// Puts the specular lobes of a surface into `point`, and returns their albedos: without Fresnel term, and of
+// Schlick's weight. Optional features are branches, so that the pruner removes them.
 ArealightTableSample arealight_put_specular_lobes(inout ArealightPoint point, ArealightFrame frame,
                                                   ArealightSurface surface) {
     bool has_two = arealight_has_two_specular_lobes(surface.sheen.color);

@@ -2,9 +2,9 @@
 #define AREALIGHT_SELF_TEST_GLSL
 
 // Ten shading points with the answers of float64, for a host's own shader to run with its own bridges:
-// whether the table is loaded as it should be. A table of which layers are missing, whose axes are swapped,
-// or which is read as sRGB makes a picture that is only darker. examples/self_test.comp runs it. It is for
-// the default options: of the specular lobe alone, from the table, as one lobe.
+// whether the table is loaded as it should be. A table with missing layers, whose axes are swapped, or which
+// is read as sRGB makes a picture that is only darker. examples/self_test.comp runs it. It is for the default
+// options: of the specular lobe alone, from the table, as one lobe.
 
 #include "arealight/lights/quad.glsl"
 #include "arealight/material.glsl"

@@ -95,8 +95,8 @@ vec3 arealight_facet_cosines(float cos_view, float roughness) {
 // `roughness` perceptual, in [0, 1].
 //
 // A facet's angle is not the view's: three angles count, so that what the film reflects of light from
-// everywhere errs by 1.4e-3 on dielectrics and 4.7e-3 on metals (Schlick's term through the film at the
-// view's own angle: 7.9e-3 and 31e-3).
+// everywhere has an error of 1.4e-3 on dielectrics and 4.7e-3 on metals (Schlick's term through the film at
+// the view's own angle: 7.9e-3 and 31e-3).
 void arealight_thin_film_schlick(ArealightThinFilm film, float cos_view, float roughness, inout vec3 f0,
                                  inout float f90) {
     if (!arealight_is_film(film)) {

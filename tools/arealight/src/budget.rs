@@ -22,7 +22,7 @@ pub struct BudgetArguments {
     /// Shade on the most accurate level that takes no longer
     #[arg(long, value_name = "MS", requires = "profile", conflicts_with_all = ["max_error", "reference", "form_factor", "horizon", "specular_lobes", "lobes", "footprint"])]
     budget_ms: Option<f64>,
-    /// Shade on the fastest level that errs no more, as root of the mean square over the mean
+    /// Use the fastest level with RMSE/mean of at most this
     #[arg(long, value_name = "E", requires = "profile", conflicts_with_all = ["reference", "form_factor", "horizon", "specular_lobes", "lobes", "footprint"])]
     max_error: Option<f64>,
     /// What `arealight bench --save FILE` measured on this device

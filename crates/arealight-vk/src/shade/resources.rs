@@ -37,13 +37,14 @@ pub struct ShadeResources {
     /// [`PackedLights::lights`](arealight::PackedLights::lights). With no lights, bind any buffer of 64 bytes
     /// or more.
     pub lights: Resource,
-    /// [`PackedLights::vertices`](arealight::PackedLights::vertices), likewise.
+    /// [`PackedLights::vertices`](arealight::PackedLights::vertices); with no lights, any buffer of 64 bytes
+    /// or more.
     pub light_vertices: Resource,
-    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); none where no frame has disks, spheres or
+    /// [`PackedLights::shapes`](arealight::PackedLights::shapes); `None` if no frame has disks, spheres or
     /// tubes.
     pub shapes: Option<Resource>,
-    /// The lights' textures ([`crate::LightTextures`]), a 2D array; the host sees to it that every light's
-    /// layer is there. None where no frame has textured lights.
+    /// The lights' textures ([`crate::LightTextures`]), a 2D array. The caller must have uploaded every
+    /// referenced layer. `None` if no frame has textured lights.
     pub light_textures: Option<Resource>,
     /// Positions or depth, by [`ShadeOptions::from_depth`].
     pub position: Resource,

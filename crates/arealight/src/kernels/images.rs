@@ -53,8 +53,7 @@ pub fn read_samples(samples: u32, words: &mut [u32]) {
     });
 }
 
-/// Visits each instruction with its opcode and its words, of which the first holds the opcode and the word
-/// count.
+/// Visits each instruction with its opcode and its words; the first word holds opcode and word count.
 fn each_instruction(words: &mut [u32], mut act: impl FnMut(u32, &mut [u32])) {
     let mut at = HEADER;
     while at < words.len() {

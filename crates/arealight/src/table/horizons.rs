@@ -16,7 +16,7 @@ use crate::SpecularLobes;
 pub struct LobeHorizon {
     /// The least and the largest `q / sin` of the lobe without Fresnel term, or of that and of two lobes.
     pub lobe: [f32; 2],
-    /// Of the lobe of Schlick's weight; likewise.
+    /// The same for the lobe of Schlick's weight.
     pub schlick: [f32; 2],
     /// The least and the largest of Schlick's albedo times `q22` of its lobe, over the same of the lobe
     /// without Fresnel term: what a mixture of the two is weighed by.

@@ -14,7 +14,7 @@
 // b| / 2 and b + v. No linear map leads there; chords do, from the ends to the shoulder of the conic, with
 // what they lack added by the triangle that they make: two of an edge, more of the parts of one that bends
 // far. Where chords meet is fixed by the edge alone, so that a light cut in two sends what it did, up to the
-// chords' error: an edge errs by 3e-4 of a form factor at most, on average 1e-4 of one that bends far.
+// chords' error: an edge has an error of at most 3e-4 of a form factor, on average 1e-4 if it bends far.
 
 // What the facets of a surface are and who sees them.
 struct ArealightFacets {

@@ -161,8 +161,8 @@ float arealight_line_form_factor(vec3 start, vec3 along, float width, float slan
     return 2.0 * width * AREALIGHT_INVERSE_PI * (across + slope + slanted);
 }
 
-// The form factor of a tube seen from outside, of which `is_small` becomes false, and the result means
-// nothing, where an end is not small. Clipped at the horizon; arguments as arealight_tube_form_factor's.
+// The form factor of a tube seen from outside. If an end is not small, `is_small` becomes false and the
+// result means nothing. Clipped at the horizon; arguments as arealight_tube_form_factor's.
 float arealight_small_tube(ArealightTube tube, mat3 transform, float horizon, out bool is_small) {
     // The anchor is the tube's center
     vec3 half_axis = transform * (tube.half_length * tube.axis);

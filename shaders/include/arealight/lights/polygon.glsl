@@ -223,8 +223,7 @@ vec4 arealight_split_sum(mat3 space, ArealightLocalPolygon local, ArealightLobeI
 }
 
 // The mean colour that a lobe sees of an image by parts of the light: those of a convex quad, or of the
-// triangles about the center of any other outline, of which those that run against the outline are taken away
-// again.
+// triangles about the center of any other outline; those that run against the outline are subtracted again.
 vec3 arealight_split_color(mat3 space, ArealightLocalPolygon local, ArealightLobeImage image,
                            float form_factor) {
     vec4 sum = vec4(0.0);

@@ -33,7 +33,7 @@ mat3 arealight_coupled_space(ArealightFrame frame, float f0, float f90) {
 // The integral of the Fresnel term depends on the view's angle alone, and so does the lobe's shape: a shear
 // towards the viewer, whose horizon stays the surface's. With an albedo of 1 and f0 = 0.04 the mean error of
 // the reflected radiance is 0.26e-3 over quads of unit radiance, 3.3e-3 at the 99th percentile; Lambert's
-// lobe with the same albedo errs 0.61e-3, one that is not coupled 5.2e-3. Source: a least squares on the
+// lobe with the same albedo has 0.61e-3, one that is not coupled 5.2e-3. Source: a least squares on the
 // lobe's density (docs/decisions/0018-coupled-diffuse.md).
 ArealightLobe arealight_coupled_diffuse_lobe(ArealightFrame frame, vec3 albedo, float f0, float f90) {
     return ArealightLobe(arealight_coupled_space(frame, f0, f90), albedo

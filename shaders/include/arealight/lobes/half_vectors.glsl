@@ -11,7 +11,7 @@
 // How much of the visible normals mirrors a light to the viewer is known in closed form, up to the chords'
 // error (form_factor/half_vectors.glsl); masking of the light and the Fresnel term, which vary slowly, are
 // those of these normals' mean. The more of them a light has the less the mean says: `gain`, in proportion to
-// their share, makes of light from everywhere the lobe's albedo. What it errs: docs/materials.md,
+// their share, makes of light from everywhere the lobe's albedo. Error: docs/materials.md,
 // docs/decisions/0026-half-vectors.md. It needs polygons without an image; of other lights the lobe is the
 // fitted one.
 

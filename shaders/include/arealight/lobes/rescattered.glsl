@@ -6,7 +6,7 @@
 // Light that the facets of a specular lobe reflect more than once, which GGX loses: of white rough metals up
 // to 60 %. With AREALIGHT_MULTIPLE_SCATTERING part of it is added in the lobe's own shape (Turquin 2019), the
 // rest as from a Lambert lobe (after Fdez-Aguera 2019): a metal has that lobe then, too. A white surface
-// sends all that it gets. What it errs beside random walks on the microsurface: docs/materials.md.
+// sends all that it gets. Error against random walks on the microsurface: docs/materials.md.
 
 // How much of it has the specular lobe's shape.
 const float AREALIGHT_RESCATTERED_SPECULAR = 0.4;

@@ -18,7 +18,7 @@ float arealight_rough_diffuse_single_albedo(float cos_view, float roughness) {
 // lobe of one bounce is a cosine that leans towards the viewer; what bounces again is a wider one. They are
 // one lobe between the two by the mean of the channels; the albedo is exact in each, to 4e-4. Against the
 // true integral over quads of unit radiance: mean error 0.8e-3 for an albedo of 0.8, 0.15e-3 for 0.18;
-// Lambert's lobe errs 9.4e-3 and 2.7e-3.
+// Lambert's lobe has 9.4e-3 and 2.7e-3.
 ArealightLobe arealight_rough_diffuse_lobe(ArealightFrame frame, vec3 albedo, float roughness) {
     roughness = arealight_clamped_roughness(roughness, 0.0);
     float m = frame.cos_view;
@@ -32,7 +32,7 @@ ArealightLobe arealight_rough_diffuse_lobe(ArealightFrame frame, vec3 albedo, fl
     vec3 reflected = albedo * single + more;
     float part = dot(more, vec3(1.0)) / max(dot(reflected, vec3(1.0)), 1e-6);
 
-    // The space of one bounce; of more it is diag(1, 1, 0.79), of which the roughness 0 has none
+    // The space of one bounce; that of more is diag(1, 1, 0.79), unused at roughness 0
     float x = 1.0 + roughness * s * s * (-0.2409 + m * (0.3583 - 0.1340 * m) + 0.0999 * roughness);
     float x_of_z = roughness * s * (-0.7191 + m * (0.3185 - 0.0357 * m) - 0.0046 * roughness);
     float z_of_x = roughness * s * (0.4851 + m * (0.2321 * m - 0.5456) - 0.0134 * roughness);

@@ -4,8 +4,8 @@
 #include "arealight/lobes/formula.glsl"
 #include "arealight/lobes/lobe.glsl"
 
-// By levels with more than one specular lobe it is two lobes, the second of which takes light away: Charlie
-// has a hole about the mirror direction.
+// At levels with more than one specular lobe it is two lobes, and the second takes light away: Charlie has a
+// hole about the mirror direction.
 
 // The smallest sheen roughness; a smaller one counts as this. Below it the lobe is seen at grazing angles
 // alone.

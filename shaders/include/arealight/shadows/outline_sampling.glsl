@@ -6,7 +6,7 @@
 
 // Shadow rays drawn over outlines of any number of vertices, as shading points see lights of every kind: a
 // polygon's or a face's vertices, or a ring of them for what is round. An outline is cut into a fan of convex
-// pieces, of which one is chosen by its form factor.
+// pieces; one is chosen by its form factor.
 
 // The host's bridge to vertices, from their light's center.
 vec3 arealight_bridge_vertex(uint index);
@@ -32,8 +32,8 @@ struct ArealightShadowRay {
 const uint AREALIGHT_RING_VERTICES = 16u;
 const float AREALIGHT_RING_SCALE = 1.0129962;
 
-// The outline of an ellipse. Shadows err by what is between it and sixteen chords: at most 1.3 % of its size
-// at its rim.
+// The outline of an ellipse. Error of shadows: the area between it and sixteen chords, at most 1.3 % of its
+// size at its rim.
 ArealightShadowOutline arealight_ellipse_outline(vec3 center, vec3 axis_u, vec3 axis_v) {
     return ArealightShadowOutline(true, true, 0u, AREALIGHT_RING_VERTICES, center, AREALIGHT_RING_SCALE
                                   * axis_u,

@@ -60,7 +60,7 @@ float arealight_sine(float x) {
                                    * (0.0083330251 + x2 * (-0.00019807419 + x2 * 2.6019031e-6))));
 }
 
-// (cosine, sine) of an angle in [0, pi]. The built-in functions err by 2^-11.
+// (cosine, sine) of an angle in [0, pi]. The built-in functions have an error of 2^-11.
 vec2 arealight_direction_at(float angle) {
     float half_angle = 0.5 * angle;
     float s = arealight_sine(half_angle);

@@ -20,7 +20,7 @@ float arealight_sequence(uvec2 pixel, uint ray) {
     return arealight_fraction(3242174889u * pixel.x + 2447445414u * pixel.y + 2654435769u * ray);
 }
 
-// Uniform in [0, 1)^2, likewise.
+// The same, uniform in [0, 1)^2.
 vec2 arealight_sequence_2d(uvec2 pixel, uint ray) {
     uvec2 place = uvec2(2680578941u, 503431629u) * pixel.x + uvec2(2340746611u, 2748584165u) * pixel.y;
     place += uvec2(3242174889u, 2447445414u) * ray;

@@ -50,7 +50,7 @@ float arealight_vertex_density(vec3 vertex, vec3 before, vec3 after) {
 }
 
 // A point of a small quad, with a density of the sides' parameters that is bilinear between those of the
-// vertices. The shadow of one that is a tenth of its distance large errs by 2e-4 rms.
+// vertices. The shadow of one as large as a tenth of its distance has an error of 2e-4 rms.
 vec3 arealight_draw_small_quad(ArealightQuad quad, vec2 random) {
     // Of sizes that do not leave float32
     float scale = 1.0 / max(arealight_max_component(quad.a), 1e-37);

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Look at a scene: move its lamps and the camera, and see what each quality level errs and takes.
+/// Look at a scene: move its lamps and the camera, and compare the error and cost of each level.
 ///
 /// In a window, which `h` explains the keys of; or, with --record, as pictures of what a script does, without
 /// one. For example: arealight view scenes/room.glb

@@ -9,7 +9,7 @@ use arealight_scene::Scene;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Measure what each material of a scene errs.
+/// Measure the error of each material of a scene.
 ///
 /// The scene is rendered at the exact level, and by Monte Carlo of the true BRDF, both without shadows. A row
 /// of the table is a material: its mean radiance over that of the reference, and the root of the mean squared

@@ -13,7 +13,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Measure what shadows err at each level, and what they take.
+/// Measure the error and cost of shadows at each level.
 ///
 /// Pictures of scenes by every level, and by area sampling with as many rays, are held against the Monte
 /// Carlo reference with shadows: the part of each pixel's light that arrives, in all lit pixels and in
