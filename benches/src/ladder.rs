@@ -16,14 +16,13 @@ mod timing;
 pub use compare::{Comparison, compare};
 pub use errors::{Errors, SplitErrors};
 pub use methods::{BASELINE, CASES_PUBLISHED, CLIPLESS_PUBLISHED, DEFAULT, SHADE_YARDSTICK};
-pub use names::{LevelNames, UnknownLevel};
+pub use names::LevelNames;
 pub use pictures::{Picture, Pictures, STEPS_BESIDE_THE_TRUTH, View, beside_the_truth, yardstick_for};
 pub use reference::{PictureError, Reference};
 pub use scaling::{Growth, Scaling};
 pub use text::{READS, error_cells, number, percent};
 pub use timing::{Spread, Time};
 
-use crate::budget::{Profile, ProfileLevel};
 use crate::textures::is_software;
 use arealight::{Effects, LightTable, Quality};
 use arealight_engine::host::Host;
@@ -161,30 +160,6 @@ pub struct Ladder {
     pub scaling: Scaling,
     /// Names of the lights, with what they are.
     pub workloads: Vec<(String, String)>,
-}
-
-impl Ladder {
-    /// What [`Profile::within`] picks from: the levels that are right everywhere, over quads and over
-    /// textured lights. One that gave no number, or was judged nowhere, is none of them.
-    ///
-    /// # Errors
-    /// [`UnknownLevel`] where the levels are in words that this version does not know.
-    pub fn profile(&self) -> Result<Profile, UnknownLevel> {
-        let mut levels = vec![];
-        for row in &self.rows {
-            let textured = row.lights == methods::TEXTURED;
-            let Some(names) = row.levels.as_ref().filter(|_| textured || row.lights == self.first()) else {
-                continue;
-            };
-            let quality = names.quality()?;
-            let is_judged = row.errors.all.points > 0 && row.errors.all.not_finite == 0;
-            if is_judged {
-                let (error, Time { fixed, per_light, .. }) = (row.errors.all.rmse, row.time);
-                levels.push(ProfileLevel { quality, textured, error, fixed, per_light });
-            }
-        }
-        Ok(Profile { device: self.device.clone(), levels })
-    }
 }
 
 /// Patches of points in a row of the frames.

@@ -9,7 +9,6 @@
 //! | [`compiled`] | what a GPU's compiler makes of the kernels, on a machine without a GPU |
 //! | [`model`] | which paths the waves of our scenes take, and what a frame of them costs by the compiler's numbers |
 //! | [`ladder`] | the error and the time of every quality level, beside Monte Carlo |
-//! | [`budget`] | levels picked by what was measured on a device |
 //! | [`textures`] | the time of filtering a light's texture |
 //! | [`footprints`] | the errors and the time of looking one up |
 //! | [`tiles`] | the time of frames by tiles, beside a yardstick and the same shading without |
@@ -31,8 +30,6 @@
 //!
 //! `arealight bench` is the way to run them; `cargo bench` has those of time.
 
-pub mod budget;
-pub mod clusters;
 pub mod compiled;
 pub mod cost;
 pub mod figures;

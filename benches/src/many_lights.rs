@@ -1,43 +1,19 @@
-//! A floor under ever more lamps, shaded with all of them, by tiles of the library's, and by clusters of a
-//! host's own: time, memory, error.
+//! A floor under ever more lamps, shaded with all of them and by tiles: time, memory, error.
 
-use crate::clusters::{Clusters, Grid};
 use crate::ladder::frame::processors;
 use crate::ladder::{number, percent};
 use crate::svg::{Axis, Drawing, FILE_STYLE, grid, number_short};
 use crate::table::Table;
 use crate::textures::{clocked, is_software};
 use crate::tiles::{difference, floor, lamps};
-use arealight::kernels::{Kernel, SHADE, constant};
-use arealight::plan::{Output, ShadeOptions, TileOptions, shade_specialization};
-use arealight::reach::DIFFUSE_DENSITY;
-use arealight::{LightTable, PackedLights, SpecularLobes};
+use arealight::LightTable;
+use arealight::plan::{Output, ShadeOptions, TileOptions};
 use arealight_engine::host::Host;
 use arealight_engine::{Engine, EngineError, SceneRenderer, TiledView};
-use arealight_scene::{Camera, Scene, SceneBuffers};
+use arealight_scene::{Scene, SceneBuffers};
 use arealight_vk::TableFormat;
 use glam::{DVec3, Vec3, Vec4};
 use serde::Serialize;
-use std::time::Instant;
-
-/// The shade kernel over the lights of clusters.
-pub static SHADE_CLUSTERS: Kernel = Kernel {
-    constants: &[
-        constant::EFFECTS,
-        constant::FORM_FACTOR,
-        constant::POSITION_SOURCE,
-        constant::OUTPUT,
-        constant::HORIZON,
-        constant::SPECULAR_LOBES,
-        constant::LOBES,
-        constant::FOOTPRINT,
-        constant::HAS_QUADS,
-        constant::LAYOUT,
-        constant::SHADOW_RAYS,
-        constant::VIEW,
-    ],
-    ..SHADE.like("shade_clusters", include_bytes!("../spirv/shade_clusters.spv"))
-};
 
 /// What to measure.
 #[derive(Debug, Clone)]
@@ -74,13 +50,10 @@ pub enum Way {
     All,
     /// By tiles, which cull so much of a pixel's radiance: [`TileOptions::cull_threshold`].
     Tiles(f32),
-    /// By clusters, out of which a light is kept that reflects less than so much of the picture's mean.
-    Clusters(f64),
 }
 
 /// What is compared.
-pub const WAYS: [Way; 5] =
-    [Way::All, Way::Tiles(0.01), Way::Tiles(0.1), Way::Clusters(0.03), Way::Clusters(0.3)];
+pub const WAYS: [Way; 3] = [Way::All, Way::Tiles(0.01), Way::Tiles(0.1)];
 
 impl Way {
     /// Its name in tables and charts.
@@ -88,7 +61,6 @@ impl Way {
         match self {
             Self::All => "all".to_owned(),
             Self::Tiles(threshold) => format!("tiles, {threshold}"),
-            Self::Clusters(part) => format!("clusters, {part}"),
         }
     }
 }
@@ -104,8 +76,6 @@ pub struct Row {
     pub lights_per_pixel: f64,
     /// Milliseconds of the device, with the lists where it makes them.
     pub milliseconds: f64,
-    /// Milliseconds of one processor that fills and packs the lists, where that does.
-    pub fill_milliseconds: Option<f64>,
     /// What the lists take.
     pub bytes: u64,
     /// The difference from the picture with all lights: root mean square over mean.
@@ -121,8 +91,6 @@ pub struct ManyLights {
     pub device: String,
     /// The picture in pixels.
     pub size: [u32; 2],
-    /// Columns, rows and slices of the clusters.
-    pub clusters: [u32; 3],
     /// What was found.
     pub rows: Vec<Row>,
 }
@@ -132,9 +100,6 @@ const FLOOR: f64 = 40.0;
 
 /// The most lights that a tile's list holds.
 const CAPACITY: u32 = 8192;
-
-/// The clusters: 32 pixels a side at the default size.
-const CLUSTERS: [u32; 3] = [20, 12, 16];
 
 /// How many steps `run` reports.
 pub fn steps(options: &Options) -> u64 {
@@ -157,37 +122,28 @@ pub fn run(
         let aspect = f64::from(options.size[0]) / f64::from(options.size[1]);
         let mut scene = floor(options.roughness, FLOOR, aspect);
         scene.lights = lamps(*count, FLOOR, DVec3::ZERO);
-        let mut frame = Frame::new(&engine, table, &scene, options)?;
+        let mut frame = Frame::new(&engine, &scene, options)?;
         for way in &options.ways {
             rows.push(frame.measure(*way)?);
             progress(1);
         }
     }
-    Ok(ManyLights { device: host.device_name(), size: options.size, clusters: CLUSTERS, rows })
+    Ok(ManyLights { device: host.device_name(), size: options.size, rows })
 }
 
 /// A floor under lamps.
 struct Frame<'a> {
     host: &'a Host,
     scene: &'a Scene,
-    camera: Camera,
     shade: ShadeOptions,
-    /// Of the floor's lobes, in 1/sr.
-    density: f64,
     options: &'a Options,
     renderer: SceneRenderer<'a>,
-    origin: DVec3,
     /// The picture with all lights, once it is known.
     exact: Vec<Vec4>,
 }
 
 impl<'a> Frame<'a> {
-    fn new(
-        engine: &'a Engine,
-        table: &LightTable,
-        scene: &'a Scene,
-        options: &'a Options,
-    ) -> Result<Self, EngineError> {
+    fn new(engine: &'a Engine, scene: &'a Scene, options: &'a Options) -> Result<Self, EngineError> {
         let camera = scene.framing_camera(1.0);
         let camera = scene.cameras.first().cloned().unwrap_or(camera);
         let buffers = SceneBuffers::new(scene, camera.position)?;
@@ -195,14 +151,11 @@ impl<'a> Frame<'a> {
         let renderer = SceneRenderer::new(engine, &buffers, &scene.lights, constants, options.size)?;
         let shade =
             ShadeOptions { surfaces: scene.effects(), output: Output::Overwrite, ..ShadeOptions::default() };
-        let density =
-            DIFFUSE_DENSITY + table.lobe_density(SpecularLobes::default(), options.roughness.into());
-        let (host, origin) = (engine.host(), buffers.origin);
-        Ok(Self { host, scene, camera, shade, density, options, renderer, origin, exact: vec![] })
+        Ok(Self { host: engine.host(), scene, shade, options, renderer, exact: vec![] })
     }
 
     fn measure(&mut self, way: Way) -> Result<Row, EngineError> {
-        let (mut fill_milliseconds, mut bytes) = (None, 0);
+        let mut bytes = 0;
         let (seconds, lights_per_pixel) = match way {
             Way::All => {
                 // Where that takes long one run is enough: a pipeline is there from fewer lamps
@@ -219,20 +172,6 @@ impl<'a> Frame<'a> {
                 bytes = view.memory();
                 (seconds, self.lights_by_tiles(&view)?)
             }
-            Way::Clusters(part) => {
-                let began = Instant::now();
-                let clusters = self.clusters(part * self.mean());
-                let words = clusters.words(&self.record_of()?);
-                fill_milliseconds = Some(began.elapsed().as_secs_f64() * 1e3);
-                bytes = size_of_val(&words[..]) as u64;
-                let lists = self.host.storage_buffer("cluster lists", &words)?;
-                let mut specialization = shade_specialization(self.shade, self.renderer.lights());
-                specialization.retain(|(id, _)| SHADE_CLUSTERS.constants.contains(id));
-                let seconds = self.fastest(self.options.rounds, |renderer, _| {
-                    renderer.shade_by_lists(&SHADE_CLUSTERS, &specialization, Some(&lists))
-                })?;
-                (seconds, self.lights_by_clusters(&clusters))
-            }
         };
         let [rmse, largest] = difference(&self.exact, &self.renderer.radiance()?);
         // On a software device seconds are of all its processors
@@ -242,7 +181,6 @@ impl<'a> Frame<'a> {
             way: way.name(),
             lights_per_pixel,
             milliseconds: seconds * 1e3 / processors,
-            fill_milliseconds,
             bytes,
             rmse,
             largest,
@@ -267,38 +205,6 @@ impl<'a> Frame<'a> {
         Ok(fastest)
     }
 
-    /// The mean radiance of the floor, of a channel.
-    fn mean(&self) -> f64 {
-        let lit = self.exact.iter().filter(|pixel| pixel.w != 0.0);
-        let (sum, count) = lit.fold((0.0, 0.0), |(sum, count), pixel| {
-            (sum + f64::from(pixel.truncate().element_sum()) / 3.0, count + 1.0)
-        });
-        sum / f64::max(count, 1.0)
-    }
-
-    fn clusters(&self, threshold: f64) -> Clusters {
-        let grid = Grid { counts: CLUSTERS, size: self.options.size };
-        // As deep as the scene is
-        let depth = |corner: DVec3| (corner - self.camera.position).dot(self.camera.forward);
-        let depths = self.scene.bounds.corners().map(depth);
-        let (near, far) = depths
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(near, far), depth| (near.min(*depth), far.max(*depth)));
-        let far = far.max(1e-3);
-        let depths = [near.max(0.01 * far), far];
-        Clusters::fill(&self.scene.lights, &self.camera, grid, depths, (threshold, self.density))
-    }
-
-    /// Which record each light became.
-    fn record_of(&self) -> Result<Vec<u32>, EngineError> {
-        let packed = PackedLights::new(&self.scene.lights, self.origin)?;
-        let mut record_of = vec![0; self.scene.lights.len()];
-        for (record, light) in (0..).zip(&packed.order) {
-            record_of[*light as usize] = record;
-        }
-        Ok(record_of)
-    }
-
     /// The pixels of the floor.
     fn pixels(&self) -> impl Iterator<Item = [u32; 2]> {
         let width = self.options.size[0] as usize;
@@ -313,18 +219,6 @@ impl<'a> Frame<'a> {
             |[x, y]: [u32; 2]| lists.lights([x / 8, y / 8]).map_or(all, |[lights, _]| lights.len()) as f64;
         Ok(mean(self.pixels().map(count)))
     }
-
-    fn lights_by_clusters(&self, clusters: &Clusters) -> f64 {
-        let [width, height] = self.options.size.map(f64::from);
-        let count = |pixel: [u32; 2]| {
-            let at = [(f64::from(pixel[0]) + 0.5) / width, (f64::from(pixel[1]) + 0.5) / height];
-            let [start, direction] = self.camera.ray([2.0 * at[0] - 1.0, 1.0 - 2.0 * at[1]], width / height);
-            // The floor is where y is 0
-            let position = start - direction * (start.y / direction.y);
-            clusters.at(&self.camera, pixel, position).len() as f64
-        };
-        mean(self.pixels().map(count))
-    }
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -334,8 +228,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 
 impl ManyLights {
     fn table(&self) -> Table {
-        let heads =
-            ["lamps", "shaded by", "lights a pixel", "ms", "of the CPU, ms", "lists, KB", "RMSE", "largest"];
+        let heads = ["lamps", "shaded by", "lights a pixel", "ms", "lists, KB", "RMSE", "largest"];
         let mut before = 0;
         let row = |row: &Row| {
             // A number once, where its rows begin
@@ -347,7 +240,6 @@ impl ManyLights {
                 row.way.clone(),
                 number(row.lights_per_pixel),
                 number(row.milliseconds),
-                row.fill_milliseconds.map_or_else(String::new, number),
                 if row.bytes == 0 { String::new() } else { (row.bytes / 1000).to_string() },
                 error(row.rmse),
                 error(row.largest),
@@ -367,9 +259,9 @@ impl ManyLights {
 
     /// A section of a document. `command` is what made it.
     pub fn to_markdown(&self, command: &str) -> String {
-        let ([width, height], [columns, rows, slices]) = (self.size, self.clusters);
+        let [width, height] = self.size;
         format!(
-            "By `{command}` on {}: {width} x {height} pixels, {columns} x {rows} x {slices} clusters.\n\n{}",
+            "By `{command}` on {}: {width} x {height} pixels.\n\n{}",
             self.device,
             self.table().to_markdown()
         )
@@ -381,7 +273,7 @@ impl ManyLights {
         let mut drawing = Drawing::new(
             SIZE[0],
             SIZE[1],
-            "Time and error over the number of lights, with all of them, by tiles and by clusters",
+            "Time and error over the number of lights, with all of them and by tiles",
         );
         drawing.bar("paper", [0.0, 0.0], SIZE);
         let device = self.device.split(" (").next().unwrap_or_default();
@@ -411,7 +303,6 @@ impl ManyLights {
             let class = match way {
                 Way::All => "noise",
                 Way::Tiles(_) => "ours",
-                Way::Clusters(_) => "theirs",
             };
             let points: Vec<[f64; 2]> = rows()
                 .filter(|row| row.way == way.name())
@@ -447,13 +338,12 @@ mod tests {
             way: way.name(),
             lights_per_pixel: 2.5,
             milliseconds: lamps as f64,
-            fill_milliseconds: matches!(way, Way::Clusters(_)).then_some(0.5),
             bytes: if way == Way::All { 0 } else { 12_345 },
             rmse: if way == Way::All { 0.0 } else { 0.012 },
             largest: 0.03,
         };
         let rows = [10, 100].into_iter().flat_map(|lamps| WAYS.map(|way| row(lamps, way))).collect();
-        ManyLights { device: "a device (driver)".to_owned(), size: [64, 36], clusters: CLUSTERS, rows }
+        ManyLights { device: "a device (driver)".to_owned(), size: [64, 36], rows }
     }
 
     #[test]
@@ -468,6 +358,6 @@ mod tests {
             );
         }
         assert!(text.contains("| 100 | all | 2.50 | 100 |"), "{text}");
-        assert!(text.contains("| 0.50 | 12 | 1.20 % | 3.00 % |"), "{text}");
+        assert!(text.contains("| 12 | 1.20 % | 3.00 % |"), "{text}");
     }
 }

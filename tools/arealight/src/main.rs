@@ -1,6 +1,5 @@
 //! The command line of Arealight.
 
-mod budget;
 mod canvas;
 mod commands;
 mod differences;

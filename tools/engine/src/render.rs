@@ -206,19 +206,6 @@ impl<'a> SceneRenderer<'a> {
         kernel: &'static Kernel,
         specialization: &[(u32, u32)],
     ) -> Result<Option<Duration>, EngineError> {
-        self.shade_by_lists(kernel, specialization, None)
-    }
-
-    /// As [`SceneRenderer::shade_by`], with a buffer of lists of lights in the place of those of tiles.
-    ///
-    /// # Errors
-    /// As [`SceneRenderer::shade_by`].
-    pub fn shade_by_lists(
-        &mut self,
-        kernel: &'static Kernel,
-        specialization: &[(u32, u32)],
-        lists: Option<&Buffer>,
-    ) -> Result<Option<Duration>, EngineError> {
         self.ensure_visible()?;
         let [position, normal, base_color, specular, coat, sheen, anisotropy, film, _] =
             self.g_buffer.sampled();
@@ -239,11 +226,11 @@ impl<'a> SceneRenderer<'a> {
             anisotropy,
             film,
             // Picks of shadow rays, stencils, counts of lights, lists, and horizons of lobes: no frame of
-            // these has others than lists
+            // these has one
             Resource::buffer(self.light_buffer.handle()),
             self.g_buffer.no_stencil(),
             Resource::buffer(self.light_buffer.handle()),
-            Resource::buffer(lists.unwrap_or(&self.light_buffer).handle()),
+            Resource::buffer(self.light_buffer.handle()),
             Resource::buffer(self.light_buffer.handle()),
         ];
         let pass = self.engine.pass(kernel, specialization, &resources)?;

@@ -3,7 +3,6 @@
 mod bands;
 mod shading;
 
-use crate::budget::BudgetArguments;
 use crate::failure::Failure;
 use crate::gpu;
 use crate::lights::{LightArguments, scene_name};
@@ -12,8 +11,6 @@ use crate::picture::{Exposure, Picture};
 use crate::quality::QualityArguments;
 use crate::shadows::Shadows;
 use arealight::{Effects, Quality};
-use arealight_benches::budget::FrameLoad;
-use arealight_benches::ladder::LevelNames;
 use arealight_scene::{Camera, Scene};
 use serde_json::json;
 use shading::{Outcome, render};
@@ -68,8 +65,6 @@ pub struct Arguments {
     shadows: Option<Shadows>,
     #[command(flatten)]
     quality: QualityArguments,
-    #[command(flatten)]
-    budget: BudgetArguments,
     /// Print the summary as JSON
     #[arg(long)]
     json: bool,
@@ -79,16 +74,6 @@ pub struct Arguments {
 const FOLDER: &str = "out";
 
 impl Arguments {
-    /// What the shade pass has to do.
-    fn load(&self, scene: &Scene) -> FrameLoad {
-        let pixels: f64 = self.size.map(|side| f64::from(side * self.supersample)).iter().product();
-        FrameLoad {
-            lights: scene.lights.len() as u32,
-            megapixels: pixels * 1e-6,
-            textured: scene.effects().intersects(Effects::IMAGES),
-        }
-    }
-
     /// A pixel's reference samples are spread evenly over its subpixels, each having one at least.
     fn samples_a_subpixel(&self, samples: u32) -> u32 {
         samples.div_ceil(self.supersample * self.supersample)
@@ -165,16 +150,6 @@ impl SurfaceChoice {
     }
 }
 
-/// A profile's times are of quads with one side, and of textured ones.
-fn warn_of_dearer_lights(effects: Effects, path: &Path) {
-    let measured = Effects::DIFFUSE | Effects::GLOSSY | Effects::SPECULAR_INPUT | Effects::TEXTURED;
-    let dearer = effects - measured;
-    if !dearer.is_empty() {
-        let path = path.display();
-        eprintln!("warning: {path}: the profile's times are of plain quads, and {dearer} takes longer");
-    }
-}
-
 /// The most texels a side that a light's texture gets.
 pub(super) const TEXTURE_SIZE: u32 = 1024;
 
@@ -225,15 +200,10 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
         .time("light textures", || engine.load_scene_textures(&scene, TEXTURE_SIZE))
         .map_err(|error| gpu::failure(error, &path))?;
     let surfaces = arguments.surfaces.surfaces(&scene, &path);
-    let picked = arguments.budget.pick(arguments.load(&scene), &engine.host().device_name())?;
-    if picked.is_some() {
-        warn_of_dearer_lights(scene.effects(), &path);
-    }
-    let quality = picked.map_or(arguments.quality.quality_or(Quality::default()), |level| level.quality);
-    let mut outcome = phases
+    let quality = arguments.quality.quality_or(Quality::default());
+    let outcome = phases
         .time("picture", || render(&engine, &scene, &camera, samples, (surfaces, quality), arguments))
         .map_err(|error| gpu::failure(error, &path))?;
-    outcome.picked = picked;
     phases.time("save", || outcome.picture.save(&output, arguments.supersample, outcome.stops))?;
     let device = engine.host().device_name();
     let summary = Summary {
@@ -313,14 +283,6 @@ impl Summary<'_> {
                 "tiles    not classified: that would take longer than so few quads".to_owned()
             });
         }
-        if let Some(level) = outcome.picked {
-            let expected = level.milliseconds(arguments.load(scene));
-            lines.push(format!(
-                "budget   expected {expected:.1} ms at an error of {:.2} %: {:?}",
-                level.error * 100.0,
-                level.quality
-            ));
-        }
         let per_pixel = arguments.supersample * arguments.supersample;
         lines.push(format!(
             "picture  {} ({width}x{height}, {per_pixel} sample{} a pixel, exposure {} EV)\n",
@@ -349,11 +311,6 @@ impl Summary<'_> {
             "warnings": scene.warnings.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "notes": scene.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
             "device": device,
-            "picked": outcome.picked.map(|level| json!({
-                "levels": LevelNames::from(level.quality),
-                "expected_milliseconds": level.milliseconds(arguments.load(scene)),
-                "error": level.error,
-            })),
             "reference_samples": arguments.reference_samples(),
             "tiles": outcome.tiles.as_ref().map(|tiles| json!({
                 "classes": tiles.classes.iter().map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),

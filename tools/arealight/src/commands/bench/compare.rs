@@ -1,10 +1,9 @@
 //! `arealight bench compare`
 
-use crate::budget::read_profile;
 use crate::failure::Failure;
 use crate::output::print;
-use arealight_benches::ladder::compare;
-use std::path::PathBuf;
+use arealight_benches::ladder::{Ladder, compare};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Compare two runs of `arealight bench --save`.
@@ -20,7 +19,15 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
-    let found = compare(&read_profile(&arguments.first)?, &read_profile(&arguments.second)?);
+    let found = compare(&read(&arguments.first)?, &read(&arguments.second)?);
     print(&found.to_text())?;
     Ok(if found.apart.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Reads what `arealight bench --save FILE` wrote.
+fn read(path: &Path) -> Result<Ladder, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::input(path, error))?;
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::input(path, format!("{error}; write one with `arealight bench --save {}`", path.display()))
+    })
 }

@@ -9,11 +9,9 @@ use arealight_benches::sections::Markers;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Measure what many lights cost: a floor under 10 to 10,000 lamps, shaded with all of them, by tiles and by
-/// clusters of a host's own.
+/// Measure what many lights cost: a floor under 10 to 10,000 lamps, shaded with all of them and by tiles.
 ///
-/// Tiles cull a stated fraction of a pixel's radiance; clusters get the lights that may reflect more than a
-/// stated fraction of the picture's mean into them. Errors are against the picture with all lights.
+/// Tiles cull a stated fraction of a pixel's radiance. Errors are against the picture with all lights.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// How many lamps there are.

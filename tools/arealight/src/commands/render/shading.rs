@@ -7,7 +7,6 @@ use crate::progress;
 use crate::shadows::Shadows;
 use arealight::plan::{Output, ShadeOptions, ShadowHistory, TileOptions};
 use arealight::{Effects, Quality};
-use arealight_benches::budget::ProfileLevel;
 use arealight_engine::{Engine, EngineError, Reference, SceneRenderer, TileCounts};
 use arealight_scene::{Camera, Scene, SceneBuffers};
 use glam::Vec3;
@@ -18,7 +17,6 @@ use std::time::Duration;
 pub struct Outcome {
     pub visibility: Option<Duration>,
     pub shading: Option<Duration>,
-    pub picked: Option<ProfileLevel>,
     pub tiles: Option<TileCounts>,
     pub picture: Picture,
     /// The exposure that the picture has.
@@ -30,7 +28,7 @@ impl Outcome {
     fn begin([width, height]: [u32; 2]) -> Self {
         let picture = Picture { width, height, pixels: vec![] };
         let none = Some(Duration::ZERO);
-        Self { visibility: none, shading: none, picked: None, tiles: None, picture, stops: 0.0 }
+        Self { visibility: none, shading: none, tiles: None, picture, stops: 0.0 }
     }
 
     /// Adds the rows of a band below those that are there.
