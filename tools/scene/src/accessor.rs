@@ -1,11 +1,12 @@
 //! Typed arrays out of buffers. Every range is checked; a sparse accessor's values are put in place.
 
-use crate::SceneError;
 use crate::document::{Document, slice};
+use crate::error::SceneError;
+use crate::scene::MAX_TRIANGLES;
 use gltf::json::accessor::{ComponentType, Type};
 
 /// The most elements an accessor may have: the corners of as many triangles as a scene may have.
-pub(crate) const MAX_ELEMENTS: u64 = 3 * crate::scene::MAX_TRIANGLES as u64;
+pub(crate) const MAX_ELEMENTS: u64 = 3 * MAX_TRIANGLES as u64;
 
 /// An accessor's elements, tightly packed.
 struct Elements {

@@ -1,7 +1,9 @@
 //! `EXT_lights_area`: rectangles and disks that hang on nodes and have no visible geometry.
 
-use crate::SceneError;
-use crate::load::Loader;
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::extensions::AREA_LIGHTS;
+use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
@@ -58,12 +60,15 @@ fn one() -> f64 {
     1.0
 }
 
-const NAME: &str = "EXT_lights_area";
-
-/// Adds the area lights of the nodes.
-pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), SceneError> {
-    let lights = node_lights::referenced(&loader.document, NAME, nodes, |node| node.area_light.as_ref())?;
-    for (node, place, light) in lights {
+/// The area lights of the nodes.
+pub(crate) fn lights(
+    document: &Document,
+    nodes: &[PlacedNode],
+    messages: &mut Messages,
+) -> Result<Vec<Light>, SceneError> {
+    let said = node_lights::referenced(document, AREA_LIGHTS, nodes, |node| node.area_light.as_ref())?;
+    let mut lights = Vec::new();
+    for (node, place, light) in said {
         let light: &AreaLight = &light;
         let name = node_lights::name(node, light.name.as_ref(), "area light", place);
         let shape = match light.shape.as_str() {
@@ -77,11 +82,11 @@ pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode]) -> Result<(), Scene
             light.validate().map(|()| light).map_err(|fault| fault.to_string())
         });
         match made {
-            Ok(light) => loader.scene.lights.push(light),
-            Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),
+            Ok(light) => lights.push(light),
+            Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }
-    Ok(())
+    Ok(lights)
 }
 
 /// A node's scale as the extension has it, with unit vectors to the light's right, up and front:

@@ -1,6 +1,6 @@
 //! Cameras: pinholes, and orthographic ones.
 
-use crate::{Bounds, MAX_COORDINATE};
+use crate::bounds::{Bounds, MAX_COORDINATE};
 use arealight_tool_kernels::gpu::VisibilityConstants;
 use glam::{DVec3, Vec3};
 

@@ -1,6 +1,7 @@
 //! Closed meshes: what has an inside, which nobody sees.
 
-use crate::{Bounds, weld};
+use crate::bounds::Bounds;
+use crate::weld;
 use glam::DVec3;
 use std::collections::HashMap;
 

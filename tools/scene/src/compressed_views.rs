@@ -1,19 +1,15 @@
 //! `EXT_meshopt_compression`, and `KHR_meshopt_compression`: buffer views whose data are there compressed
 //! alone become as if they had been stored plainly.
 
-use crate::SceneError;
 use crate::document::Document;
+use crate::error::SceneError;
+use crate::extensions;
 use bytemuck::{cast_slice, cast_slice_mut};
-use gltf::json;
 use meshopt::{
     decode_filter_color, decode_filter_exp, decode_filter_oct, decode_filter_quat, decode_index_buffer,
     decode_index_sequence, decode_vertex_buffer,
 };
 use serde::Deserialize;
-use serde_json::Value;
-
-/// The extensions' names: the second has all that the first has.
-pub(crate) const NAMES: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 
 /// What a file's views may be together, in bytes.
 const MOST_BYTES: u64 = 1 << 31;
@@ -56,25 +52,12 @@ enum Filter {
     Color,
 }
 
-/// What the extension of either name says.
-fn said(others: &serde_json::Map<String, Value>) -> Option<(&str, &Value)> {
-    let (name, said) = others.iter().find(|(name, _)| NAMES.contains(&name.as_str()))?;
-    Some((name, said))
-}
-
-/// Whether a buffer without data stands for those that are there compressed.
-pub(crate) fn is_fallback(buffer: &json::Buffer) -> bool {
-    let extensions = buffer.extensions.as_ref();
-    let said = extensions.and_then(|extensions| said(&extensions.others));
-    said.is_some_and(|(_, said)| said["fallback"] == true)
-}
-
 /// Decodes the views of buffers without data.
 pub(crate) fn decompress(document: &mut Document) -> Result<(), SceneError> {
     let mut budget = MOST_BYTES;
     for index in 0..document.root.buffer_views.len() {
         let view = &document.root.buffer_views[index];
-        let extension = view.extensions.as_ref().and_then(|extensions| said(&extensions.others));
+        let extension = view.extensions.as_ref().and_then(|others| extensions::meshopt(&others.others));
         let Some((name, said)) = extension.filter(|_| !document.has_data(view)) else { continue };
         let field = format!("bufferViews[{index}].extensions.{name}");
         let said = Compressed::deserialize(said).map_err(|e| document.invalid(&field, e.to_string()))?;

@@ -1,6 +1,7 @@
 //! The file as glTF has it: container, JSON, buffers. Nothing here trusts the file.
 
-use crate::{SceneError, compressed_views, draco, extensions};
+use crate::error::SceneError;
+use crate::extensions;
 use gltf::json;
 use std::path::{Component, Path, PathBuf};
 
@@ -43,8 +44,6 @@ impl Document {
         let buffers = document.root.buffers.iter().enumerate();
         document.buffers =
             buffers.map(|(i, b)| document.read_buffer(i, b, blob)).collect::<Result<Vec<_>, _>>()?;
-        compressed_views::decompress(&mut document)?;
-        draco::decompress(&mut document)?;
         Ok(document)
     }
 
@@ -79,7 +78,7 @@ impl Document {
         (view.buffer, view.byte_offset) = (buffer, None);
     }
 
-    /// Whether a view is of a buffer that is not [compressed alone](compressed_views::is_fallback).
+    /// Whether a view is of a buffer that is not [compressed alone](extensions::is_fallback).
     pub fn has_data(&self, view: &json::buffer::View) -> bool {
         self.buffers.get(view.buffer.value()).is_some_and(|buffer| !buffer.is_empty())
     }
@@ -177,7 +176,7 @@ impl Document {
         let required = std::mem::take(&mut self.root.extensions_required);
         extensions::check_required(&self.file, &required)?;
         self.root.extensions_used.extend(required);
-        extensions::check_fallbacks(self)
+        extensions::check_fallbacks(&self.file, &mut self.root)
     }
 
     fn check_fields(&self) -> Result<(), SceneError> {
@@ -218,7 +217,7 @@ impl Document {
         let mut bytes = match (&buffer.uri, blob) {
             (Some(uri), _) => self.resource(&field, uri)?,
             (None, Some(blob)) if index == 0 => blob.to_vec(),
-            _ if compressed_views::is_fallback(buffer) => return Ok(Vec::new()),
+            _ if extensions::is_fallback(buffer) => return Ok(Vec::new()),
             _ => return Err(self.invalid(field, "has neither a URI nor a binary chunk")),
         };
         let expected = buffer.byte_length.0;

@@ -1,17 +1,16 @@
 //! `KHR_draco_mesh_compression`: primitives whose data are there in Draco's form alone become as if they had
 //! been stored plainly.
 
+use crate::accessor;
 use crate::document::Document;
+use crate::error::SceneError;
+use crate::extensions::DRACO;
 use crate::scene::MAX_TRIANGLES;
-use crate::{SceneError, accessor};
 use draco_core::{DecodeLimits, DecoderBuffer, Mesh, MeshDecoder};
 use gltf::json;
 use gltf::json::accessor::ComponentType;
 use gltf::json::validation::Checked::Valid;
 use serde_json::json;
-
-/// The extension's name.
-pub(crate) const NAME: &str = "KHR_draco_mesh_compression";
 
 /// What the primitives of a file may be together.
 struct Budget {
@@ -41,7 +40,7 @@ fn compressed<'a>(
     document: &Document,
     primitive: &'a json::mesh::Primitive,
 ) -> Option<&'a serde_json::Value> {
-    let extension = primitive.extensions.as_ref()?.others.get(NAME)?;
+    let extension = primitive.extensions.as_ref()?.others.get(DRACO)?;
     let is_empty = |index: usize| {
         let accessor = document.root.accessors.get(index);
         accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
@@ -58,7 +57,7 @@ fn plain(
     field: &str,
     budget: &mut Budget,
 ) -> Result<json::mesh::Primitive, SceneError> {
-    let field = format!("{field}.extensions.{NAME}");
+    let field = format!("{field}.extensions.{DRACO}");
     let number = |value: &serde_json::Value| value.as_u64().and_then(|number| u32::try_from(number).ok());
     let view = number(&extension["bufferView"]);
     let view = view.ok_or_else(|| document.invalid(&field, "has no bufferView"))?;

@@ -1,6 +1,6 @@
 //! The scan that says which effects a scene needs.
 
-use crate::{Scene, SceneMaterial};
+use crate::scene::{Scene, SceneMaterial};
 use arealight::Effects;
 use arealight_oracle::material::Material;
 use glam::Vec3;

@@ -1,21 +1,28 @@
 //! Extensions: which are read, which cost looks where they are not, and which leave nothing to show.
 
-use crate::document::Document;
-use crate::load::Loader;
-use crate::{SceneError, compressed_views};
+use crate::error::SceneError;
+use crate::messages::Messages;
 use gltf::json;
+use serde_json::{Map, Value};
 use std::collections::BTreeSet;
+
+/// Compressed buffer views: the second has all that the first has.
+pub(crate) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
+pub(crate) const AREA_LIGHTS: &str = "EXT_lights_area";
+pub(crate) const DRACO: &str = "KHR_draco_mesh_compression";
+pub(crate) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+pub(crate) const PUNCTUAL_LIGHTS: &str = "KHR_lights_punctual";
 
 /// What is read; part of a [`KHR_materials`](COSTS_LOOKS) extension may be left out, which is said where a
 /// material has it.
 const READ: [&str; 20] = [
-    "EXT_lights_area",
-    "EXT_mesh_gpu_instancing",
-    compressed_views::NAMES[0],
-    compressed_views::NAMES[1],
-    "EXT_texture_webp",
-    crate::draco::NAME,
-    crate::punctual::NAME,
+    AREA_LIGHTS,
+    INSTANCING,
+    MESHOPT[0],
+    MESHOPT[1],
+    WEBP,
+    DRACO,
+    PUNCTUAL_LIGHTS,
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
@@ -59,12 +66,10 @@ pub(crate) fn check_required(file: &str, required: &[String]) -> Result<(), Scen
 
 /// Makes textures that are WebP alone refer to that image, and refuses data that are only in an extension
 /// that is not read.
-pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError> {
-    let file = document.file.clone();
+pub(crate) fn check_fallbacks(file: &str, root: &mut json::Root) -> Result<(), SceneError> {
     let refused = |field: String, name: &str| {
-        Err(SceneError::OnlyInExtension { file: file.clone(), field, extension: name.to_owned() })
+        Err(SceneError::OnlyInExtension { file: file.to_owned(), field, extension: name.to_owned() })
     };
-    let root = &mut document.root;
     for (t, texture) in root.textures.iter_mut().enumerate() {
         if texture.source.value() != NO_IMAGE {
             continue;
@@ -85,8 +90,7 @@ pub(crate) fn check_fallbacks(document: &mut Document) -> Result<(), SceneError>
 const NO_IMAGE: usize = u32::MAX as usize;
 
 /// Warns once of each extension that is not read. A material's are said where it is used.
-pub(crate) fn warn_of_unread(loader: &mut Loader) {
-    let root = &loader.document.root;
+pub(crate) fn warn_of_unread(root: &json::Root, messages: &mut Messages) {
     let mut names: BTreeSet<&String> = root.extensions_used.iter().collect();
     names.extend(root.extensions.iter().flat_map(|extensions| extensions.others.keys()));
     let nodes = root.nodes.iter().flat_map(|node| &node.extensions);
@@ -95,10 +99,8 @@ pub(crate) fn warn_of_unread(loader: &mut Loader) {
         let of_materials = name.starts_with(MATERIALS) && name.as_str() != "KHR_materials_variants";
         !of_materials && !READ.contains(&name.as_str())
     };
-    let unread: Vec<String> = names.iter().filter(is_unread).map(|name| (*name).clone()).collect();
-    for name in unread {
-        let text = loss(&name);
-        loader.warn(name, text);
+    for name in names.iter().filter(is_unread) {
+        messages.warn(name.as_str(), loss(name));
     }
 }
 
@@ -112,4 +114,16 @@ fn loss(name: &str) -> &'static str {
         }
         _ => "is not supported: ignored",
     }
+}
+
+/// The name under which an element says something of compressed buffer views, and what.
+pub(crate) fn meshopt(others: &Map<String, Value>) -> Option<(&str, &Value)> {
+    let (name, said) = others.iter().find(|(name, _)| MESHOPT.contains(&name.as_str()))?;
+    Some((name, said))
+}
+
+/// Whether a buffer without data stands for those that are there compressed.
+pub(crate) fn is_fallback(buffer: &json::Buffer) -> bool {
+    let said = buffer.extensions.as_ref().and_then(|extensions| meshopt(&extensions.others));
+    said.is_some_and(|(_, said)| said["fallback"] == true)
 }

@@ -1,6 +1,7 @@
 //! A scene as the visibility kernel reads it.
 
-use crate::{Camera, Scene, SceneMaterial, Texture, Triangle, Wrap};
+use crate::camera::Camera;
+use crate::scene::{Scene, SceneMaterial, Texture, Triangle, Wrap};
 use arealight::gpu::GpuBvhNode;
 use arealight::{BlockerError, Blockers};
 use arealight_oracle::thin_film::ThinFilm;

@@ -1,7 +1,8 @@
 //! Textures and their images.
 
-use crate::load::Loader;
-use crate::{Image, SceneError, Texture, Wrap};
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::scene::{Image, Texture, Wrap};
 use glam::{DVec2, DVec3};
 use gltf::json;
 use gltf::json::texture::WrappingMode;
@@ -14,23 +15,67 @@ const MAX_SIDE: u32 = 16384;
 /// The most texels a scene's images may have in all: one gibibyte on the GPU.
 const MAX_TEXELS: u64 = 1 << 28;
 
-/// The scene's index of the file's texture `index`, read as sRGB or as it is.
-pub(crate) fn resolve(loader: &mut Loader, index: usize, srgb: bool) -> Result<u32, SceneError> {
-    let root = &loader.document.root;
-    let texture = root.textures.get(index);
-    let texture =
-        texture.ok_or_else(|| loader.document.invalid(format!("textures[{index}]"), "does not exist"))?;
-    let sampler = texture.sampler.and_then(|s| root.samplers.get(s.value()));
-    let [wrap_u, wrap_v] = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]);
-    let image = decoded(loader, texture.source.value())?;
-    let texture = Texture { image, srgb, wrap_u, wrap_v };
-    // Materials often share a texture
-    let textures = &mut loader.scene.textures;
-    let known = textures.iter().position(|t| *t == texture);
-    Ok(known.unwrap_or_else(|| {
-        textures.push(texture);
-        textures.len() - 1
-    }) as u32)
+/// A scene's textures, and the images that they are of.
+#[derive(Default)]
+pub(crate) struct Textures {
+    /// [`crate::Scene::textures`].
+    pub textures: Vec<Texture>,
+    /// [`crate::Scene::images`].
+    pub images: Vec<Image>,
+}
+
+impl Textures {
+    /// A texture, and the image that it reads.
+    pub fn get(&self, texture: u32) -> (&Image, Texture) {
+        let texture = self.textures[texture as usize];
+        (&self.images[texture.image as usize], texture)
+    }
+}
+
+/// Reads those of a file's textures that are used.
+pub(crate) struct TextureReader<'a> {
+    document: &'a Document,
+    /// Those read so far.
+    pub read: Textures,
+    /// The scene's index of each of the file's images that has been used.
+    images: Vec<Option<u32>>,
+}
+
+impl<'a> TextureReader<'a> {
+    pub fn new(document: &'a Document) -> Self {
+        Self { document, read: Textures::default(), images: vec![None; document.root.images.len()] }
+    }
+
+    /// The scene's index of the file's texture `index`, read as sRGB or as it is.
+    pub fn texture(&mut self, index: usize, srgb: bool) -> Result<u32, SceneError> {
+        let root = &self.document.root;
+        let texture = root.textures.get(index);
+        let missing = || self.document.invalid(format!("textures[{index}]"), "does not exist");
+        let texture = texture.ok_or_else(missing)?;
+        let sampler = texture.sampler.and_then(|s| root.samplers.get(s.value()));
+        let [wrap_u, wrap_v] = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]);
+        let image = self.image(texture.source.value())?;
+        let texture = Texture { image, srgb, wrap_u, wrap_v };
+        // Materials often share a texture
+        let textures = &mut self.read.textures;
+        let known = textures.iter().position(|t| *t == texture);
+        Ok(known.unwrap_or_else(|| {
+            textures.push(texture);
+            textures.len() - 1
+        }) as u32)
+    }
+
+    /// The scene's index of the file's image `index`; decoded the first time.
+    fn image(&mut self, index: usize) -> Result<u32, SceneError> {
+        if let Some(Some(known)) = self.images.get(index) {
+            return Ok(*known);
+        }
+        let others = self.read.images.iter().map(|image| image.texels.len() as u64).sum();
+        self.read.images.push(decode(self.document, index, others)?);
+        let known = self.read.images.len() as u32 - 1;
+        self.images[index] = Some(known);
+        Ok(known)
+    }
 }
 
 fn wrap(mode: json::validation::Checked<WrappingMode>) -> Wrap {
@@ -41,15 +86,11 @@ fn wrap(mode: json::validation::Checked<WrappingMode>) -> Wrap {
     }
 }
 
-/// The scene's index of the file's image `index`; decoded the first time.
-fn decoded(loader: &mut Loader, index: usize) -> Result<u32, SceneError> {
+/// The file's image `index`, where a scene has `others` texels already.
+fn decode(document: &Document, index: usize, others: u64) -> Result<Image, SceneError> {
     let field = format!("images[{index}]");
-    let document = &loader.document;
     let entry = document.root.images.get(index);
     let entry = entry.ok_or_else(|| document.invalid(&field, "does not exist"))?;
-    if let Some(known) = loader.images[index] {
-        return Ok(known);
-    }
     // Find the encoded bytes
     let bytes = match (&entry.uri, entry.buffer_view) {
         (Some(uri), _) => document.resource(&field, uri)?,
@@ -71,22 +112,17 @@ fn decoded(loader: &mut Loader, index: usize) -> Result<u32, SceneError> {
     let decoder = reader.into_decoder().map_err(failed)?;
     // Refuse more than a scene may have by what the header says, before memory is taken
     let (width, height) = decoder.dimensions();
-    let others: u64 = loader.scene.images.iter().map(|image| image.texels.len() as u64).sum();
     let total = others + u64::from(width) * u64::from(height);
     if total > MAX_TEXELS {
         return Err(document.too_large("texels of all images", total, MAX_TEXELS));
     }
     let pixels = DynamicImage::from_decoder(decoder).map_err(failed)?.into_rgba8();
-    let image = Image {
+    Ok(Image {
         name: entry.name.clone().unwrap_or(field),
         width: pixels.width(),
         height: pixels.height(),
         texels: pixels.pixels().map(|p| u32::from_le_bytes(p.0)).collect(),
-    };
-    let known = loader.scene.images.len() as u32;
-    loader.scene.images.push(image);
-    loader.images[index] = Some(known);
-    Ok(known)
+    })
 }
 
 /// The mean of an sRGB image's linear colours.

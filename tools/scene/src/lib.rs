@@ -33,7 +33,9 @@
 
 mod accessor;
 mod area_lights;
+mod attributes;
 mod borders;
+mod bounds;
 mod camera;
 mod closed;
 mod compressed_views;
@@ -45,15 +47,16 @@ mod error;
 mod extensions;
 mod gpu;
 mod images;
-mod instancing;
 mod light_textures;
 mod lit_texels;
 mod load;
 mod materials;
 mod meshes;
+mod messages;
 mod node_lights;
 mod nodes;
 mod outlines;
+mod primitives;
 mod punctual;
 pub mod rays;
 mod scene;
@@ -63,19 +66,21 @@ mod skins;
 mod small_parts;
 mod studio;
 mod tangents;
+mod transforms;
 mod uv_map;
 mod uv_mapping;
 mod weld;
 
 pub use area_lights::LUMENS_PER_WATT;
+pub use bounds::{Bounds, MAX_COORDINATE};
 pub use camera::Camera;
 pub use effects::{RequiredEffect, required_effects};
 pub use error::SceneError;
 pub use gpu::{BufferError, Hit, SceneBuffers};
-pub use light_textures::{
-    LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES, MAX_REPEATS, SceneLightTexture,
-};
+pub use light_textures::{LightTextureSource, MAX_LIGHT_TEXELS, MAX_LIGHT_TEXTURES};
+pub use load::LoadOptions;
+pub use messages::Warning;
 pub use scene::{
-    Bounds, Image, LoadOptions, MAX_COORDINATE, MAX_TRIANGLES, Scene, SceneLamp, SceneMaterial, Texture,
-    Triangle, Warning, Wrap,
+    Image, MAX_TRIANGLES, Scene, SceneLamp, SceneLightTexture, SceneMaterial, Texture, Triangle, Wrap,
 };
+pub use shown::MAX_REPEATS;

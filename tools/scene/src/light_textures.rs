@@ -7,11 +7,11 @@
 //! Only an image that is cut into many pieces (a bent screen, say) is loaded whole, where a layer for each
 //! would be many times its size.
 
-use crate::images::halved;
-use crate::load::Loader;
-use crate::shown::{Images, Key, Rectangle, Shown};
+use crate::images::{Textures, halved};
+use crate::messages::Messages;
+use crate::scene::{Scene, SceneLightTexture, Texture};
+use crate::shown::{Images, Key, Rectangle, Shown, TexturedLight};
 use crate::small_parts;
-use crate::{Scene, Texture};
 use arealight::pyramid::PyramidSize;
 use arealight::{Light, LightShape, LightTexture, TexturePart};
 use glam::DVec2;
@@ -25,26 +25,9 @@ pub const MAX_LIGHT_TEXTURES: usize = 256;
 /// each.
 pub const MAX_LIGHT_TEXELS: u64 = 1 << 26;
 
-/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean
-/// colour. At 1024 texels a layer, sixteen are left for each repeat.
-pub const MAX_REPEATS: f64 = 64.0;
-
 /// An image that is shown in more pieces than these, whose areas add up to at least half of it, is loaded
 /// whole.
 const FEW_PIECES: usize = 4;
-
-/// A layer of the light textures: a rectangle of a texture.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SceneLightTexture {
-    /// Index into [`Scene::textures`]. Its image is within the limits of [`TexturePart`]; a larger one has
-    /// been scaled down.
-    pub texture: u32,
-    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1],
-    /// where the texture's wrap modes say what there is.
-    pub low: DVec2,
-    /// Width and height, in the texture's coordinates; both are positive.
-    pub size: DVec2,
-}
 
 /// What there is to load into a layer of the light textures.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,47 +86,31 @@ impl Scene {
     }
 }
 
-/// A textured light, while the scene is read.
-pub(crate) struct TexturedLight {
-    /// Which light: an index into [`Scene::lights`].
-    pub owner: usize,
-    /// Which surface it is a part of: the first light of that.
-    pub surface: usize,
-    /// Index into [`Scene::textures`].
-    pub texture: u32,
-    /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's
-    /// first.
-    pub uvs: Vec<DVec2>,
-}
-
-/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot
-/// be seen, nor, in small images, a thousandth of the image.
-pub(crate) fn tolerance(scene: &Scene, texture: u32) -> DVec2 {
-    let image = &scene.images[scene.textures[texture as usize].image as usize];
-    (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))
-}
-
-/// Gives the textured lights their layers; those that show one colour get that, or black.
-pub(crate) fn assign(loader: &mut Loader) {
-    let textured = std::mem::take(&mut loader.textured);
-    let scene = &mut loader.scene;
+/// Gives the textured lights their layers, which it returns; those that show one colour get that, or black.
+pub(crate) fn assign(
+    textured: &[TexturedLight],
+    lights: &mut [Light],
+    textures: &mut Textures,
+    messages: &mut Messages,
+) -> Vec<SceneLightTexture> {
     // Find out what each shows
     let mut images = Images::default();
-    let mut shown: Vec<Shown> = textured.iter().map(|light| images.shown(scene, light)).collect();
-    let simplified = small_parts::simplify(scene, &textured, &mut shown);
+    let mut shown: Vec<Shown> = textured.iter().map(|light| images.shown(textures, light)).collect();
+    let simplified = small_parts::simplify(lights, textures, textured, &mut shown);
     let mut layers = Layers { whole: shown_in_many_pieces(&shown), ..Layers::default() };
     let mut losses: Vec<(&str, Vec<usize>)> = Vec::new();
     for (TexturedLight { owner, .. }, shown) in textured.iter().zip(shown) {
         // Show it, or else its colour
+        let light = &mut lights[*owner];
         let (color, loss) = match shown {
             Shown::Color(color) => (color, None),
             Shown::Lost(color, loss) => (color, Some(loss)),
-            Shown::Rectangle(rectangle) => match layers.show_to(scene, *owner, &rectangle) {
+            Shown::Rectangle(rectangle) => match layers.show_to(light, &rectangle) {
                 Ok(()) => continue,
-                Err(loss) => (rectangle.mean(scene), Some(loss)),
+                Err(loss) => (rectangle.mean(textures), Some(loss)),
             },
         };
-        scene.lights[*owner].radiance *= color.as_vec3();
+        light.radiance *= color.as_vec3();
         if let Some(loss) = loss {
             match losses.iter_mut().find(|(known, _)| *known == loss) {
                 Some((_, owners)) => owners.push(*owner),
@@ -151,22 +118,23 @@ pub(crate) fn assign(loader: &mut Loader) {
             }
         }
     }
-    scene.light_textures = layers.made;
-    scale_down(scene);
-    for small in simplified {
-        warn_of(loader, &small, "small, one of many parts of its surface: its mean colour is everywhere");
+    scale_down(&mut layers.made, textures);
+    for owners in simplified {
+        let text = "small, one of many parts of its surface: its mean colour is everywhere";
+        warn_of(lights, &owners, text, messages);
     }
-    for (loss, lights) in losses {
-        warn_of(loader, &lights, &format!("{loss}: its mean colour is everywhere"));
+    for (loss, owners) in losses {
+        warn_of(lights, &owners, &format!("{loss}: its mean colour is everywhere"), messages);
     }
+    layers.made
 }
 
-/// Warns once of all `lights`, if there are any.
-fn warn_of(loader: &mut Loader, lights: &[usize], text: &str) {
-    let Some(first) = lights.first() else { return };
-    let name = &loader.scene.lights[*first].name;
-    let more = if lights.len() > 1 { format!(" and {} more", lights.len() - 1) } else { String::new() };
-    loader.warn(format!("light '{name}'{more}"), format!("emissiveTexture: {text}"));
+/// Warns once of all `owners`, if there are any.
+fn warn_of(lights: &[Light], owners: &[usize], text: &str, messages: &mut Messages) {
+    let Some(first) = owners.first() else { return };
+    let name = &lights[*first].name;
+    let more = if owners.len() > 1 { format!(" and {} more", owners.len() - 1) } else { String::new() };
+    messages.warn(format!("light '{name}'{more}"), format!("emissiveTexture: {text}"));
 }
 
 /// Textures of which there are more pieces than a few that make up at least half of it.
@@ -182,12 +150,12 @@ fn shown_in_many_pieces(shown: &[Shown]) -> HashSet<u32> {
 
 /// Gives layers whose image is larger than a device loads ([`TexturePart`] has the limits) an image of fewer
 /// texels.
-fn scale_down(scene: &mut Scene) {
+fn scale_down(layers: &mut [SceneLightTexture], textures: &mut Textures) {
     // By texture and how often it is halved
     let mut known: HashMap<(u32, u32), u32> = HashMap::new();
-    for layer in 0..scene.light_textures.len() {
-        let Some(source) = scene.light_texture_source(layer) else { continue };
-        let (sides, size) = ([source.width, source.height], source.part.size.to_array());
+    for layer in layers {
+        let (image, _) = textures.get(layer.texture);
+        let (sides, size) = ([image.width, image.height], layer.size.to_array());
         let loads = |halvings: u32| {
             sides.iter().zip(size).all(|(side, size)| {
                 let side = (side >> halvings).max(1);
@@ -199,16 +167,15 @@ fn scale_down(scene: &mut Scene) {
         if halvings == 0 {
             continue;
         }
-        let whole = scene.light_textures[layer].texture;
-        scene.light_textures[layer].texture = *known.entry((whole, halvings)).or_insert_with(|| {
-            let texture = scene.textures[whole as usize];
-            let mut image = halved(&scene.images[texture.image as usize], texture.srgb);
+        layer.texture = *known.entry((layer.texture, halvings)).or_insert_with(|| {
+            let (image, texture) = textures.get(layer.texture);
+            let mut smaller = halved(image, texture.srgb);
             for _ in 1..halvings {
-                image = halved(&image, texture.srgb);
+                smaller = halved(&smaller, texture.srgb);
             }
-            scene.images.push(image);
-            scene.textures.push(Texture { image: scene.images.len() as u32 - 1, ..texture });
-            scene.textures.len() as u32 - 1
+            textures.images.push(smaller);
+            textures.textures.push(Texture { image: textures.images.len() as u32 - 1, ..texture });
+            textures.textures.len() as u32 - 1
         });
     }
 }
@@ -224,18 +191,11 @@ struct Layers {
 
 impl Layers {
     /// Gives a light the texture that shows `rectangle`, or says why there is none.
-    fn show_to(
-        &mut self,
-        scene: &mut Scene,
-        owner: usize,
-        rectangle: &Rectangle,
-    ) -> Result<(), &'static str> {
-        let light = &scene.lights[owner];
-        let texture = match light.shape {
+    fn show_to(&mut self, light: &mut Light, rectangle: &Rectangle) -> Result<(), &'static str> {
+        light.texture = Some(match light.shape {
             LightShape::Disk { .. } => self.show_upright(rectangle)?,
             _ => self.show(rectangle, light)?,
-        };
-        scene.lights[owner].texture = Some(texture);
+        });
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Which parts of an image are black.
 
-use crate::Image;
+use crate::scene::Image;
 use glam::DVec2;
 
 /// Counts texels that are not black, in any rectangle at once: sums over all texels above and to the left.

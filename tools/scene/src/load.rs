@@ -1,120 +1,125 @@
-//! From a document to a scene, step by step.
+//! From a file to a scene, step by step: each takes what earlier ones made, and gives a value.
 
+use crate::bounds::Bounds;
 use crate::document::Document;
-use crate::light_textures::{self, TexturedLight};
-use crate::scene::LoadOptions;
+use crate::emitters::Emitters;
+use crate::error::SceneError;
+use crate::messages::Messages;
+use crate::scene::{NO_LIGHTS, Scene, SceneLamp};
 use crate::{
-    Bounds, Scene, SceneError, Warning, area_lights, emitters, extensions, materials, meshes, nodes,
+    area_lights, compressed_views, draco, extensions, light_textures, materials, meshes, nodes, primitives,
     punctual, skins,
 };
-use glam::Vec3;
 use std::cell::LazyCell;
 use std::path::Path;
 
-/// A scene in the making.
-pub(crate) struct Loader {
-    /// The file.
-    pub document: Document,
-    /// What has been read so far.
-    pub scene: Scene,
-    /// The scene's index of each of the file's materials that has been used; the last is the default one.
-    pub materials: Vec<Option<u32>>,
-    /// The scene's index of each of the file's images that has been used.
-    pub images: Vec<Option<u32>>,
-    /// The lights that a texture shines through, until all are known.
-    pub textured: Vec<TexturedLight>,
-    /// The [`nodes::PlacedNode::number`] whose mesh was last found to stand for a shape, and what it shines
-    /// with.
-    pub shaped: Option<(usize, Vec3)>,
+/// What a file leaves open.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LoadOptions {
+    /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without
+    /// they are left out, with a warning.
+    pub light_size: Option<f64>,
 }
 
-impl Loader {
-    /// Notes what is not shown as the file says.
-    pub fn warn(&mut self, place: impl Into<String>, text: impl Into<String>) {
-        let warning = Warning { place: place.into(), text: text.into() };
-        if !self.scene.warnings.contains(&warning) {
-            self.scene.warnings.push(warning);
-        }
+impl Scene {
+    /// Reads a `.gltf` or `.glb` file, and the buffers and images it refers to by relative paths or data
+    /// URIs. What the scene cannot show as the file says is in [`Scene::warnings`].
+    ///
+    /// # Errors
+    /// [`SceneError`] names the file and the field.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        Self::load_with(path, LoadOptions::default())
     }
 
-    /// Notes what is shown as the file means, though not word for word.
-    pub fn note(&mut self, place: impl Into<String>, text: impl Into<String>) {
-        let note = Warning { place: place.into(), text: text.into() };
-        if !self.scene.notes.contains(&note) {
-            self.scene.notes.push(note);
-        }
+    /// As [`Scene::load`], with what the file leaves open.
+    ///
+    /// # Errors
+    /// As [`Scene::load`].
+    pub fn load_with(path: impl AsRef<Path>, options: LoadOptions) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        read(Document::open(path)?, name.unwrap_or_default(), options)
+    }
+
+    /// Reads a scene from memory. It cannot refer to other files; `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// [`SceneError`] names the field.
+    pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, SceneError> {
+        Self::from_bytes_with(bytes, name, LoadOptions::default())
+    }
+
+    /// As [`Scene::from_bytes`], with what the file leaves open.
+    ///
+    /// # Errors
+    /// As [`Scene::from_bytes`].
+    pub fn from_bytes_with(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Self, SceneError> {
+        read(Document::parse(bytes, name.to_owned(), None)?, name.to_owned(), options)
     }
 }
 
-pub(crate) fn load(path: &Path, options: LoadOptions) -> Result<Scene, SceneError> {
-    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    read(Document::open(path)?, name, options)
-}
-
-pub(crate) fn from_bytes(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Scene, SceneError> {
-    read(Document::parse(bytes, name.to_owned(), None)?, name.to_owned(), options)
-}
-
-fn read(document: Document, name: String, options: LoadOptions) -> Result<Scene, SceneError> {
-    let materials = vec![None; document.root.materials.len() + 1];
-    let images = vec![None; document.root.images.len()];
-    let scene = Scene { name, ..Scene::default() };
-    let mut loader = Loader { document, scene, materials, images, textured: Vec::new(), shaped: None };
-    warn_of_what_is_ignored(&mut loader);
-    // Place the nodes in the world
-    let placed = nodes::place(&mut loader)?;
-    // Give every primitive to the triangles, and to the lights where it emits
-    let mut meshes = meshes::Meshes::new(&loader);
-    let worlds = LazyCell::new(|| nodes::worlds(&placed));
-    for node in &placed {
-        let pose = match node.skin {
-            Some(skin) => skins::pose(&mut loader, &worlds, node, skin)?,
-            None => None,
-        };
-        let primitives = meshes.of_node(&mut loader, node)?;
-        let mut mesh = Vec::with_capacity(primitives.len());
-        for primitive in &*primitives {
-            let material = materials::resolve(&mut loader, primitive)?;
-            mesh.push(meshes::place(&mut loader, (node, pose.as_deref()), primitive, material)?);
-        }
-        emitters::add(&mut loader, node, &mesh);
+fn read(mut document: Document, name: String, options: LoadOptions) -> Result<Scene, SceneError> {
+    compressed_views::decompress(&mut document)?;
+    draco::decompress(&mut document)?;
+    let document = &document;
+    let messages = &mut Messages::default();
+    warn_of_what_is_ignored(document, messages);
+    // Place the nodes in the world, and read what their meshes are and what they are made of
+    let nodes = nodes::place(document, messages)?;
+    let primitives = primitives::read(document, &nodes, messages)?;
+    let of_nodes = nodes.iter().filter_map(|node| node.mesh).flat_map(|mesh| &primitives[mesh]);
+    let mut materials = materials::read(document, of_nodes.map(|one| one.material), messages)?;
+    // Make triangles of every mesh, and lights where it emits
+    let (mut triangles, mut emitters) = (Vec::new(), Emitters::default());
+    let worlds = LazyCell::new(|| nodes::worlds(&nodes));
+    for node in &nodes {
+        let pose = skins::pose(document, || &worlds, node, messages)?;
+        let mesh = node.mesh.map_or(&[][..], |mesh| &primitives[mesh]);
+        let placed = (node, pose.as_deref());
+        let mesh = meshes::place(document, placed, mesh, &materials, &mut triangles, messages)?;
+        emitters.add(node, &mesh, &materials, messages);
     }
-    light_textures::assign(&mut loader);
-    emitters::finish(&mut loader);
+    let light_textures =
+        light_textures::assign(&emitters.textured, &mut emitters.lights, &mut materials.textures, messages);
+    emitters.finish(&mut triangles);
     // Lights and cameras that hang on nodes
-    let shown = loader.scene.lights.len();
-    area_lights::add(&mut loader, &placed)?;
-    loader.scene.bounds = loader.scene.triangles.iter().flat_map(|t| t.positions).collect();
-    punctual::add(&mut loader, &placed, options.light_size)?;
-    let Loader { scene, .. } = &mut loader;
-    emitters::add_bare(scene, shown);
-    if scene.bounds.is_empty() {
-        let lights = scene.lights.iter().flat_map(|light| light.shape.bounds());
-        scene.bounds = lights.collect::<Bounds>();
+    let Emitters { mut lights, mut lamps, .. } = emitters;
+    let shown = lights.len();
+    lights.extend(area_lights::lights(document, &nodes, messages)?);
+    let mut bounds: Bounds = triangles.iter().flat_map(|t| t.positions).collect();
+    lights.extend(punctual::lights(document, &nodes, options.light_size, bounds, messages)?);
+    lamps.extend(SceneLamp::bare(shown..lights.len()));
+    if bounds.is_empty() {
+        bounds = lights.iter().flat_map(|light| light.shape.bounds()).collect();
     }
-    nodes::add_cameras(&mut loader, &placed);
-    warn_of_what_is_missing(&mut loader);
-    Ok(loader.scene)
+    let cameras = nodes::cameras(document, &nodes, messages);
+    if triangles.is_empty() {
+        messages.warn("scene", "has no triangles: there is no surface to light");
+    }
+    if lights.is_empty() {
+        messages.warn("scene", NO_LIGHTS);
+    }
+    let Messages { warnings, notes } = std::mem::take(messages);
+    Ok(Scene {
+        name: nodes::scene_name(&document.root).unwrap_or(name),
+        triangles,
+        materials: materials.list,
+        textures: materials.textures.textures,
+        images: materials.textures.images,
+        lights,
+        lamps,
+        light_textures,
+        cameras,
+        bounds,
+        warnings,
+        notes,
+    })
 }
 
-fn warn_of_what_is_ignored(loader: &mut Loader) {
-    let animations = loader.document.root.animations.len();
+fn warn_of_what_is_ignored(document: &Document, messages: &mut Messages) {
+    let animations = document.root.animations.len();
     if animations > 0 {
-        loader.warn("animations", format!("{animations} ignored; the scene is shown at rest"));
+        messages.warn("animations", format!("{animations} ignored; the scene is shown at rest"));
     }
-    extensions::warn_of_unread(loader);
-}
-
-/// What is said of a scene without lights.
-pub(crate) const NO_LIGHTS: &str = "has no area lights (emissive faces or EXT_lights_area): surfaces are \
-black (--lights studio adds softboxes)";
-
-fn warn_of_what_is_missing(loader: &mut Loader) {
-    let place = "scene";
-    if loader.scene.triangles.is_empty() {
-        loader.warn(place, "has no triangles: there is no surface to light");
-    }
-    if loader.scene.lights.is_empty() {
-        loader.warn(place, NO_LIGHTS);
-    }
+    extensions::warn_of_unread(&document.root, messages);
 }

@@ -1,9 +1,11 @@
 //! Metallic-roughness materials with the extensions that are supported.
 
-use crate::load::Loader;
-use crate::meshes::Primitive;
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::images::{TextureReader, Textures};
+use crate::messages::Messages;
+use crate::scene::SceneMaterial;
 use crate::uv_mapping::Mappings;
-use crate::{SceneError, SceneMaterial, images};
 use arealight_oracle::material::Material;
 use arealight_oracle::thin_film::ThinFilm;
 use glam::Vec3;
@@ -14,74 +16,99 @@ use gltf::json::validation::Checked;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-/// The scene's index of a primitive's material.
-pub(crate) fn resolve(loader: &mut Loader, primitive: &Primitive) -> Result<u32, SceneError> {
-    let slot = primitive.material.unwrap_or(loader.materials.len() - 1);
-    let known = loader.materials.get(slot).copied().flatten();
-    let index = if let Some(index) = known {
-        index
-    } else {
-        let material = read(loader, slot)?;
-        loader.scene.materials.push(material);
-        let index = (loader.scene.materials.len() - 1) as u32;
-        loader.materials[slot] = Some(index);
-        index
-    };
-    let material = &loader.scene.materials[index as usize];
-    let textured = [
-        material.base_color_texture,
-        material.metallic_roughness_texture,
-        material.specular_texture,
-        material.specular_color_texture,
-        material.normal_texture,
-        material.emission_texture,
-        material.coat_texture,
-        material.coat_roughness_texture,
-        material.coat_normal_texture,
-        material.sheen_color_texture,
-        material.sheen_roughness_texture,
-        material.anisotropy_texture,
-        material.film_texture,
-        material.film_thickness_texture,
-        material.transmission_texture,
-        material.transmission_color_texture,
-    ];
-    if !primitive.has_uvs && textured.iter().any(Option::is_some) {
-        let text = format!("has no TEXCOORD_{}: its textures are read at (0, 0)", primitive.uv_set);
-        loader.warn(primitive.field.clone(), text);
-    } else if !primitive.has_tangents && material.anisotropy_strength > 0.0 {
-        let text = "has neither TANGENT nor TEXCOORD_0: its anisotropy has some direction";
-        loader.warn(primitive.field.clone(), text);
-    }
-    Ok(index)
+/// The materials that a scene's surfaces have.
+pub(crate) struct Materials {
+    /// [`crate::Scene::materials`].
+    pub list: Vec<SceneMaterial>,
+    /// What they are textured with.
+    pub textures: Textures,
+    /// The scene's index of each of the file's materials that is used; the last is the default one.
+    of_file: Vec<Option<u32>>,
 }
 
-/// Reads the file's material `slot`, or the default one where there is none.
-fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
-    let source = loader.document.root.materials.get(slot).cloned().unwrap_or_default();
-    let name = match &source.name {
-        Some(name) => name.clone(),
-        None if slot < loader.document.root.materials.len() => format!("#{slot}"),
-        None => "default".into(),
-    };
-    let mut reader = Reader { place: format!("material '{name}'"), loader };
-    reader.warn_of_unknown_extensions(&source);
-    reader.warn_of_mappings(&source);
+impl Materials {
+    /// The scene's index of one of the file's materials that is used.
+    pub fn index(&self, material: Option<usize>) -> u32 {
+        let slot = material.unwrap_or(self.of_file.len() - 1);
+        self.of_file.get(slot).copied().flatten().unwrap_or_default()
+    }
+}
+
+/// Reads those of the file's materials that are used; none stands for the default one.
+pub(crate) fn read(
+    document: &Document,
+    used: impl Iterator<Item = Option<usize>>,
+    messages: &mut Messages,
+) -> Result<Materials, SceneError> {
+    let count = document.root.materials.len();
+    let mut textures = TextureReader::new(document);
+    let mut list = Vec::new();
+    let mut of_file = vec![None; count + 1];
+    for slot in used.map(|material| material.unwrap_or(count)) {
+        if of_file[slot].is_none() {
+            of_file[slot] = Some(list.len() as u32);
+            let source = document.root.materials.get(slot).cloned().unwrap_or_default();
+            let name = match &source.name {
+                Some(name) => name.clone(),
+                None if slot < count => format!("#{slot}"),
+                None => "default".into(),
+            };
+            let place = format!("material '{name}'");
+            let mut reader = Reader { place, document, textures: &mut textures, messages };
+            list.push(read_material(&mut reader, name, &source)?);
+        }
+    }
+    Ok(Materials { list, textures: textures.read, of_file })
+}
+
+impl SceneMaterial {
+    /// Whether it has any texture.
+    pub(crate) fn is_textured(&self) -> bool {
+        let textures = [
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.specular_texture,
+            self.specular_color_texture,
+            self.normal_texture,
+            self.emission_texture,
+            self.coat_texture,
+            self.coat_roughness_texture,
+            self.coat_normal_texture,
+            self.sheen_color_texture,
+            self.sheen_roughness_texture,
+            self.anisotropy_texture,
+            self.film_texture,
+            self.film_thickness_texture,
+            self.transmission_texture,
+            self.transmission_color_texture,
+        ];
+        textures.iter().any(Option::is_some)
+    }
+}
+
+/// A material of the file.
+fn read_material(
+    reader: &mut Reader<'_, '_>,
+    name: String,
+    source: &json::Material,
+) -> Result<SceneMaterial, SceneError> {
+    reader.warn_of_unknown_extensions(source);
+    reader.warn_of_mappings(source);
     // Factors
     let pbr = &source.pbr_metallic_roughness;
     let [r, g, b, alpha] = reader.fractions("baseColorFactor", pbr.base_color_factor.0);
     let [metalness] = reader.fractions("metallicFactor", [pbr.metallic_factor.0]);
     let [roughness] = reader.fractions("roughnessFactor", [pbr.roughness_factor.0]);
-    let specular = specular(&source);
-    let (dielectric_f0, dielectric_f90) = reader.dielectric(&source, &specular);
-    let clearcoat = reader.clearcoat(&source)?;
+    let specular = specular(source);
+    let (dielectric_f0, dielectric_f90) = reader.dielectric(source, &specular);
+    let clearcoat = reader.clearcoat(source)?;
     let [coat] = reader.fractions("clearcoatFactor", [clearcoat.factor]);
     let [coat_roughness] = reader.fractions("clearcoatRoughnessFactor", [clearcoat.roughness_factor]);
-    let sheen = reader.sheen(&source)?;
+    let sheen = reader.sheen(source)?;
     let sheen_color = reader.fractions("sheenColorFactor", sheen.color_factor);
     let [sheen_roughness] = reader.fractions("sheenRoughnessFactor", [sheen.roughness_factor]);
-    let iridescence = reader.iridescence(&source)?;
-    let transmission = reader.diffuse_transmission(&source)?;
+    let iridescence = reader.iridescence(source)?;
+    let transmission = reader.diffuse_transmission(source)?;
     let [transmission_factor] = reader.fractions("diffuseTransmissionFactor", [transmission.factor]);
     let transmission_color = reader.fractions("diffuseTransmissionColorFactor", transmission.color_factor);
     let material = Material {
@@ -98,9 +125,9 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
         transmission: transmission_factor,
         transmission_color: Vec3::from_array(transmission_color),
     };
-    let anisotropy = reader.anisotropy(&source)?;
+    let anisotropy = reader.anisotropy(source)?;
     let [anisotropy_strength] = reader.fractions("anisotropyStrength", [anisotropy.strength]);
-    let emission = reader.emission(&source);
+    let emission = reader.emission(source);
     // Textures
     let base_color_texture = reader.texture(pbr.base_color_texture.as_ref(), true)?;
     let metallic_roughness_texture = reader.texture(pbr.metallic_roughness_texture.as_ref(), false)?;
@@ -159,14 +186,16 @@ fn read(loader: &mut Loader, slot: usize) -> Result<SceneMaterial, SceneError> {
     })
 }
 
-struct Reader<'a> {
+struct Reader<'a, 'd> {
     place: String,
-    loader: &'a mut Loader,
+    document: &'d Document,
+    textures: &'a mut TextureReader<'d>,
+    messages: &'a mut Messages,
 }
 
-impl Reader<'_> {
+impl Reader<'_, '_> {
     fn warn(&mut self, text: impl Into<String>) {
-        self.loader.warn(self.place.clone(), text);
+        self.messages.warn(self.place.as_str(), text);
     }
 
     /// Clamps factors to [0, 1].
@@ -206,7 +235,7 @@ impl Reader<'_> {
         let extension = source.extensions.as_ref().and_then(|e| e.others.get(name));
         let Some(extension) = extension else { return Ok(T::default()) };
         let field = || format!("{}: {name}", self.place);
-        T::deserialize(extension).map_err(|error| self.loader.document.invalid(field(), error.to_string()))
+        T::deserialize(extension).map_err(|error| self.document.invalid(field(), error.to_string()))
     }
 
     /// The coat; nothing of it where its factor is zero.
@@ -277,7 +306,7 @@ impl Reader<'_> {
 
     fn texture(&mut self, info: Option<&json::texture::Info>, srgb: bool) -> Result<Option<u32>, SceneError> {
         let Some(info) = info else { return Ok(None) };
-        images::resolve(self.loader, info.index.value(), srgb).map(Some)
+        self.textures.texture(info.index.value(), srgb).map(Some)
     }
 
     fn normal_texture(
@@ -286,7 +315,7 @@ impl Reader<'_> {
     ) -> Result<(Option<u32>, f32), SceneError> {
         let Some(info) = info else { return Ok((None, 1.0)) };
         let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
-        Ok((Some(images::resolve(self.loader, info.index.value(), false)?), scale))
+        Ok((Some(self.textures.texture(info.index.value(), false)?), scale))
     }
 
     fn warn_of_mappings(&mut self, source: &json::Material) {

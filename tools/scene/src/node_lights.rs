@@ -1,7 +1,7 @@
 //! Lights that a root extension lists and nodes refer to by their place in the list.
 
-use crate::SceneError;
 use crate::document::Document;
+use crate::error::SceneError;
 use crate::nodes::PlacedNode;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;

@@ -1,8 +1,13 @@
 //! The tree of nodes, flattened: who is where in the world.
 
-use crate::load::Loader;
-use crate::{Camera, MAX_COORDINATE, SceneError, instancing, punctual, shape_lights};
-use glam::{DAffine3, DMat4, DQuat, DVec3};
+use crate::bounds::MAX_COORDINATE;
+use crate::camera::Camera;
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::extensions::{AREA_LIGHTS, PUNCTUAL_LIGHTS};
+use crate::messages::Messages;
+use crate::transforms;
+use glam::{DAffine3, DVec3};
 use gltf::json;
 use serde_json::Value;
 use std::collections::HashMap;
@@ -32,9 +37,8 @@ pub(crate) struct PlacedNode {
 }
 
 /// Every node of the file's default scene, parents first.
-pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> {
-    let roots = root_nodes(loader);
-    let document = &loader.document;
+pub(crate) fn place(document: &Document, messages: &mut Messages) -> Result<Vec<PlacedNode>, SceneError> {
+    let roots = root_nodes(&document.root, messages);
     let nodes = &document.root.nodes;
     let mut seen = vec![false; nodes.len()];
     let mut placed = Vec::new();
@@ -49,7 +53,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             return Err(SceneError::NodeTwice { file: document.file.clone(), node: index });
         }
         // Combine its own transform with its parent's
-        let local = local_transform(node).map_err(|p| document.invalid(field(), p))?;
+        let local = transforms::of_node(node).map_err(|p| document.invalid(field(), p))?;
         let world = parent * local;
         let columns = world.to_cols_array();
         if columns.iter().any(|x| x.is_nan() || x.abs() > MAX_COORDINATE) {
@@ -68,11 +72,11 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
             mesh: node.mesh.map(|m| m.value()),
             skin: node.skin.map(|s| s.value()),
             camera: node.camera.map(|c| c.value()),
-            area_light: extension("EXT_lights_area"),
-            punctual_light: extension(punctual::NAME),
-            shape: shape_lights::said(&node.extras),
+            area_light: extension(AREA_LIGHTS),
+            punctual_light: extension(PUNCTUAL_LIGHTS),
+            shape: said_shape(&node.extras),
         };
-        match instancing::instances(document, index, node, placed.len())? {
+        match transforms::of_instances(document, index, node, placed.len())? {
             None => placed.push(once),
             // The node itself is there once, with its camera and its light; its mesh is where the instances
             // are
@@ -99,7 +103,7 @@ pub(crate) fn place(loader: &mut Loader) -> Result<Vec<PlacedNode>, SceneError> 
         stack.extend(children.map(|child| (child.value(), world)));
     }
     if hidden > 0 {
-        loader.note(
+        messages.note(
             "KHR_node_visibility",
             format!("{hidden} hidden nodes, and what is below them, are left out"),
         );
@@ -123,8 +127,7 @@ fn is_hidden(node: &json::Node) -> bool {
 }
 
 /// The default scene's nodes; without one the first scene's, without scenes every node that has no parent.
-fn root_nodes(loader: &mut Loader) -> Vec<usize> {
-    let root = &loader.document.root;
+fn root_nodes(root: &json::Root, messages: &mut Messages) -> Vec<usize> {
     let chosen = root.scene.map_or(0, |scene| scene.value());
     let Some(scene) = root.scenes.get(chosen) else {
         let mut is_child = vec![false; root.nodes.len()];
@@ -132,45 +135,40 @@ fn root_nodes(loader: &mut Loader) -> Vec<usize> {
             is_child[child.value()] = true;
         }
         let parentless = (0..is_child.len()).filter(|i| !is_child[*i]).collect();
-        loader.warn("scenes", "there is none: every node is shown");
+        messages.warn("scenes", "there is none: every node is shown");
         return parentless;
     };
-    let nodes = scene.nodes.iter().map(json::Index::value).collect();
-    if let Some(name) = scene.name.clone().filter(|name| !name.is_empty()) {
-        loader.scene.name = name;
+    if root.scene.is_none() {
+        messages.warn("scene", "there is no default scene: the first is shown");
     }
-    if loader.document.root.scene.is_none() {
-        loader.warn("scene", "there is no default scene: the first is shown");
-    }
-    nodes
+    scene.nodes.iter().map(json::Index::value).collect()
 }
 
-pub(crate) fn local_transform(node: &json::Node) -> Result<DAffine3, String> {
-    if let Some(matrix) = node.matrix {
-        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))));
-    }
-    let scale = node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from)));
-    let translation = node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from)));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
-    let length = rotation.length();
-    if !(length > 1e-6 && length.is_finite()) {
-        return Err(format!("rotation: {:?} is not a quaternion of unit length", rotation.to_array()));
-    }
-    Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
+/// The name of the scene that is shown, if it has one.
+pub(crate) fn scene_name(root: &json::Root) -> Option<String> {
+    let scene = root.scenes.get(root.scene.map_or(0, |scene| scene.value()))?;
+    scene.name.clone().filter(|name| !name.is_empty())
 }
 
-/// Adds the nodes' cameras to the scene.
-pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
+/// The word in a node's `extras`, if there is one.
+fn said_shape(extras: &json::Extras) -> Option<Value> {
+    let extras: Value = serde_json::from_str(extras.as_ref()?.get()).ok()?;
+    extras.get("arealight").cloned()
+}
+
+/// The nodes' cameras.
+pub(crate) fn cameras(document: &Document, nodes: &[PlacedNode], messages: &mut Messages) -> Vec<Camera> {
+    let mut cameras = Vec::new();
     for node in nodes {
-        let Some(camera) = node.camera.and_then(|c| loader.document.root.cameras.get(c)) else { continue };
+        let Some(camera) = node.camera.and_then(|c| document.root.cameras.get(c)) else { continue };
         let name = node.name.clone().or_else(|| camera.name.clone());
-        let name = name.unwrap_or_else(|| format!("camera {}", loader.scene.cameras.len()));
+        let name = name.unwrap_or_else(|| format!("camera {}", cameras.len()));
         let place = format!("camera '{name}'");
         let [x, y, z] = [node.world.matrix3.x_axis, node.world.matrix3.y_axis, node.world.matrix3.z_axis];
         // A camera looks along its node's -Z; where a mirror or shear is in the way, Z and then Y decide
         let forward = (-z).normalize_or_zero();
         if forward == DVec3::ZERO || x.cross(z).length() == 0.0 || forward.cross(y).length() == 0.0 {
-            loader.warn(place, "its node's scale is zero: left out");
+            messages.warn(place, "its node's scale is zero: left out");
             continue;
         }
         let looking = Camera::looking(name, node.world.translation, forward, y);
@@ -182,8 +180,9 @@ pub(crate) fn add_cameras(loader: &mut Loader, nodes: &[PlacedNode]) {
             (None, None) => (None, "it is neither perspective nor orthographic"),
         };
         match made {
-            Some(camera) => loader.scene.cameras.push(camera),
-            None => loader.warn(place, format!("{wrong}: left out")),
+            Some(camera) => cameras.push(camera),
+            None => messages.warn(place, format!("{wrong}: left out")),
         }
     }
+    cameras
 }

@@ -9,8 +9,8 @@
 //! Where a texture is shown, the triangles of a part also agree in how it is mapped: at a seam, or where the
 //! mapping bends, another part begins.
 
-use crate::Bounds;
 use crate::borders::{borders, with_holes};
+use crate::bounds::Bounds;
 use crate::uv_map::{UvMap, UvTolerance};
 use crate::weld;
 use glam::{DVec2, DVec3, Vec2};

@@ -1,9 +1,12 @@
 //! `KHR_lights_punctual`: points, spots and suns, which have no area. Where a size is given they are small
 //! spheres and disks of the same intensity.
 
-use crate::SceneError;
 use crate::area_lights::LUMENS_PER_WATT;
-use crate::load::Loader;
+use crate::bounds::Bounds;
+use crate::document::Document;
+use crate::error::SceneError;
+use crate::extensions::PUNCTUAL_LIGHTS;
+use crate::messages::Messages;
 use crate::node_lights;
 use crate::nodes::PlacedNode;
 use arealight::{Light, LightShape};
@@ -34,8 +37,6 @@ fn one() -> f64 {
     1.0
 }
 
-pub(crate) const NAME: &str = "KHR_lights_punctual";
-
 /// The sun's angular radius, in radians: half of 0.533 degrees.
 const SUN_RADIUS: f64 = 4.65e-3;
 
@@ -43,35 +44,44 @@ const SUN_RADIUS: f64 = 4.65e-3;
 /// to end.
 const SUN_DISTANCE: f64 = 1000.0;
 
-/// Adds the punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius`
-/// says, else `size`, in metres.
-pub(crate) fn add(loader: &mut Loader, nodes: &[PlacedNode], size: Option<f64>) -> Result<(), SceneError> {
-    let lights = node_lights::referenced(&loader.document, NAME, nodes, |node| node.punctual_light.as_ref())?;
-    for (node, place, light) in lights {
+/// The punctual lights of the nodes that have a size: that which the light's `extras.arealight.radius` says,
+/// else `size`, in metres. Suns shine on what is in `bounds`.
+pub(crate) fn lights(
+    document: &Document,
+    nodes: &[PlacedNode],
+    size: Option<f64>,
+    bounds: Bounds,
+    messages: &mut Messages,
+) -> Result<Vec<Light>, SceneError> {
+    let said =
+        node_lights::referenced(document, PUNCTUAL_LIGHTS, nodes, |node| node.punctual_light.as_ref())?;
+    let mut lights = Vec::new();
+    for (node, place, light) in said {
         let light: &PunctualLight = &light;
         let Some(radius) = light.extras["arealight"]["radius"].as_f64().or(size) else {
-            loader.warn(
-                NAME,
+            messages.warn(
+                PUNCTUAL_LIGHTS,
                 "points have no area: lights without a size are left out (--light-size gives them one)",
             );
             continue;
         };
         let name = node_lights::name(node, light.name.as_ref(), "punctual light", place);
-        match make(loader, light, node, radius, &name) {
-            Ok(light) => loader.scene.lights.push(light),
-            Err(problem) => loader.warn(format!("light '{name}'"), format!("{problem}: left out")),
+        match make(light, node, radius, bounds, &name, messages) {
+            Ok(light) => lights.push(light),
+            Err(problem) => messages.warn(format!("light '{name}'"), format!("{problem}: left out")),
         }
     }
-    Ok(())
+    Ok(lights)
 }
 
 /// The light of a radius, or why there is none.
 fn make(
-    loader: &mut Loader,
     light: &PunctualLight,
     node: &PlacedNode,
     radius: f64,
+    bounds: Bounds,
     name: &str,
+    messages: &mut Messages,
 ) -> Result<Light, String> {
     if radius <= 0.0 || !radius.is_finite() {
         return Err(format!("a radius of {radius} m"));
@@ -81,7 +91,7 @@ fn make(
     let of_intensity = 1.0 / (PI * radius * radius);
     let (shape, brightness) = match light.kind.as_str() {
         "point" => {
-            loader.note(NAME, format!("points are spheres with a radius of {radius} m"));
+            messages.note(PUNCTUAL_LIGHTS, format!("points are spheres with a radius of {radius} m"));
             (LightShape::Sphere { center, radius }, of_intensity)
         }
         "spot" => {
@@ -89,15 +99,14 @@ fn make(
                 "spots are disks with a radius of {radius} m, whose light falls off with the cosine and ends \
                 at no cone"
             );
-            loader.warn(NAME, text);
+            messages.warn(PUNCTUAL_LIGHTS, text);
             (disk(center, front(node)?, radius), of_intensity)
         }
         "directional" => {
-            let bounds = loader.scene.bounds;
             if bounds.is_empty() {
                 return Err("a sun over nothing".to_owned());
             }
-            loader.note(NAME, "suns are disks of half a degree, far away");
+            messages.note(PUNCTUAL_LIGHTS, "suns are disks of half a degree, far away");
             let (front, distance) = (front(node)?, SUN_DISTANCE * bounds.diagonal().max(1e-3));
             // What arrives at right angles is L pi sin(a)^2
             let sine = SUN_RADIUS.sin();

@@ -1,26 +1,20 @@
 //! What a scene holds.
 
-use crate::{Camera, SceneError, SceneLightTexture};
+use crate::bounds::Bounds;
+use crate::camera::Camera;
+use crate::messages::Warning;
 use arealight::Light;
 pub use arealight::texture_part::Wrap;
 use arealight_oracle::material::Material;
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 use std::ops::Range;
-use std::path::Path;
 
 /// The most triangles a scene may have; a file beyond is refused.
 pub const MAX_TRIANGLES: usize = 1 << 24;
 
-/// World coordinates beyond are refused: areas of boxes, as `f32`, would be infinite.
-pub const MAX_COORDINATE: f64 = 1e15;
-
-/// What a file leaves open.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LoadOptions {
-    /// The radius of points and spots of `KHR_lights_punctual`, in metres, where the file says none. Without
-    /// they are left out, with a warning.
-    pub light_size: Option<f64>,
-}
+/// What is said of a scene without lights.
+pub(crate) const NO_LIGHTS: &str = "has no area lights (emissive faces or EXT_lights_area): surfaces are \
+black (--lights studio adds softboxes)";
 
 /// A scene, as a renderer needs it.
 #[derive(Debug, Clone, Default)]
@@ -58,6 +52,13 @@ pub struct SceneLamp {
     pub triangles: Range<usize>,
     /// Those of [`Scene::lights`].
     pub lights: Range<usize>,
+}
+
+impl SceneLamp {
+    /// One for each of some lights that nothing looks like.
+    pub(crate) fn bare(lights: Range<usize>) -> impl Iterator<Item = Self> {
+        lights.map(|light| Self { triangles: 0..0, lights: light..light + 1 })
+    }
 }
 
 /// A triangle. Seen from its front the vertices run counter-clockwise, also under mirroring transforms.
@@ -164,6 +165,19 @@ pub struct Texture {
     pub wrap_v: Wrap,
 }
 
+/// A layer of the light textures: a rectangle of a texture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneLightTexture {
+    /// Index into [`Scene::textures`]. Its image is within the limits of [`arealight::TexturePart`]; a larger one has
+    /// been scaled down.
+    pub texture: u32,
+    /// The corner that is (0, 0) in the layer, in the texture's coordinates. It may be outside of [0, 1],
+    /// where the texture's wrap modes say what there is.
+    pub low: DVec2,
+    /// Width and height, in the texture's coordinates; both are positive.
+    pub size: DVec2,
+}
+
 /// A decoded image.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
@@ -177,127 +191,7 @@ pub struct Image {
     pub texels: Vec<u32>,
 }
 
-/// A box along the axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    /// The smallest corner; infinite for an empty box.
-    pub min: DVec3,
-    /// The largest corner; negative infinite for an empty box.
-    pub max: DVec3,
-}
-
-/// Something in the file that is not shown word for word.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Warning {
-    /// The mesh, material, node or extension.
-    pub place: String,
-    /// What it is and what was done.
-    pub text: String,
-}
-
-impl std::fmt::Display for Warning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: {}", self.place, self.text)
-    }
-}
-
-impl Warning {
-    /// One line for each text, with the place where it came first and how many more there are.
-    pub fn grouped(warnings: &[Self]) -> Vec<String> {
-        let mut kinds: Vec<(&Self, usize)> = Vec::new();
-        for warning in warnings {
-            match kinds.iter_mut().find(|(first, _)| first.text == warning.text) {
-                Some((_, count)) => *count += 1,
-                None => kinds.push((warning, 1)),
-            }
-        }
-        let line = |(first, count): (&Self, usize)| match count {
-            1 => first.to_string(),
-            more => format!("{} and {} more: {}", first.place, more - 1, first.text),
-        };
-        kinds.into_iter().map(line).collect()
-    }
-}
-
-impl Default for Bounds {
-    fn default() -> Self {
-        Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
-    }
-}
-
-impl Bounds {
-    /// Grows the box to hold `point`.
-    pub fn add(&mut self, point: DVec3) {
-        self.min = self.min.min(point);
-        self.max = self.max.max(point);
-    }
-
-    /// Whether it holds nothing.
-    pub fn is_empty(&self) -> bool {
-        self.min.x > self.max.x
-    }
-
-    /// The middle; zero for an empty box.
-    pub fn center(&self) -> DVec3 {
-        if self.is_empty() { DVec3::ZERO } else { (self.min + self.max) * 0.5 }
-    }
-
-    /// Its eight corners; infinite for an empty box.
-    pub fn corners(&self) -> [DVec3; 8] {
-        std::array::from_fn(|i| {
-            let high = |bit: usize| i >> bit & 1 == 1;
-            DVec3::select(glam::BVec3::new(high(0), high(1), high(2)), self.max, self.min)
-        })
-    }
-
-    /// The length of the diagonal; zero for an empty box.
-    pub fn diagonal(&self) -> f64 {
-        if self.is_empty() { 0.0 } else { self.min.distance(self.max) }
-    }
-}
-
-impl FromIterator<DVec3> for Bounds {
-    fn from_iter<I: IntoIterator<Item = DVec3>>(points: I) -> Self {
-        let mut bounds = Self::default();
-        points.into_iter().for_each(|p| bounds.add(p));
-        bounds
-    }
-}
-
 impl Scene {
-    /// Reads a `.gltf` or `.glb` file, and the buffers and images it refers to by relative paths or data
-    /// URIs. What the scene cannot show as the file says is in [`Scene::warnings`].
-    ///
-    /// # Errors
-    /// [`SceneError`] names the file and the field.
-    pub fn load(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        Self::load_with(path, LoadOptions::default())
-    }
-
-    /// As [`Scene::load`], with what the file leaves open.
-    ///
-    /// # Errors
-    /// As [`Scene::load`].
-    pub fn load_with(path: impl AsRef<Path>, options: LoadOptions) -> Result<Self, SceneError> {
-        crate::load::load(path.as_ref(), options)
-    }
-
-    /// Reads a scene from memory. It cannot refer to other files; `name` stands for the file in messages.
-    ///
-    /// # Errors
-    /// [`SceneError`] names the field.
-    pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, SceneError> {
-        Self::from_bytes_with(bytes, name, LoadOptions::default())
-    }
-
-    /// As [`Scene::from_bytes`], with what the file leaves open.
-    ///
-    /// # Errors
-    /// As [`Scene::from_bytes`].
-    pub fn from_bytes_with(bytes: &[u8], name: &str, options: LoadOptions) -> Result<Self, SceneError> {
-        crate::load::from_bytes(bytes, name, options)
-    }
-
     /// The camera called `name`, or the file's first, or, where the file has none,
     /// [`Scene::framing_camera`]. None if `name` is given and no camera has it.
     pub fn camera(&self, name: Option<&str>, aspect: f64) -> Option<Camera> {

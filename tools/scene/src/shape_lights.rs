@@ -1,14 +1,15 @@
 //! Emissive meshes that stand for a disk, a sphere or a tube, by a word in their node's `extras`.
 
-use crate::light_textures::{self, TexturedLight};
-use crate::load::Loader;
+use crate::images::Textures;
 use crate::meshes::Instance;
+use crate::messages::Messages;
 use crate::nodes::PlacedNode;
+use crate::scene::SceneMaterial;
+use crate::shown;
 use crate::uv_map::{UvMap, UvTolerance};
 use arealight::{Light, LightShape, TubeEnds};
 use glam::{DAffine3, DVec2, DVec3};
 use serde::Deserialize;
-use serde_json::Value;
 
 /// What `extras.arealight` of a node says: in the node's space, about its origin and its Y axis.
 #[derive(Deserialize)]
@@ -38,62 +39,47 @@ enum Said {
     },
 }
 
-/// The word in a node's `extras`, if there is one.
-pub(crate) fn said(extras: &gltf::json::Extras) -> Option<Value> {
-    let extras: Value = serde_json::from_str(extras.as_ref()?.get()).ok()?;
-    extras.get("arealight").cloned()
-}
+/// What a shape's light shows: a texture, and the texture coordinates of the corners of its box.
+pub(crate) type ShownImage = Option<(u32, [DVec2; 4])>;
 
-/// Adds the shape that a node's word says its emissive mesh is; false where there is no such word, or none
-/// that holds, and the mesh is what it is.
-pub(crate) fn add(loader: &mut Loader, node: &PlacedNode, instance: &Instance) -> bool {
-    let Some(said) = &node.shape else { return false };
+/// The shape that a node's word says its emissive mesh is, and what it shows. None where there is no such
+/// word, or none that holds, and the mesh is what it is.
+pub(crate) fn light(
+    node: &PlacedNode,
+    instance: &Instance,
+    material: &SceneMaterial,
+    textures: &Textures,
+    messages: &mut Messages,
+) -> Option<(Light, ShownImage)> {
+    let said = node.shape.as_ref()?;
     let place = format!("light '{}' (node {})", instance.name, node.index);
-    let material = &loader.scene.materials[instance.material as usize];
-    let radiance = material.emission;
-    // A mesh of several materials is several primitives, and one light
-    if let Some((_, shone)) = loader.shaped.filter(|(number, _)| *number == node.number) {
-        if shone != radiance {
-            loader
-                .warn(place, format!("node {} shines with the emission of its first primitive", node.index));
-        }
-        return true;
-    }
-    let (double_sided, texture) = (material.double_sided, material.emission_texture);
+    let texture = material.emission_texture;
     let shape = Said::deserialize(said).map_err(|error| error.to_string());
     let placed = shape.and_then(|said| said.placed(&node.world)).and_then(|shape| match texture {
         Some(texture) if matches!(shape, LightShape::Disk { .. }) => {
-            let tolerance = UvTolerance {
-                uv: light_textures::tolerance(&loader.scene, texture),
-                position: instance.rounding,
-            };
+            let tolerance =
+                UvTolerance { uv: shown::tolerance(textures, texture), position: instance.rounding };
             upright(&shape, instance, tolerance).map(|(shape, uvs)| (shape, Some((texture, uvs))))
         }
         _ => Ok((shape, None)),
     });
-    let shape = placed.and_then(|(shape, image)| {
+    let light = placed.and_then(|(shape, image)| {
         // Solids shine outwards, whatever their material says
-        let two_sided = double_sided && matches!(shape, LightShape::Disk { .. });
-        let light = Light { name: instance.name.clone(), radiance, two_sided, texture: None, shape };
+        let two_sided = material.double_sided && matches!(shape, LightShape::Disk { .. });
+        let (name, radiance) = (instance.name.clone(), material.emission);
+        let light = Light { name, radiance, two_sided, texture: None, shape };
         light.validate().map(|()| (light, image)).map_err(|error| error.to_string())
     });
-    match shape {
-        Ok((light, image)) => {
-            if let Some((texture, uvs)) = image {
-                let owner = loader.scene.lights.len();
-                loader.textured.push(TexturedLight { owner, surface: owner, texture, uvs: uvs.into() });
-            } else if texture.is_some() {
-                loader.warn(place, "its texture is not shown in what it lights: only disks are textured");
-            }
-            loader.shaped = Some((node.number, radiance));
-            loader.scene.lights.push(light);
-            true
+    match &light {
+        Ok((_, None)) if texture.is_some() => {
+            messages.warn(place, "its texture is not shown in what it lights: only disks are textured");
         }
+        Ok(_) => {}
         Err(problem) => {
-            loader.warn(place, format!("extras.arealight: {problem}: the mesh's own polygons shine"));
-            false
+            messages.warn(place, format!("extras.arealight: {problem}: the mesh's own polygons shine"));
         }
     }
+    light.ok()
 }
 
 /// An ellipse whose axes run along the image that its mesh shows, as a light's do, and the texture

@@ -1,9 +1,8 @@
 //! What a textured light shows: a rectangle of an image, or one colour.
 
-use crate::images::{linear_mean, sample};
-use crate::light_textures::{MAX_REPEATS, TexturedLight};
+use crate::images::{Textures, linear_mean, sample};
 use crate::lit_texels::LitTexels;
-use crate::{Image, Scene, Texture, Wrap};
+use crate::scene::Wrap;
 use arealight::TexturePart;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -22,6 +21,30 @@ const FEWEST_SAMPLES: u32 = 8;
 /// How far a box may be outside of the image and still count as inside, from rounding in files.
 const OUTSIDE: f64 = 1e-5;
 
+/// How often a light may repeat its image, along each axis, and still show it; beyond, it has the mean
+/// colour. At 1024 texels a layer, sixteen are left for each repeat.
+pub const MAX_REPEATS: f64 = 64.0;
+
+/// A textured light, while the scene is read.
+pub(crate) struct TexturedLight {
+    /// Which light: an index into [`crate::Scene::lights`].
+    pub owner: usize,
+    /// Which surface it is a part of: the first light of that.
+    pub surface: usize,
+    /// Index into [`crate::Scene::textures`].
+    pub texture: u32,
+    /// Of its vertices, in the texture's coordinates; of a disk those of its box's corners, the first texel's
+    /// first.
+    pub uvs: Vec<DVec2>,
+}
+
+/// How far coordinates of neighbours may be off one map and still be one light's: a quarter of a texel cannot
+/// be seen, nor, in small images, a thousandth of the image.
+pub(crate) fn tolerance(textures: &Textures, texture: u32) -> DVec2 {
+    let (image, _) = textures.get(texture);
+    (0.25 / DVec2::new(f64::from(image.width), f64::from(image.height))).min(DVec2::splat(1e-3))
+}
+
 /// What a light shows.
 pub(crate) enum Shown {
     /// One colour.
@@ -38,10 +61,10 @@ impl Shown {
     }
 
     /// The mean linear colour.
-    pub fn mean(&self, scene: &Scene) -> DVec3 {
+    pub fn mean(&self, textures: &Textures) -> DVec3 {
         match self {
             Self::Color(color) | Self::Lost(color, _) => *color,
-            Self::Rectangle(rectangle) => rectangle.mean(scene),
+            Self::Rectangle(rectangle) => rectangle.mean(textures),
         }
     }
 }
@@ -67,8 +90,8 @@ impl Rectangle {
 
     /// The mean linear colour over the light (over the rectangle, where the light is a disk, or too thin for
     /// samples).
-    pub fn mean(&self, scene: &Scene) -> DVec3 {
-        let (image, texture) = read(scene, self.texture);
+    pub fn mean(&self, textures: &Textures) -> DVec3 {
+        let (image, texture) = textures.get(self.texture);
         let size = self.high - self.low;
         // A sample a texel, where that is enough
         let texels = size * DVec2::new(f64::from(image.width), f64::from(image.height));
@@ -124,8 +147,8 @@ pub(crate) struct Images {
 
 impl Images {
     /// What a light shows.
-    pub fn shown(&mut self, scene: &Scene, light: &TexturedLight) -> Shown {
-        let (image, texture) = read(scene, light.texture);
+    pub fn shown(&mut self, textures: &Textures, light: &TexturedLight) -> Shown {
+        let (image, texture) = textures.get(light.texture);
         let mut mean = || *self.means.entry(texture.image).or_insert_with(|| linear_mean(image));
         if light.uvs.iter().any(|uv| !uv.is_finite() || uv.abs().max_element() > FARTHEST) {
             return Shown::Lost(mean(), "its texture coordinates are too large");
@@ -152,7 +175,7 @@ impl Images {
         let far = low.abs().max_element() > TexturePart::FARTHEST;
         if far || (high - low).max_element() > MAX_REPEATS {
             let clamped = texture.wrap_u == Wrap::Clamp || texture.wrap_v == Wrap::Clamp;
-            let mean = if clamped { rectangle.mean(scene) } else { mean() };
+            let mean = if clamped { rectangle.mean(textures) } else { mean() };
             return Shown::Lost(mean, "repeats its image too often");
         }
         if self.lit.entry(texture.image).or_insert_with(|| LitTexels::new(image)).is_black(low, high) {
@@ -160,11 +183,6 @@ impl Images {
         }
         Shown::Rectangle(rectangle)
     }
-}
-
-fn read(scene: &Scene, texture: u32) -> (&Image, Texture) {
-    let texture = scene.textures[texture as usize];
-    (&scene.images[texture.image as usize], texture)
 }
 
 /// The two points of a polygon that are farthest apart, or almost, and its breadth across the line through

@@ -4,9 +4,10 @@
 //! A flat part of a bent surface is a light with an image of its own. A model of 15,000 triangles has
 //! thousands of them, each a few texels: what they show together is in their colours already.
 
-use crate::light_textures::TexturedLight;
-use crate::shown::Shown;
-use crate::{Bounds, Scene};
+use crate::bounds::Bounds;
+use crate::images::Textures;
+use crate::shown::{Shown, TexturedLight};
+use arealight::Light;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -30,7 +31,12 @@ struct Part {
 }
 
 /// Gives small parts their mean colours: the indices of their lights, for each surface of many parts.
-pub(crate) fn simplify(scene: &Scene, textured: &[TexturedLight], shown: &mut [Shown]) -> Vec<Vec<usize>> {
+pub(crate) fn simplify(
+    lights: &[Light],
+    textures: &Textures,
+    textured: &[TexturedLight],
+    shown: &mut [Shown],
+) -> Vec<Vec<usize>> {
     let mut surfaces: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (index, light) in textured.iter().enumerate() {
         if !matches!(shown[index], Shown::Color(DVec3::ZERO)) {
@@ -38,21 +44,22 @@ pub(crate) fn simplify(scene: &Scene, textured: &[TexturedLight], shown: &mut [S
         }
     }
     surfaces.retain(|_, lit| lit.len() > MANY_PARTS);
-    let of_surface = |lit: Vec<usize>| simplify_surface(scene, textured, shown, &lit);
+    let of_surface = |lit: Vec<usize>| simplify_surface(lights, textures, textured, shown, &lit);
     surfaces.into_values().map(of_surface).collect()
 }
 
 fn simplify_surface(
-    scene: &Scene,
+    lights: &[Light],
+    textures: &Textures,
     textured: &[TexturedLight],
     shown: &mut [Shown],
     lit: &[usize],
 ) -> Vec<usize> {
-    let light = |index: usize| &scene.lights[textured[index].owner];
+    let light = |index: usize| &lights[textured[index].owner];
     let diagonal = lit.iter().flat_map(|&index| light(index).shape.bounds()).collect::<Bounds>().diagonal();
     // Find out how much light each part has
     let part = |&index: &usize| {
-        let color = shown[index].mean(scene);
+        let color = shown[index].mean(textures);
         let [low, high] = light(index).shape.bounds();
         let radiance = (color * light(index).radiance.as_dvec3()).element_sum();
         let flux = radiance * light(index).shape.area_vector().length();

@@ -1,9 +1,9 @@
 //! A photographer's light for models that bring none: three softboxes around what is shown, placed as the
 //! camera sees it.
 
-use crate::emitters::add_bare;
-use crate::load::NO_LIGHTS;
-use crate::{Bounds, Camera, Scene};
+use crate::bounds::Bounds;
+use crate::camera::Camera;
+use crate::scene::{NO_LIGHTS, Scene, SceneLamp};
 use arealight::{Light, LightFault, LightShape};
 use glam::{DVec3, Vec3};
 
@@ -66,7 +66,7 @@ impl Scene {
         lights.iter().try_for_each(Light::validate)?;
         let first = self.lights.len();
         self.lights.extend(lights);
-        add_bare(self, first);
+        self.lamps.extend(SceneLamp::bare(first..self.lights.len()));
         self.warnings.retain(|warning| warning.text != NO_LIGHTS);
         Ok(())
     }

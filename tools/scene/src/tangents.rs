@@ -1,12 +1,10 @@
 //! Tangents of a primitive: the file's own, or where it has none those of `MikkTSpace`, as glTF asks for.
 
-use crate::load::Loader;
-use crate::{SceneError, accessor};
+use crate::attributes::Attributes;
+use crate::error::SceneError;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
-use gltf::json;
 use gltf::json::mesh::Semantic;
-use gltf::json::validation::Checked;
 
 /// What tangents are made of.
 pub(crate) struct Vertices<'a> {
@@ -21,19 +19,10 @@ pub(crate) struct Vertices<'a> {
 /// The tangents of each triangle's corners, none where nothing says what they are: in xyz the direction of
 /// growing u, unit, and in w the side of the bitangent, `cross(normal, tangent) w`. In the mesh's space.
 pub(crate) fn read(
-    loader: &Loader,
-    source: &json::mesh::Primitive,
-    field: &str,
+    attributes: &Attributes<'_>,
     vertices: &Vertices<'_>,
 ) -> Result<Option<Vec<[Vec4; 3]>>, SceneError> {
-    let attribute = source.attributes.get(&Checked::Valid(Semantic::Tangents)).map(json::Index::value);
-    if let Some(accessor) = attribute {
-        let place = format!("{field}.TANGENT");
-        let given = accessor::floats::<4>(&loader.document, accessor, &place)?;
-        if given.len() != vertices.positions.len() {
-            let text = format!("{} for {} positions", given.len(), vertices.positions.len());
-            return Err(loader.document.invalid(place, text));
-        }
+    if let Some(given) = attributes.of_vertices::<4>(&Semantic::Tangents, vertices.positions.len())? {
         let corner = |index: u32| Vec4::from_array(given[index as usize]);
         return Ok(Some(vertices.triangles.iter().map(|corners| corners.map(corner)).collect()));
     }

@@ -1,19 +1,34 @@
-//! `EXT_mesh_gpu_instancing`: one mesh, many times.
+//! From a node's space to its parent's, and from the spaces of its instances to its own
+//! (`EXT_mesh_gpu_instancing`: one mesh, many times).
 
+use crate::accessor;
 use crate::document::Document;
-use crate::nodes::local_transform;
-use crate::{SceneError, accessor};
-use glam::DAffine3;
+use crate::error::SceneError;
+use crate::extensions::INSTANCING;
+use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::json;
-
-const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
 /// The most nodes and instances a scene may have, where it has instances; a file beyond is refused.
 const MAX_INSTANCES: usize = 1 << 20;
 
+/// From a node's space to its parent's, or what is wrong with it.
+pub(crate) fn of_node(node: &json::Node) -> Result<DAffine3, String> {
+    if let Some(matrix) = node.matrix {
+        return Ok(DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from))));
+    }
+    let scale = node.scale.map_or(DVec3::ONE, |s| DVec3::from_array(s.map(f64::from)));
+    let translation = node.translation.map_or(DVec3::ZERO, |t| DVec3::from_array(t.map(f64::from)));
+    let rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    let length = rotation.length();
+    if !(length > 1e-6 && length.is_finite()) {
+        return Err(format!("rotation: {:?} is not a quaternion of unit length", rotation.to_array()));
+    }
+    Ok(DAffine3::from_scale_rotation_translation(scale, rotation / length, translation))
+}
+
 /// From each instance's space to the node's, where `placed` are there already; none where the node's mesh is
 /// there once.
-pub(crate) fn instances(
+pub(crate) fn of_instances(
     document: &Document,
     index: usize,
     node: &json::Node,
@@ -39,7 +54,7 @@ pub(crate) fn instances(
         return Err(document.too_large("instances", (placed + count) as u64, MAX_INSTANCES as u64));
     }
     let instance = |i: usize| {
-        let local = local_transform(&json::Node {
+        let local = of_node(&json::Node {
             translation: translations.as_ref().map(|values| values[i]),
             rotation: rotations.as_ref().map(|values| json::scene::UnitQuaternion(values[i])),
             scale: scales.as_ref().map(|values| values[i]),
