@@ -45,7 +45,7 @@ const uint EFFECT_TRANSMISSION = 4194304u;
 // Some surface has a thin film.
 const uint EFFECT_THIN_FILM = 8388608u;
 
-// Some light is a polygon that is no convex quad without an image: Effects::BEYOND_QUADS in Rust.
+// Some polygon is not a convex quad without an image: Effects::BEYOND_QUADS in Rust.
 const uint EFFECTS_OF_POLYGONS = EFFECT_POLYGON | EFFECT_TEXTURED | EFFECT_MESH;
 // Some light is a disk, sphere or tube: Effects::SHAPES in Rust.
 const uint EFFECTS_OF_SHAPES = EFFECT_ELLIPSE | EFFECT_SPHERE | EFFECT_TUBE;

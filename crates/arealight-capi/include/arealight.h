@@ -398,7 +398,7 @@ typedef struct ArealightLight {
     uint32_t reserved;
 } ArealightLight;
 
-// What a frame needs to know of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
+// Counts and effects of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
 typedef struct ArealightLightSummary {
     // How many records ArealightPackedLights.lights has: those of polygons and meshes.
     uint32_t light_count;
@@ -441,7 +441,7 @@ typedef struct ArealightReach {
     double high[3];
 } ArealightReach;
 
-// What a pass is specialised for. All zero is both lobes at the exact level.
+// Options fixed when a pass is created. All zero is both lobes at the exact level.
 typedef struct ArealightPassOptions {
     // What the surfaces need: AREALIGHT_EFFECT_DIFFUSE, _GLOSSY, _SPECULAR_INPUT, _COAT, _COAT_NORMAL,
     // _COAT_BY_ALBEDO, _SHEEN, _ANISOTROPY, _DIFFUSE_ROUGHNESS, _COUPLED, _COUPLED_BY_ALBEDO,
@@ -502,7 +502,7 @@ typedef struct ArealightPassOptions {
     uint32_t descriptors;
 } ArealightPassOptions;
 
-// What a descriptor set is made with.
+// The resources of a descriptor set.
 typedef struct ArealightSetLayout {
     // VkDescriptorSetLayout, the library's own.
     uint64_t layout;
@@ -675,7 +675,7 @@ typedef struct ArealightBlockerArrays {
     uint64_t triangles_size;
 } ArealightBlockerArrays;
 
-// What a shadow pass does with the radiance of its shade pass.
+// The output of a shadow pass.
 typedef struct ArealightShadowOptions {
     // One of AREALIGHT_SHADOW_FILTER_*.
     uint32_t filter;
@@ -705,7 +705,7 @@ typedef struct ArealightShadowResources {
     struct ArealightBuffer blocker_triangles;
 } ArealightShadowResources;
 
-// What a shadow pass records.
+// A frame of a shadow pass.
 typedef struct ArealightShadowFrame {
     // That of the shade pass. With a history it has `position_from_clip`, also where positions come from an
     // image, and `seed` counts frames.
@@ -855,8 +855,8 @@ enum ArealightResult arealight_lobe_horizons(const struct Arealight *arealight,
 // No commands that shade are pending, the device is alive, and no other thread uses the object.
 enum ArealightResult arealight_destroy(struct Arealight *arealight);
 
-// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty
-// where none has. Valid until the next call of this thread that fails.
+// The message of this thread's last failed call, in UTF-8: what is wrong, where, and what to do. Empty where
+// none has. Valid until the next call of this thread that fails.
 const char *arealight_last_error(void);
 
 // Packs lights relative to `origin` (three numbers, in world positions) into arrays of the host, which

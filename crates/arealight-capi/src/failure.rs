@@ -88,8 +88,8 @@ fn remember(message: &str) {
     let _ = MESSAGE.try_with(|last| last.replace(text));
 }
 
-/// What the last call of this thread that failed says: UTF-8, what is wrong, where, and what to do. Empty
-/// where none has. Valid until the next call of this thread that fails.
+/// The message of this thread's last failed call, in UTF-8: what is wrong, where, and what to do. Empty where
+/// none has. Valid until the next call of this thread that fails.
 #[unsafe(no_mangle)]
 pub extern "C" fn arealight_last_error() -> *const c_char {
     MESSAGE.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())

@@ -1,4 +1,4 @@
-//! What a pass is made with: numbers of C as options of the recorder.
+//! Numbers of C as options of the recorder.
 
 use crate::failure::Failure;
 use crate::lights::read_effects;

@@ -81,7 +81,7 @@ pub struct ArealightUpload {
     pub command_buffer: *mut c_void,
 }
 
-/// What a pass is specialised for. All zero is both lobes at the exact level.
+/// Options fixed when a pass is created. All zero is both lobes at the exact level.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightPassOptions {
@@ -144,7 +144,7 @@ pub struct ArealightPassOptions {
     pub descriptors: u32,
 }
 
-/// What a descriptor set is made with.
+/// The resources of a descriptor set.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightSetLayout {
@@ -229,7 +229,7 @@ pub struct ArealightReach {
     pub high: [f64; 3],
 }
 
-/// What a frame needs to know of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
+/// Counts and effects of packed lights: arealight_pack_lights writes it, ArealightFrame takes it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ArealightLightSummary {
@@ -418,7 +418,7 @@ pub struct ArealightTileMemory {
     pub reserved: u32,
 }
 
-/// What a shadow pass does with the radiance of its shade pass.
+/// The output of a shadow pass.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ArealightShadowOptions {
@@ -452,7 +452,7 @@ pub struct ArealightShadowResources {
     pub blocker_triangles: ArealightBuffer,
 }
 
-/// What a shadow pass records.
+/// A frame of a shadow pass.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ArealightShadowFrame {

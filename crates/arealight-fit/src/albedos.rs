@@ -1,5 +1,5 @@
-//! Albedos as a table holds them at grazing views: those at its nodes, changed so that what is interpolated
-//! between them errs least.
+//! Albedos of a table at grazing views: changed at the nodes so that interpolation between them has the least
+//! error.
 
 use arealight::{MIN_ALPHA, TableDescription};
 use glam::{DMat3, DVec3};
@@ -30,7 +30,8 @@ pub(crate) fn balanced(
     let first = column.len().checked_sub(ROWS + 2)?;
     let cells = (column.len() - 1) as f64;
     let alpha = (roughness * roughness).max(MIN_ALPHA);
-    // At views in the last cells, what the nodes as they are err, and how much of it each balanced node is
+    // At views in the last cells, the error of the nodes as they are, and the part of each balanced node in
+    // it
     let places = (0..ROWS * VIEWS).map(|view| (view as f64 + 0.75) / VIEWS as f64);
     let views = places.chain(NEAR_HORIZON.map(|part| (ROWS - 1) as f64 + part)).map(|place| {
         let (row, part) = (place.floor() as usize, place.fract());

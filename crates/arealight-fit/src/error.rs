@@ -16,7 +16,7 @@ pub enum FitError {
         /// The values allowed.
         range: &'static str,
     },
-    /// The BRDF reflects nothing, or its albedo is no number.
+    /// The BRDF reflects nothing, or its albedo is NaN.
     #[error(
         "the BRDF's albedo at alpha {alpha}, cos_view {cos_view} is {albedo}, of it by Schlick's weight \
              {schlick}; both must be above 0"

@@ -236,7 +236,7 @@ fn into_table(
     })
 }
 
-/// Balances the last rows of a table's albedos, where nothing but interpolation errs.
+/// Balances the last rows of a table's albedos, where all of the error is interpolation's.
 fn balance(brdf: &dyn Brdf, description: &TableDescription, size: u32, stored: &mut [[f64; 2]]) {
     let side = size as usize;
     let columns: Vec<_> = (0..side)

@@ -27,11 +27,10 @@
 //! Each texel starts from its neighbour, and is held to it, weakly, in what the probes do not determine. So
 //! the table is smooth and may be interpolated.
 //!
-//! # What is fitted
-//! Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`]. Beside them pairs
-//! of lobes that a surface has at once, for [`arealight::SpecularLobes::Two`]: their ten numbers are fitted
-//! together. [`report`] measures a table at reflectances from 0.02 to 1, beside the table published with
-//! Heitz et al. 2016.
+//! # What is fitted Two lobes, with and without Schlick's weight, or one for every reflectance: see [`Aim`].
+//! Beside them pairs of lobes that a surface has at once, for [`arealight::SpecularLobes::Two`]: their ten
+//! numbers are fitted together. [`report`] measures a table at reflectances from 0.02 to 1, and the table
+//! published with Heitz et al. 2016.
 //!
 //! # Without a table
 //! [`formula`] fits polynomials to a table's entries, for those who have no sampler to spare.

@@ -3,8 +3,8 @@
 //! In the mirror frame the entries are smooth enough for a cubic in alpha and the view's cosine. The
 //! coefficients are those of a weighted linear least squares on a fitted table, where each texel's four
 //! entries are weighted by the curvature of the fit's own loss about it: what the integrals hardly depend on
-//! is free to be wrong. That makes the difference: with equal weights a cubic errs five times as much as the
-//! table, with these 1.3 times.
+//! is free to be wrong. That makes the difference: with equal weights a cubic has five times the table's
+//! error, with these 1.3 times.
 //!
 //! Mean error of [`Formula::GGX`] over the fit's report: 5.5e-4 at F0 = 0.02, 6.6e-4 at 0.04, 2.85e-3 at
 //! 1. The albedo is within 0.014 of the truth, that of Schlick's weight within 0.05 (2e-3 on average).

@@ -432,8 +432,8 @@ fn half_vector_part(
     scale * HalfVectors::of_surface(surface, frame, &sample).reflected(vertices, two_sided)
 }
 
-/// What the fitted lobes reflect, `lobe` being the form factor of the light in the cosine space of a lobe, a
-/// channel, of which a part lies above the surface.
+/// The radiance that the fitted lobes reflect. `lobe` is a light's form factor, per channel, in a lobe's
+/// cosine space; a part of the lobe lies above the surface.
 fn glossy_part(
     quality: Quality,
     table: &LightTable,

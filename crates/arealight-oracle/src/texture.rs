@@ -20,7 +20,7 @@ pub struct Texture {
     texels: Vec<DVec3>,
 }
 
-/// Why texels are no texture.
+/// Why texels are refused as a texture.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum BadTexture {
     /// There are none, or not width times height of them.

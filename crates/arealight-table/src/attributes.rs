@@ -1,4 +1,4 @@
-//! What a file says of its texels: the same names and values in every format.
+//! A file's metadata: the same names and values in every format.
 
 use arealight::table::LobePairs;
 use arealight::{LightTable, TableDescription};

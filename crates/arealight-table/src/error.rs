@@ -1,4 +1,4 @@
-//! Why a file is no table.
+//! Why a file is refused.
 
 use crate::Format;
 use arealight::TableError;
@@ -11,7 +11,7 @@ pub enum ReadError {
     /// The file begins as none of the formats does.
     #[error("neither OpenEXR nor KTX2 nor DDS, in which light tables are kept")]
     UnknownFormat,
-    /// The file is damaged, cut short, or uses what the reader does not know.
+    /// The file is damaged, cut short, or uses unknown features.
     #[error("{part}: damaged or unsupported {format} data: {reason}")]
     Damaged {
         /// The format by which the file begins.
@@ -166,7 +166,7 @@ pub enum WriteError {
         /// Nodes a side.
         size: u32,
     },
-    /// What the table says of itself is too long.
+    /// The metadata is too long.
     #[error("{bytes} bytes of attributes; at most {} are read back", crate::texture::MAX_KEY_VALUE_BYTES)]
     Attributes {
         /// Their length.

@@ -55,7 +55,7 @@ impl Precision {
     }
 }
 
-/// What a table is written as.
+/// A table's file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Target {
@@ -75,7 +75,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// What a path's extension stands for: `exr`, `ktx2`, `dds`, `h`, `glsl` or `f32`. Without a precision, EXR
+    /// The format of a path's extension: `exr`, `ktx2`, `dds`, `h`, `glsl` or `f32`. Without a precision, EXR
     /// is written in 32-bit floats, and everything else in 16-bit ones.
     ///
     /// # Errors

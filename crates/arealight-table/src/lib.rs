@@ -88,7 +88,7 @@ pub fn ggx_file() -> TableFile {
     TableFile { table: LightTable::ggx(), fit_error: Some(fit_error.into()) }
 }
 
-/// What a table file holds.
+/// The contents of a table file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableFile {
     /// The table.

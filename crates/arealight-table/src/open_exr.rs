@@ -23,5 +23,5 @@ const PAIR_MATRICES: [Layer; 2] = [
     Layer { name: "second_matrix", channels: &["R", "G", "B", "A"] },
 ];
 const SECOND_SHARES: Layer = Layer { name: "second_shares", channels: &["R", "G"] };
-/// The layer of an image that is no table file.
+/// The layer of an image that is not a table file.
 const IMAGE: Layer = Layer { name: "image", channels: &["R", "G", "B", "A"] };

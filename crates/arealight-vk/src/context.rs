@@ -1,4 +1,4 @@
-//! What the recorder knows of the host: its device, and the pipeline cache it lends.
+//! The host's device, and the pipeline cache it lends.
 
 use crate::debug_names::DebugNames;
 use crate::error::{Error, VulkanCall};

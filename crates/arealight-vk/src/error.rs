@@ -11,7 +11,7 @@ pub enum Error {
     Vulkan {
         /// The call.
         call: &'static str,
-        /// What it returned.
+        /// The result it returned.
         result: vk::Result,
     },
     /// The device lacks something that is needed, or the host did not enable it.
@@ -27,7 +27,7 @@ pub enum Error {
     InvalidArgument {
         /// The argument's field.
         field: &'static str,
-        /// What is wrong with it, and what would be right.
+        /// The fault, and what would be right.
         message: String,
     },
     /// An image has a format that the pass does not read, or store to, as it should.

@@ -1,5 +1,4 @@
-//! What the pipelines of a kernel have in common: the layout of its descriptor sets, and how those are
-//! written.
+//! The layout of a kernel's descriptor sets, and how they are written.
 
 use crate::context::{Context, Descriptors};
 use crate::error::{Error, VulkanCall};

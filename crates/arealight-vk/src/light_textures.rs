@@ -297,8 +297,8 @@ impl LightTextures {
         self.level_views.get(level).copied().unwrap_or_default()
     }
 
-    /// Records that every layer becomes black, and the image's layout what it stays. Needed once, before
-    /// anything else.
+    /// Records that every layer becomes black, and the image's final layout. Needed once, before anything
+    /// else.
     ///
     /// # Safety
     /// - `command_buffer` is recording, outside a render pass, on a queue with graphics or compute.

@@ -1,4 +1,4 @@
-//! What is known of a SPIR-V module before a driver sees it: drivers trust what they are given.
+//! Checks a SPIR-V module before a driver sees it, since drivers trust their input.
 
 use crate::Error;
 use crate::prune::is_framed;
@@ -14,8 +14,8 @@ const MAGIC: u32 = 0x0723_0203;
 const VERSIONS: std::ops::RangeInclusive<u32> = 0x0001_0000..=0x0001_0600;
 const MOST_IDS: u32 = 4_194_303;
 
-/// Refuses what is no whole module of SPIR-V with the kernel's entry point, workgroup and bindings of set 0,
-/// and ids that are not defined. Types and control flow are not looked at: a module that passes may still be
+/// Refuses incomplete modules, undefined ids, and modules without the kernel's entry point, workgroup size
+/// and bindings of set 0. Types and control flow are not looked at: a module that passes may still be
 /// invalid, which a validator says.
 pub(crate) fn check_module(words: &[u32], kernel: &Kernel) -> Result<(), Error> {
     let fault = |message: String| Error::InvalidArgument { field: "module", message };
@@ -128,7 +128,7 @@ fn check_bindings(module: &Module, kernel: &Kernel) -> Result<(), String> {
     Ok(())
 }
 
-/// What a variable is bound to.
+/// A variable's binding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Found {
     StorageBuffer,

@@ -10,7 +10,7 @@ use ash::vk;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What a descriptor of a pass refers to. The host owns it, and keeps it alive while recorded work runs.
+/// The resource of a descriptor. The host owns it, and keeps it alive while recorded work runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resource {
     /// An image that is read by texel.
@@ -133,9 +133,8 @@ impl ComputePass {
     /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry
     /// point.
     ///
-    /// # Errors
-    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry
-    /// point and bindings.
+    /// # Errors As [`ComputePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         kernel: &'static Kernel,

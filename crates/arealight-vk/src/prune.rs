@@ -1,4 +1,4 @@
-//! Leaves out of a SPIR-V module what its specialisation constants rule out.
+//! Removes from a SPIR-V module the code that its specialisation constants rule out.
 //!
 //! Drivers find that out as well, but some do so late: Mesa copies every function to where it is called, with
 //! all of its branches, before it looks at a condition. What a scene does not need then costs nothing to
@@ -23,8 +23,8 @@ pub use freeze::freeze;
 /// without the bindings that then nothing uses. It has the same constants and entry points, is specialised in
 /// the same way, and computes the same to the bit.
 ///
-/// What isn't understood is left as it is: a `switch`, what is computed of other than integers of 32 bits and
-/// truth values; and whole modules that have debug information beyond the core's
+/// Code that isn't understood stays as it is: a `switch`, what is computed of other than integers of 32 bits
+/// and truth values; and whole modules that have debug information beyond the core's
 /// (`NonSemantic.Shader.DebugInfo.100`), or cannot be read.
 ///
 /// [`ComputePass`](crate::ComputePass) does this by itself. It is for hosts that make pipelines of our

@@ -158,9 +158,8 @@ impl ShadePass {
     /// # Safety
     /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
     ///
-    /// # Errors
-    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point
-    /// and bindings.
+    /// # Errors As [`ShadePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,
@@ -212,7 +211,7 @@ impl ShadePass {
         }
     }
 
-    /// What the pass was specialised for.
+    /// The options of the pass.
     pub fn options(&self) -> ShadeOptions {
         self.options
     }
@@ -457,7 +456,7 @@ impl ShadePass {
     }
 }
 
-/// What a frame's commands read.
+/// The resources that a frame's commands read.
 enum Bound {
     Set(vk::DescriptorSet),
     Pushed(Vec<Resource>),
@@ -503,7 +502,7 @@ fn check_options(options: ShadeOptions) -> Result<(), Error> {
     Ok(())
 }
 
-/// Refuses what is no summary of packed lights.
+/// Refuses an inconsistent summary of packed lights.
 fn check_lights(lights: LightSummary) -> Result<(), Error> {
     let wrong = |message: String| Err(Error::InvalidArgument { field: "lights", message });
     let LightSummary { light_count, quad_count, shape_count, effects } = lights;

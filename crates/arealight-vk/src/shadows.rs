@@ -17,7 +17,7 @@ use ash::vk;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// What a shadow pass does with the radiance of a shade pass.
+/// The output of a shadow pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct ShadowOptions {
     /// How rays are filtered.
@@ -86,7 +86,7 @@ pub struct BlockerResources {
 /// so that the part of the rays that arrive is, on average, the part of the radiance that does; where all or
 /// none arrive there is no noise.
 ///
-/// Of textured lights every texel counts alike; ends of open and flat tubes are no part of their outline.
+/// Textured lights are sampled uniformly; the ends of open and flat tubes get no rays.
 #[derive(Debug)]
 pub struct ShadowPass {
     rays: Pipelines,
@@ -130,9 +130,8 @@ impl ShadowPass {
     /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of
     /// the device, valid as long as the pass.
     ///
-    /// # Errors
-    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] for what is no module with the kernel's entry point
-    /// and bindings.
+    /// # Errors As [`ShadowPass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
         options: ShadeOptions,

@@ -37,7 +37,7 @@ impl Sets {
     }
 }
 
-/// What a set was last written with.
+/// The last contents of a set.
 struct Written {
     /// Views, and the bindings that they are at; in debug builds.
     views: Vec<(vk::ImageView, &'static str)>,

@@ -33,7 +33,7 @@ pub const MAX_BLOCKERS: usize = 1 << 26;
 /// The largest coordinate of a vertex: squared sizes of boxes stay far from infinity.
 pub const MAX_COORDINATE: f32 = 1e16;
 
-/// Why triangles are no blockers.
+/// Why triangles are refused as blockers.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BlockerError {
@@ -132,7 +132,7 @@ const MAX_LEAF: usize = 4;
 /// Places along an axis where a node may be split, and one.
 const BINS: usize = 16;
 
-/// What a step down costs, in intersections of a triangle.
+/// The cost of a step down, in intersections of a triangle.
 const STEP_COST: f64 = 1.0;
 
 const EMPTY_NODE: GpuBvhNode = GpuBvhNode { min: [0.0; 3], first: 0, max: [0.0; 3], count: 0 };

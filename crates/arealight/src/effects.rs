@@ -56,8 +56,8 @@ bitflags::bitflags! {
         /// Some surface's GGX lobe has two roughnesses, along a tangent and across it, so the G-buffer's
         /// image of anisotropy is read.
         const ANISOTROPY = 1 << 20;
-        /// What the facets of specular lobes reflect more than once is added, as in OpenPBR; else it is lost,
-        /// as in glTF, and rough metals are up to 60 % too dark. Metals have a diffuse lobe then.
+        /// Adds multiple scattering of specular lobes, as in OpenPBR; else it is lost, as in glTF, and rough
+        /// metals are up to 60 % too dark. Metals have a diffuse lobe then.
         const MULTIPLE_SCATTERING = 1 << 21;
         /// Some thin surface lets light through. A pass with this shades what the G-buffer holds from behind,
         /// for a pass of its own: its base colour is the part of the light that is let through, and its
@@ -73,7 +73,7 @@ bitflags::bitflags! {
 }
 
 impl Effects {
-    /// Every kind of light that is no polygon or mesh.
+    /// Every kind of light but polygons and meshes.
     pub const SHAPES: Self = Self::ELLIPSE.union(Self::SPHERE).union(Self::TUBE);
 
     /// Every lobe: without any of these surfaces are black.

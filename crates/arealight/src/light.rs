@@ -1,4 +1,4 @@
-//! Lights of every shape: what a host has one list of.
+//! Lights of every shape, in one list.
 
 use crate::light_texture::{LightTexture, TextureMap};
 use crate::{Effects, LightShape};
@@ -215,7 +215,7 @@ pub enum LightFault {
         /// Its coordinate.
         value: DVec2,
     },
-    /// The texture coordinates bend: they are no affine function of the positions.
+    /// The texture coordinates are not an affine function of the positions.
     #[error(
         "texture: uvs[{index}]: {off} off a straight mapping of the polygon; split the polygon where its \
         mapping bends"

@@ -77,7 +77,7 @@ pub struct ShadeOptions {
     /// Their format.
     pub format: RadianceFormat,
     /// How many shadow rays a pixel has, at most [`ShadeOptions::MOST_SHADOW_RAYS`]: the shade kernel picks a
-    /// light and a lobe for each. With 0 there are no shadows, and the pipeline has nothing of them.
+    /// light and a lobe for each. 0: no shadows, and no code for them.
     pub shadow_rays: u32,
     /// Whether the camera is orthographic: `ShadeFrame::camera` is the direction to it then.
     pub orthographic: bool,

@@ -142,7 +142,7 @@ pub enum TableError {
         /// What it holds.
         value: f32,
     },
-    /// A transform cannot be inverted, so it is no lobe.
+    /// A transform cannot be inverted.
     #[error("{layer}: texel ({x}, {y}) is singular or mirrored: determinant {determinant}, must be above 0")]
     Singular {
         /// The layer.

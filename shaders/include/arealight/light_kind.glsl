@@ -26,8 +26,7 @@ struct ArealightReflected {
     vec3 specular;
 };
 
-// Of a kind of light without half vectors: one whose edges are no straight ones. Its lobes are the fitted
-// ones.
+// For kinds of light without half vectors, whose edges are not straight. Its lobes are the fitted ones.
 #define AREALIGHT_WITHOUT_HALF_VECTORS(Local)                                                       \
     bool arealight_has_facet_form_factor(Local local) {                                             \
         return false;                                                                               \

@@ -4,11 +4,11 @@
 #include "arealight/options.glsl"
 #include "arealight/surface.glsl"
 
-// Thin films: KHR_materials_iridescence. A film changes what a facet reflects at each angle and colour, and
-// nothing else: it is no lobe. Two ways lead to it. A host may put it into the reflectances of its surfaces,
-// where they are made: no option, and nothing in a pass. Or surfaces have it (AREALIGHT_THIN_FILM): then
-// arealight_point does the same, and lobes over half vectors take what it reflects at the angle of the facets
-// that show a light.
+// Thin films: KHR_materials_iridescence. A film only changes what a facet reflects at each angle and colour:
+// it is not a lobe. Two ways lead to it. A host may put it into the reflectances of its surfaces, where they
+// are made: no option, and nothing in a pass. Or surfaces have it (AREALIGHT_THIN_FILM): then arealight_point
+// does the same, and lobes over half vectors take what it reflects at the angle of the facets that show a
+// light.
 //
 // Source of what a film reflects: Belcour and Barla 2017, A Practical Extension to Microfacet Theory for the
 // Modeling of Varying Iridescence.

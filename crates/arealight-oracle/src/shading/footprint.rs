@@ -27,7 +27,7 @@ pub struct LobeSpaceLight {
     pub map: TextureMap,
     /// Texels of the light's box in both directions: the content's times the box's extent.
     pub texels: DVec2,
-    /// Normals of half spaces outside of which nothing is seen, besides that of the lobe.
+    /// Normals of half spaces that limit what is seen, in addition to the lobe's.
     pub horizons: Vec<DVec3>,
     /// Whether the outline is a convex quad (`LightShape::is_convex_quad`); others are split into triangles.
     pub convex_quad: bool,

@@ -2,8 +2,8 @@
 //!
 //! The visible normals of GGX are a clamped cosine about the stretched view (Heitz 2018), so that the normals
 //! which mirror a light to the viewer are integrated in closed form once their outline is known. An edge of a
-//! light is an arc of directions; its half vectors are an arc of a conic, which is drawn by chords. What is
-//! left beside, masking and the Fresnel term, is taken at the mean of these normals.
+//! light is an arc of directions; its half vectors are an arc of a conic, which is drawn by chords. Masking
+//! and the Fresnel term are taken at the mean of these normals.
 
 use super::{faces_origin, fitted_sample};
 use crate::formula::MIN_COS_VIEW;

@@ -41,8 +41,8 @@ pub(super) struct SheenLight {
     pub left_below: f64,
 }
 
-/// The twin of `arealight_sheen_layer`. `lobe` is the form factor of the light in the cosine space of a lobe,
-/// a channel, of which a part lies above the surface.
+/// The twin of `arealight_sheen_layer`. `lobe` is a light's form factor, per channel, in a lobe's cosine
+/// space; a part of the lobe lies above the surface.
 pub(super) fn with_sheen(
     sheen: &Sheen,
     lobes: SpecularLobes,

@@ -61,8 +61,8 @@ pub fn transformed_image_integral(
 /// Halvings of each axis after which a piece is taken as it is.
 const DEPTH: u32 = 24;
 
-/// A piece is small if its diagonal is at most this share of its distance: the rule of four points then errs
-/// by 1e-4 of the piece, and few pieces are that near.
+/// A piece is small if its diagonal is at most this share of its distance: the rule of four points then has
+/// an error of 1e-4 of the piece, and few pieces are that near.
 const SMALL_RECTANGLE: f64 = 0.2;
 
 /// The same for triangles, with a rule of degree 8.

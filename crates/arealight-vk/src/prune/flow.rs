@@ -41,7 +41,7 @@ impl Callees {
         self.writes.get(&function).and_then(|writes| writes.get(parameter)).is_none_or(|writes| *writes)
     }
 
-    /// What a function returns.
+    /// A function's result.
     fn returned(&self, function: Word, arguments: &[Option<Value>]) -> Option<Value> {
         let leaf = self.leaves.get(&function)?;
         let flow = Flow::new(leaf, arguments, self);
@@ -258,7 +258,7 @@ impl Flow {
         places.try_fold(base, |value, place| value.member(self.known.value(place.id_ref_any()?)?.scalar()?))
     }
 
-    /// Takes out of the function what is not reached.
+    /// Removes unreached code from the function.
     pub fn prune(&self, function: &mut Function) {
         if self.keeps_all {
             return;

@@ -1,4 +1,4 @@
-//! What a function does with pointers.
+//! How a function uses pointers.
 
 use rspirv::dr::{Function, Instruction, Operand};
 use rspirv::spirv::{Op, StorageClass, Word};
@@ -10,7 +10,7 @@ pub(super) struct Uses {
     pub variables: HashSet<Word>,
     /// Pointers into others, which are only read through.
     chains: HashSet<Word>,
-    /// What instructions use that are no reads.
+    /// Operands of instructions other than reads.
     written: HashSet<Word>,
 }
 

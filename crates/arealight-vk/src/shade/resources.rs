@@ -1,4 +1,4 @@
-//! What a shade pass reads and writes: the host's images and buffers.
+//! The host's images and buffers that a shade pass reads and writes.
 
 use crate::error::Error;
 use crate::pass::Resource;
@@ -26,7 +26,7 @@ pub(super) fn needed(lights: LightSummary) -> Vec<&'static str> {
 }
 
 /// The host's resources of one run. Images are read and written by texel; the light textures have a sampler
-/// that is the pass's own. What may be missing is not read in some frames: a frame that reads it is refused.
+/// that is the pass's own. Optional resources may be missing; a frame that reads a missing one is refused.
 ///
 /// [`arealight::kernels::SHADE`] says for each what it holds and in which format at least.
 /// By default there is none; the pass refuses a set without the seven that are no `Option`.

@@ -13,8 +13,8 @@
 /// The albedo's dip is a ratio of polynomials in `x = cos_view / alpha`. Rough lobes have, besides, a steep
 /// start at the horizon, 0.03 wide at every alpha. The albedo of Schlick's weight has the same dip; as the
 /// view sinks below alpha it stops rising, because the half vectors stop where the lobe's width keeps them;
-/// and it follows the fifth power itself, whose chord between nodes counts too. The coefficients are those of
-/// the least largest error between nodes of 64 x 64, whose last rows are balanced besides: 1e-3 and 1.6e-3 to
+/// and it follows the fifth power itself, whose chord between nodes counts too. The coefficients minimise the
+/// largest error between nodes of 64 x 64, whose last rows are balanced besides: 1e-3 and 1.6e-3 to
 /// 89.9 degrees, where plain interpolation errs by 0.11. Tables are stored with them: they must not change.
 pub fn ggx_grazing_dip(roughness: f64, cos_view: f64) -> [f64; 2] {
     let alpha = roughness * roughness;

@@ -9,8 +9,8 @@
 // Microsurfaces are stretches of one another, so that the visible normals of an anisotropic lobe at a view
 // are those of an isotropic one at a stretched view (Heitz 2018, Sampling the GGX Distribution of Visible
 // Normals). The matrix of the isotropic lobe, taken there, is brought over by the linear map that takes the
-// directions which nine of these normals reflect in the one to those of the other, by least squares. What it
-// errs: docs/materials.md.
+// directions which nine of these normals reflect in the one to those of the other, by least squares. Error:
+// docs/materials.md.
 
 // How much of the larger roughness the smaller one has at least: an aspect of alphas of 400. Narrower lobes
 // are crescents, which no matrix is near to, and the matrices' condition is beyond float32.
