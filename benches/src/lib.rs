@@ -17,7 +17,7 @@
 //! | [`shapes`] | the kernel that evaluates disks, spheres and tubes |
 //! | [`shape_cost`] | the time of each way to a disk, a sphere or a tube, and its error |
 //! | [`shape_stability`] | families of hard shapes on a device, judged |
-//! | [`materials`] | what each material of a scene errs beside the reference |
+//! | [`materials`] | the error of each material of a scene against the reference |
 //! | [`shadows`] | how far a picture with shadows is from the reference |
 //! | [`shadow_levels`] | the error and the time of every level of shadows, beside area sampling |
 //! | [`shadow_motion`] | the error of shadows in films, frame by frame |

@@ -1,4 +1,4 @@
-//! What each material of a scene errs: its picture beside the Monte Carlo reference, by material.
+//! The error of each material of a scene: its picture against the Monte Carlo reference, by material.
 
 use crate::shadow_levels::pictures::Pictures;
 use arealight::plan::ShadeOptions;

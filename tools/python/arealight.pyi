@@ -1,7 +1,8 @@
 """Area lights by linearly transformed cosines (Heitz et al. 2016): the truth, the fitter and the tables of Arealight.
 
-Positions are in any unit of length, directions of any length but zero, radiance in W/(m^2 sr), colours linear Rec. 709. Roughness is
-perceptual, alpha = roughness^2. What is wrong with an argument is a ValueError that names it.
+Positions are in any unit of length, directions of any length but zero, radiance in W/(m^2 sr), colours linear
+Rec. 709. Roughness is perceptual, alpha = roughness^2. What is wrong with an argument is a ValueError that
+names it.
 """
 
 from os import PathLike
@@ -30,7 +31,7 @@ class Light:
         """A cylinder or capsule; ends are 'open', 'flat' or 'round'."""
 
 class Material:
-    """A metallic-roughness material, as glTF has it: Lambert's lobe and GGX, added. All numbers are from 0 to 1."""
+    """A metallic-roughness material, of Lambert's lobe and GGX, added. All numbers are from 0 to 1."""
 
     def __init__(
         self,
@@ -104,7 +105,8 @@ def fit(
 ) -> Table:
     """Fit a table to a BRDF.
 
-    brdf(alpha, view, light) is f cos theta_light, without a Fresnel term: finite and not negative. view and light are unit vectors above the surface, whose normal is
-    along z; the view lies in the xz plane, 1e-4 above the surface or more. It is asked some 6,000 times a node, in this thread's place by another. progress(done, steps) is
-    told of every step. What either raises ends the fit, as Ctrl-C does.
+    brdf(alpha, view, light) is f cos theta_light, without a Fresnel term: finite and not negative. view and
+    light are unit vectors above the surface, whose normal is along z; the view lies in the xz plane, 1e-4
+    above the surface or more. Called about 6,000 times per node, from another thread. progress(done, steps)
+    is told of every step. What either raises ends the fit, as Ctrl-C does.
     """

@@ -24,7 +24,7 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "arealight", version, max_term_width = 100, after_help = AFTER_HELP, arg_required_else_help = true)]
 struct CommandLine {
-    /// Say nothing of progress.
+    /// Hide progress.
     #[arg(short, long, global = true)]
     quiet: bool,
     /// Say which device and table are used, and print every table of a report.

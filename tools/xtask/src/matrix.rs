@@ -23,7 +23,7 @@ pub struct Arguments {
     /// A folder that `arealight export` wrote; without it, the library is exported for the purpose.
     #[arg(long, value_name = "DIR")]
     library: Option<PathBuf>,
-    /// Say what is compiled.
+    /// Print what is compiled.
     #[arg(long)]
     verbose: bool,
 }

@@ -26,7 +26,7 @@ use std::process::ExitCode;
 ///
 /// Errors are against the integral of the true BRDF in float64, at points about four lights, and split into
 /// those of the fit, of the table and of the integral. Times are of frames of the same points, every method
-/// in turn, beside Monte Carlo on the same device and yardsticks: the form factors that engines ship, by
+/// in turn, and of Monte Carlo on the same device and yardsticks: the form factors that engines ship, by
 /// school, on the same work with the same reads.
 #[derive(clap::Args)]
 #[command(args_conflicts_with_subcommands = true)]

@@ -25,7 +25,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Answer a file of shading points, and measure answers against known radiance.
+/// Shade a file of shading points, and compare answers with known radiance.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The shading points, `-` for standard input (images of lights are in the working folder then); the

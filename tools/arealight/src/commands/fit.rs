@@ -36,7 +36,7 @@ pub struct Arguments {
     /// Fit a formula to the table as well, and print its coefficients as Rust and GLSL.
     #[arg(long)]
     formula: bool,
-    /// Compare the table with the true BRDF on 3000 random quads, beside the published table.
+    /// Compare the table, and the published one, with the true BRDF on 3000 random quads.
     #[arg(long)]
     report: bool,
     /// Print the summary as JSON.

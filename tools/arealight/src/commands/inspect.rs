@@ -25,13 +25,13 @@ mod panel;
 mod pyramid;
 mod pyramid_picture;
 
-/// Say what a light table holds, and draw its lobes beside those of the BRDF, its errors, or its entries; or
-/// what a light's texture becomes.
+/// Describe a light table, and draw its lobes and the BRDF's, its errors, or its entries; or what a light's
+/// texture becomes.
 #[derive(clap::Args)]
 pub struct Arguments {
     /// The table; the one that is built in if none is given.
     table: Option<PathBuf>,
-    /// Where a picture of the fitted lobes beside the true ones goes, or that of --errors, --entries or
+    /// The picture: fitted and true lobes side by side, or that of --errors, --entries or
     /// --pyramid.
     #[arg(short, long, value_name = "FILE.png")]
     output: Option<PathBuf>,

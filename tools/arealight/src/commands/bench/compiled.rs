@@ -45,7 +45,7 @@ pub struct Arguments {
     /// Write the tables as Markdown: in a file that has tables of this command, in their place.
     #[arg(long, value_name = "FILE", conflicts_with = "only")]
     markdown: Option<PathBuf>,
-    /// Hold the rows against a file of --update; benches/data/compiled.json by default.
+    /// Compare the rows with a file of --update; benches/data/compiled.json by default.
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = FILE, conflicts_with = "update")]
     check: Option<PathBuf>,
     /// Write the rows to such a file; its other families stay.

@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Roughness of the floor, in [0.1, 1].
     #[arg(long, value_name = "R", default_value_t = Options::default().roughness, value_parser = parse_roughness)]
     roughness: f32,
-    /// Runs of each frame, of which the fastest counts.
+    /// Runs of each frame; the fastest counts.
     #[arg(long, value_name = "N", default_value_t = Options::default().rounds, value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
     /// Write a chart of time and error as SVG.

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 /// Draw the default level, what engines ship with the published table, and the truth side by side.
 ///
 /// `.png`: a strip of the three pictures with maps of the differences from the truth. `.gif`: a film in which
-/// the scene's lights swing, ours beside the truth. Polygon lights swing about the vertical axis through the
+/// the scene's lights swing, ours next to the truth. Polygon lights swing about the vertical axis through the
 /// scene's middle.
 ///
 /// The yardstick is clip by cases for scenes of quads, the clipped sphere for others. Shadows are left out,

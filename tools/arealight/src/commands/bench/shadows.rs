@@ -31,8 +31,8 @@ pub struct Arguments {
     /// --motion]
     #[arg(long, value_parser = clap::value_parser!(u32).range(16..=2048))]
     size: Option<u32>,
-    /// Samples a pixel of the reference, of which there are two, and less where there are many lights; of
-    /// films, frames of four rays [default: 256; 64 with --motion]
+    /// Samples a pixel of each of two references, fewer with many lights; of films, frames of four rays
+    /// [default: 256; 64 with --motion]
     #[arg(long, value_parser = clap::value_parser!(u32).range(4..=65_536))]
     samples: Option<u32>,
     /// Rounds in which time is taken.

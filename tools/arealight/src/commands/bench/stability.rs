@@ -11,7 +11,7 @@ use arealight_cases::hard::family::{FAMILIES, Family};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Hold every level of the form factor to its promises, on families of hard cases.
+/// Check every level of the form factor against its promises, on families of hard cases.
 ///
 /// Each family's polygons go through every level on the device, and through yardsticks, which are what
 /// engines ship: `sphere-horizon`, `clipless`, `clip-by-cases`, and `clip-and-acos`. The results' bits are

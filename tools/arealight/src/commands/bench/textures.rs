@@ -6,7 +6,7 @@ use crate::progress;
 use arealight_benches::footprints::{self, Options};
 use std::process::ExitCode;
 
-/// Hold every lookup of light textures to its error.
+/// Check the error of every lookup of light textures.
 ///
 /// Rectangles that show pictures are seen by surfaces of every roughness, on the device and through its
 /// pyramid, by each level and by the filter of Heitz et al. 2016. Judged are the answers against the integral

@@ -92,7 +92,7 @@ impl TargetArguments {
     }
 }
 
-/// Refuses sets of which a part would do nothing.
+/// Refuses sets with a part that would do nothing.
 fn check(effects: Effects) -> Result<(), Failure> {
     let fault = |message: String| Failure::Argument { argument: "--effects", message };
     if !effects.intersects(Effects::DIFFUSE | Effects::GLOSSY) {
