@@ -61,7 +61,7 @@ fn data_that_are_only_in_an_extension_are_refused_by_its_name() {
 #[test]
 fn textures_with_another_image_are_shown_by_that() {
     let mut writer = panel_with(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }));
-    writer.tiles("png", &image::RgbImage::from_pixel(2, 3, image::Rgb([9, 80, 200])));
+    writer.picture("png", &image::RgbImage::from_pixel(2, 3, image::Rgb([9, 80, 200])));
     writer.use_extension("KHR_texture_basisu");
     writer.root["textures"][0]["extensions"] = json!({ "KHR_texture_basisu": { "source": 7 } });
     let scene = load(writer);

@@ -14,52 +14,10 @@ mod placed_meshes;
 mod punctual_lights;
 mod rays;
 mod shape_lights;
+mod shapes;
 mod tangents;
 mod textured_lights;
 mod vertex_colors;
-
-// The program that writes the project's scenes, whose writer and shapes serve the tests too
-#[path = "../../examples/make_scenes/clock.rs"]
-mod clock;
-#[path = "../../examples/make_scenes/coats.rs"]
-mod coats;
-#[path = "../../examples/make_scenes/demo.rs"]
-mod demo;
-#[path = "../../examples/make_scenes/files.rs"]
-mod files;
-#[path = "../../examples/make_scenes/hundred_lamps.rs"]
-mod hundred_lamps;
-#[path = "../../examples/make_scenes/interior.rs"]
-mod interior;
-#[path = "../../examples/make_scenes/lamps.rs"]
-mod lamps;
-#[path = "../../examples/make_scenes/material_balls.rs"]
-mod material_balls;
-#[path = "../../examples/make_scenes/neon.rs"]
-mod neon;
-#[path = "../../examples/make_scenes/paper.rs"]
-mod paper;
-#[path = "../../examples/make_scenes/product.rs"]
-mod product;
-#[path = "../../examples/make_scenes/room.rs"]
-mod room;
-#[path = "../../examples/make_scenes/screen.rs"]
-mod screen;
-#[path = "../../examples/make_scenes/shadows.rs"]
-mod shadows;
-#[path = "../../examples/make_scenes/shapes.rs"]
-mod shapes;
-#[path = "../../examples/make_scenes/sheen.rs"]
-mod sheen;
-#[path = "../../examples/make_scenes/shop.rs"]
-mod shop;
-#[path = "../../examples/make_scenes/studio.rs"]
-mod studio;
-#[path = "../../examples/make_scenes/sweep.rs"]
-mod sweep;
-#[path = "../../examples/make_scenes/test_card.rs"]
-mod test_card;
-#[path = "../../examples/make_scenes/writer.rs"]
 mod writer;
 
 use arealight_scene::Scene;

@@ -143,7 +143,7 @@ fn disk_showing(uv: impl Fn(f32, f32) -> [f32; 2], node: Value) -> Scene {
     shape.uvs = shape.positions.iter().map(|[x, _, z]| uv(*x, *z)).collect();
     let mut writer = Writer::new();
     let picture = RgbImage::from_fn(16, 8, |x, y| Rgb([x as u8 * 9, y as u8 * 20, 200]));
-    let texture = crate::screen::texture(&mut writer, "picture", &picture);
+    let texture = writer.picture("picture", &picture);
     let material = writer.emitter_of_image("glow", [3.0, 2.0, 1.0], texture, false);
     writer.object("disk", &shape, material, node);
     load(writer)
@@ -194,7 +194,7 @@ fn what_a_disk_cannot_show_its_mesh_does() {
     // Spheres have one colour
     let said = json!({ "arealight": { "shape": "sphere", "radius": 1 } });
     let mut writer = Writer::new();
-    let texture = crate::screen::texture(&mut writer, "picture", &RgbImage::new(2, 2));
+    let texture = writer.picture("picture", &RgbImage::new(2, 2));
     let material = writer.emitter_of_image("glow", [3.0, 2.0, 1.0], texture, false);
     writer.object("ball", &sphere(1.0, 8, 4), material, json!({ "extras": said }));
     let scene = load(writer);

@@ -20,7 +20,7 @@ pub struct Writer {
 impl Writer {
     pub fn new() -> Self {
         let root = json!({
-            "asset": { "version": "2.0", "generator": "arealight make_scenes" },
+            "asset": { "version": "2.0", "generator": "arealight" },
             "scene": 0, "scenes": [{ "nodes": [] }], "nodes": [], "meshes": [], "materials": [],
             "accessors": [], "bufferViews": [], "buffers": [],
         });
@@ -157,15 +157,6 @@ impl Writer {
         )
     }
 
-    /// [`Writer::surface`] of Lambert's lobe alone.
-    pub fn matt(&mut self, name: &str, color: [f32; 3]) -> usize {
-        self.use_extension("KHR_materials_specular");
-        let material = self.surface(name, color, 0.0, 1.0);
-        self.root["materials"][material]["extensions"] =
-            json!({ "KHR_materials_specular": { "specularFactor": 0 } });
-        material
-    }
-
     /// A camera at `eye` that looks at `target`.
     pub fn camera(&mut self, name: &str, eye: [f64; 3], target: [f64; 3], yfov: f64, aspect: f64) {
         let camera = json!({ "type": "perspective",
@@ -184,11 +175,14 @@ impl Writer {
         self.push("textures", json!({ "source": source }))
     }
 
-    /// A texture of an image, which repeats.
-    pub fn tiles(&mut self, name: &str, image: &image::RgbImage) -> usize {
+    /// A texture of an image, which ends at its edges.
+    pub fn picture(&mut self, name: &str, image: &image::RgbImage) -> usize {
         let mut png = std::io::Cursor::new(Vec::new());
         image.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
-        self.texture(name, png.get_ref())
+        let texture = self.texture(name, png.get_ref());
+        let sampler = self.push("samplers", json!({ "wrapS": 33071, "wrapT": 33071 }));
+        self.root["textures"][texture]["sampler"] = json!(sampler);
+        texture
     }
 
     /// The finished file.
@@ -225,7 +219,5 @@ pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Value {
     let back = (eye - target).normalize_or(glam::DVec3::Z);
     let right = glam::DVec3::Y.cross(back).normalize_or(glam::DVec3::X);
     let rotation = glam::DQuat::from_mat3(&glam::DMat3::from_cols(right, back.cross(right), back));
-    // Rounded, so that every machine writes the same file
-    let round = |x: f64| (x * 1e6).round() / 1e6;
-    json!({ "translation": eye.to_array(), "rotation": rotation.to_array().map(round) })
+    json!({ "translation": eye.to_array(), "rotation": rotation.to_array() })
 }

@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 
 impl Shape {
     fn vertex(&mut self, position: DVec3, normal: DVec3, uv: DVec2) {
-        // Rounded to what is needed, so that every machine writes the same file
         let round = |x: f64| ((x * 65536.0).round() / 65536.0) as f32;
         self.positions.push(position.to_array().map(round));
         self.normals.push(normal.normalize_or(DVec3::Y).to_array().map(round));
@@ -27,29 +26,6 @@ impl Shape {
     /// The shape without texture coordinates, for materials without textures.
     pub fn plain(mut self) -> Self {
         self.uvs.clear();
-        self
-    }
-
-    /// The shape, in the plane z = 0, with an image that fills its box, upright.
-    pub fn with_image(self) -> Self {
-        self.with_image_along(1, 1.0)
-    }
-
-    /// The shape, in the plane y = 0, with an image that fills its box; seen from above, its top is at
-    /// negative z.
-    pub fn with_image_from_above(self) -> Self {
-        self.with_image_along(2, -1.0)
-    }
-
-    /// The rows run along x; the top is where `axis` times `sign` is largest.
-    fn with_image_along(mut self, axis: usize, sign: f32) -> Self {
-        let range = |axis: usize, sign: f32| {
-            let along = || self.positions.iter().map(|p| sign * p[axis]);
-            (along().fold(f32::MAX, f32::min), along().fold(f32::MIN, f32::max))
-        };
-        let ((left, right), (bottom, top)) = (range(0, 1.0), range(axis, sign));
-        let uv = |p: &[f32; 3]| [(p[0] - left) / (right - left), (top - sign * p[axis]) / (top - bottom)];
-        self.uvs = self.positions.iter().map(uv).collect();
         self
     }
 }
@@ -152,55 +128,6 @@ pub fn capsule(radius: f64, height: f64, segments: u32, rings: u32) -> Shape {
     lathe(&half(-1.0).chain(half(1.0)).collect::<Vec<_>>(), segments)
 }
 
-/// A round plate of a radius from y = 0 to `height`, its upper rim rounded.
-pub fn plate(radius: f64, height: f64, rim: f64, segments: u32) -> Shape {
-    let mut profile = vec![(DVec2::new(radius, 0.0), DVec2::X)];
-    for i in 0..=6 {
-        let (sin, cos) = (f64::from(i) / 6.0 * PI * 0.5).sin_cos();
-        let normal = DVec2::new(cos, sin);
-        profile.push((DVec2::new(radius - rim, height - rim) + normal * rim, normal));
-    }
-    profile.push((DVec2::new(0.0, height), DVec2::Y));
-    lathe(&profile, segments)
-}
-
-/// A tube of a radius around a closed curve.
-fn tube(curve: impl Fn(f64) -> DVec3, radius: f64, segments: u32, sides: u32) -> Shape {
-    let mut shape = Shape::default();
-    let step = 1e-4;
-    for i in 0..=segments {
-        let t = f64::from(i) / f64::from(segments) * TAU;
-        let [before, here, after] = [t - step, t, t + step].map(&curve);
-        // The frame of the curve's own bend does not twist where the ends meet
-        let tangent = (after - before).normalize_or(DVec3::X);
-        let bend = after + before - here * 2.0;
-        let normal = (bend - tangent * bend.dot(tangent)).normalize_or(tangent.any_orthonormal_vector());
-        let binormal = tangent.cross(normal);
-        for j in 0..=sides {
-            let turn = f64::from(j) / f64::from(sides);
-            let (sin, cos) = (turn * TAU).sin_cos();
-            let out = normal * cos + binormal * sin;
-            shape.vertex(here + out * radius, out, DVec2::new(turn, f64::from(i) / f64::from(segments)));
-        }
-    }
-    shape.grid(0, sides + 1, segments + 1);
-    shape
-}
-
-/// A torus around +Y.
-pub fn torus(radius: f64, thickness: f64, segments: u32, sides: u32) -> Shape {
-    tube(|t| DVec3::new(t.cos(), 0.0, t.sin()) * radius, thickness, segments, sides)
-}
-
-/// A (p, q) torus knot around +Z.
-pub fn torus_knot(p: f64, q: f64, radius: f64, thickness: f64, segments: u32, sides: u32) -> Shape {
-    let curve = |t: f64| {
-        let out = 2.0 + (q * t).cos();
-        DVec3::new(out * (p * t).cos(), out * (p * t).sin(), (q * t).sin()) * (radius / 3.0)
-    };
-    tube(curve, thickness, segments, sides)
-}
-
 /// A box around the origin with sharp edges.
 pub fn cuboid(size: [f64; 3]) -> Shape {
     let mut shape = Shape::default();
@@ -244,39 +171,5 @@ pub fn rounded_box(size: [f64; 3], rounding: f64, steps: u32) -> Shape {
         }
         shape.grid(first, columns, columns);
     }
-    shape
-}
-
-/// A surface of revolution about +Y through (radius, height) points from the bottom to the top outside,
-/// smooth but where a point is there twice.
-pub fn turned(outline: &[[f64; 2]], segments: u32) -> Shape {
-    let point = |i: usize| DVec2::from(outline[i]);
-    let along = |i: usize| {
-        let before = point(i) - point(i.saturating_sub(1));
-        let after = point((i + 1).min(outline.len() - 1)) - point(i);
-        (before.normalize_or_zero() + after.normalize_or_zero()).normalize_or(DVec2::Y)
-    };
-    let profile: Vec<_> = (0..outline.len()).map(|i| (point(i), -along(i).perp())).collect();
-    lathe(&profile, segments)
-}
-
-/// A floor of the width and depth that bends up at its back, with a radius, into a wall of the height: no
-/// edge behind what stands on it.
-pub fn backdrop([width, depth, height]: [f64; 3], bend: f64) -> Shape {
-    const STEPS: u32 = 16;
-    let mut shape = Shape::default();
-    let back = -0.5 * depth;
-    let mut row = |y: f64, z: f64, normal: DVec3| {
-        for x in [-0.5, 0.5] {
-            shape.vertex(DVec3::new(x * width, y, z), normal, DVec2::new(x + 0.5, y));
-        }
-    };
-    row(0.0, 0.5 * depth, DVec3::Y);
-    for i in 0..=STEPS {
-        let (sin, cos) = (f64::from(i) / f64::from(STEPS) * PI * 0.5).sin_cos();
-        row(bend * (1.0 - cos), back + bend * (1.0 - sin), DVec3::new(0.0, cos, sin));
-    }
-    row(height, back, DVec3::Z);
-    shape.grid(0, 2, STEPS + 3);
     shape
 }
