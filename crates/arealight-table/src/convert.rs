@@ -12,7 +12,8 @@ use crate::Precision;
 /// the others lie on chords between the old ones. A table that is fitted with the number of nodes asked for
 /// is better, at 16 nodes by 1 % of its error.
 ///
-/// # Errors [`TableError::Size`] if no table has `size`; [`TableError::Singular`] if lobes of opposite tilt
+/// # Errors
+/// [`TableError::Size`] if no table has `size`; [`TableError::Singular`] if lobes of opposite tilt
 /// cancel.
 pub fn resampled(table: &LightTable, size: u32) -> Result<LightTable, TableError> {
     if table.size() == size {

@@ -133,7 +133,8 @@ impl ComputePass {
     /// As [`ComputePass::new`]. The module is valid, and has the kernel's bindings, push constants and entry
     /// point.
     ///
-    /// # Errors As [`ComputePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// # Errors
+    /// As [`ComputePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
     /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,

@@ -158,7 +158,8 @@ impl ShadePass {
     /// # Safety
     /// As [`ShadePass::new`]. The module is valid SPIR-V of this version's `shade.comp`.
     ///
-    /// # Errors As [`ShadePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// # Errors
+    /// As [`ShadePass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
     /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,

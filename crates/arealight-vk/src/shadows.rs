@@ -130,7 +130,8 @@ impl ShadowPass {
     /// As [`ShadowPass::new`]. The module is valid SPIR-V of this version's kernel; `host_set` is a layout of
     /// the device, valid as long as the pass.
     ///
-    /// # Errors As [`ShadowPass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
+    /// # Errors
+    /// As [`ShadowPass::new`]; [`Error::InvalidArgument`] if it is not a module with the kernel's
     /// entry point and bindings.
     pub unsafe fn with_module(
         context: &Context,
