@@ -33,7 +33,8 @@ pub struct Arguments {
     #[arg(long, value_name = "EV", default_value = "0", allow_negative_numbers = true)]
     exposure: Exposure,
     /// Samples a pixel that each frame adds to the truth, where it is shown
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=1024))]
+    #[arg(long, value_name = "N", default_value_t = 2,
+        value_parser = clap::value_parser!(u32).range(1..=1024))]
     samples: u32,
     /// What to do, a line for each event: seconds, and `key NAME`, `press X Y`, `move X Y`, `release` or
     /// `wheel STEPS`; the viewer ends with it
@@ -44,8 +45,12 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", requires = "script")]
     record: Option<PathBuf>,
     /// Frames a second of a recording
-    #[arg(long, value_name = "FPS", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=50))]
+    #[arg(long, value_name = "FPS", default_value_t = 12,
+        value_parser = clap::value_parser!(u32).range(1..=50))]
     rate: u32,
+    /// Show the device's times in a recording too, which then differs from run to run
+    #[arg(long, requires = "record")]
+    times: bool,
     /// Print what each frame of a recording shows as JSON: the quality level, times, and the error as far as
     /// it is known
     #[arg(long, requires = "record")]
@@ -123,7 +128,7 @@ fn record(
         state.save = false; // every frame is
         let shown = viewer.draw(&state, arguments.samples).map_err(|error| gpu::failure(error, scene))?;
         said.push(summary(&state, &shown, now));
-        let frame = paint(&state, &shown);
+        let frame = paint(&state, &if arguments.times { shown } else { shown.without_times() });
         frame.save_png(&folder.join(format!("frame-{index:04}.png")))?;
         frames.push(frame);
         bar.inc(1);

@@ -40,6 +40,11 @@ impl Script {
         self.events.last().map_or(0.0, |(seconds, _)| *seconds)
     }
 
+    /// The time of the first event after `seconds`; infinite if there is none.
+    pub fn next_after(&self, seconds: f64) -> f64 {
+        self.events.iter().map(|(time, _)| *time).find(|time| *time > seconds).unwrap_or(f64::INFINITY)
+    }
+
     /// What happens after `from` and not after `to`, in seconds; and at the end where the pointer is on its
     /// way to the next place.
     pub fn between(&self, from: f64, to: f64) -> Vec<Event> {

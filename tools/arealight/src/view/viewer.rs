@@ -130,6 +130,15 @@ pub struct Shown<'v> {
     pub costs: Vec<Cost>,
 }
 
+impl Shown<'_> {
+    /// The same, with no time known.
+    #[must_use]
+    pub fn without_times(mut self) -> Self {
+        self.costs.iter_mut().for_each(|cost| cost.milliseconds = None);
+        Self { times: [None; 2], ..self }
+    }
+}
+
 /// Runs whose fastest is a cost.
 const COST_RUNS: usize = 3;
 

@@ -46,7 +46,7 @@ pub fn show(
         context,
         window: None,
         pointer: [0.5; 2],
-        start: Instant::now(),
+        last: Instant::now(),
         before: -1.0,
         frames: 0,
         failure: None,
@@ -83,12 +83,15 @@ struct Desk<'a> {
     window: Option<(Rc<Window>, Pixels)>,
     /// Where the pointer is, in parts of the picture.
     pointer: [f64; 2],
-    start: Instant,
-    /// The time of the last frame, in seconds of the script.
+    /// When the last frame began, also in seconds of the script.
+    last: Instant,
     before: f64,
     frames: u32,
     failure: Option<Failure>,
 }
+
+/// The most seconds of a script from frame to frame.
+const MOST_STEP: f64 = 0.25;
 
 impl Desk<'_> {
     fn open(&mut self, events: &ActiveEventLoop) -> Result<(), Failure> {
@@ -98,7 +101,7 @@ impl Desk<'_> {
         let surface = Surface::new(&self.context, Rc::clone(&window)).map_err(|error| no_window(&error))?;
         self.size = window.inner_size().into();
         self.window = Some((window, surface));
-        self.start = Instant::now();
+        self.last = Instant::now();
         Ok(())
     }
 
@@ -116,7 +119,10 @@ impl Desk<'_> {
         let [Some(width), Some(height)] = self.size.map(NonZeroU32::new) else { return Ok(()) };
         self.viewer.resize(self.size).map_err(|error| gpu::failure(error, self.scene))?;
         if let Some(script) = self.script {
-            let now = self.start.elapsed().as_secs_f64();
+            // The script waits for slow frames, so that what each event does is shown
+            let step = self.last.elapsed().as_secs_f64().min(MOST_STEP);
+            let now = (self.before.max(0.0) + step).min(script.next_after(self.before));
+            self.last = Instant::now();
             for event in script.between(self.before, now) {
                 self.apply(event);
             }

@@ -1,6 +1,6 @@
-//! The viewer in a window, on a screen of its own: a script of a minute, under the validation layer.
+//! The viewer in a window, on a screen of its own, under the validation layer.
 
-#[path = "../../../examples/rust/tests/screen/mod.rs"]
+#[path = "../../../../examples/rust/tests/screen/mod.rs"]
 mod screen;
 
 use screen::{Screen, under_validation};
@@ -10,35 +10,35 @@ use std::time::{Duration, Instant};
 
 const SIZE: [u32; 2] = [320, 200];
 
-/// Every mode for seconds each, lamps and views that are dragged, until a minute is over.
+/// Every mode for a second each, lamps and views that are dragged.
 const SCRIPT: &str = "
-1  key h
-3  key h
-4  key 2
-6  key 4
-8  key 1
-10 key w
-14 press 0.5 0.5
-16 move 0.2 0.5
-16 release
-18 key w
-22 key w
-24 key e
-30 key e
-32 press 0.5 0.95
-38 move 0.9 0.7
-38 release
-40 key c
-44 key c
-46 key s
-48 key ]
-50 key r
-54 wheel 3
-60 key r
+0.25 key h
+0.75 key h
+1    key 2
+1.5  key 4
+2    key 1
+2.5  key w
+3.5  press 0.5 0.5
+4    move 0.2 0.5
+4    release
+4.5  key w
+5.5  key w
+6    key e
+7.5  key e
+8    press 0.5 0.95
+9.5  move 0.9 0.7
+9.5  release
+10   key c
+11   key c
+11.5 key s
+12   key ]
+12.5 key r
+13.5 wheel 3
+15   key r
 ";
 
 #[test]
-fn a_minute_in_a_window_is_silent_and_shows_each_mode() {
+fn a_window_is_silent_and_shows_each_mode() {
     if arealight_engine::host::testing::device_with(arealight_engine::host::Validation::Off).is_none() {
         return;
     }
@@ -57,12 +57,12 @@ fn a_minute_in_a_window_is_silent_and_shows_each_mode() {
         if !seen.contains(&now) {
             seen.push(now);
         }
-        std::thread::sleep(Duration::from_millis(200));
+        std::thread::sleep(Duration::from_millis(50));
     }
     let output = running.wait_with_output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
     assert!(output.status.success(), "{err}");
-    assert!(began.elapsed() >= Duration::from_secs(60));
+    assert!(began.elapsed() >= Duration::from_secs(15));
     // Nothing else: the layer is silent
     let frames = out.strip_suffix(" frames were shown\n").and_then(|count| count.parse::<u32>().ok());
     assert!(frames.is_some_and(|frames| frames > 20), "{out}{err}");

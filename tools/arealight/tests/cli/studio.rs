@@ -1,8 +1,6 @@
 //! `--lights studio`: models that bring no light.
 
-mod common;
-
-use common::run;
+use crate::common::run;
 use std::path::{Path, PathBuf};
 
 /// Whether there is a device; without one, the test is skipped unless one is required.

@@ -1,9 +1,7 @@
 //! `arealight export` as a user meets it.
 
-mod common;
-
+use crate::common::run;
 use arealight::gpu::{GpuLight, GpuShape, ShadeConstants};
-use common::run;
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 use std::mem::offset_of;

@@ -1,8 +1,6 @@
 //! The command line as a user meets it: exit codes, messages, files.
 
-mod common;
-
-use common::run;
+use crate::common::run;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -2,8 +2,6 @@
 //! picture of next to no pixels. The driver is the one that the loader finds, so that a second one is held to
 //! the same by `VK_ICD_FILENAMES`.
 
-#![cfg(target_os = "linux")]
-
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;

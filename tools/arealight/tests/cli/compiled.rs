@@ -1,7 +1,5 @@
 //! `arealight bench compiled`, and null hardware, which computes nothing.
 
-mod common;
-
 use arealight_engine::host::null_hardware::set_environment;
 use arealight_engine::host::testing::{radv_or_skip, ran, skip};
 use std::path::{Path, PathBuf};
@@ -21,7 +19,7 @@ fn said(output: &Output) -> String {
 /// Compiles for a family with these arguments.
 fn compile(arguments: &[&str]) -> Output {
     let folder = tempfile::tempdir().unwrap();
-    common::run(folder.path(), &[&["bench", "compiled"], arguments].concat())
+    crate::common::run(folder.path(), &[&["bench", "compiled"], arguments].concat())
 }
 
 /// Compiles the rows that contain `only`, and holds them against a file.
@@ -45,8 +43,8 @@ fn no_row_takes_more_than_the_file_says() {
     if radv_or_skip().is_none() {
         return;
     }
-    // AREALIGHT_COMPILED=all: every family of the file, which takes as long again
-    let all = std::env::var("AREALIGHT_COMPILED").is_ok_and(|value| value == "all");
+    // AREALIGHT_LONG=1: every family of the file, which takes as long again
+    let all = std::env::var("AREALIGHT_LONG").is_ok_and(|value| value == "1");
     let families = if all { "navi21,vega10" } else { "navi21" };
     let output = compile(&["--family", families, "--check", &checked_in().display().to_string()]);
     if !is_compared(&output) {

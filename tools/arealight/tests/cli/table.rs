@@ -1,9 +1,7 @@
 //! `arealight table` as a user meets it.
 
-mod common;
-
+use crate::common::run;
 use arealight_table::{Format, Precision, TableFile, resampled, rounded};
-use common::run;
 use std::path::Path;
 
 /// Runs `table convert` with what must succeed, and returns what it prints.

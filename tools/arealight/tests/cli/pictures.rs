@@ -1,8 +1,6 @@
 //! `arealight bench pictures`: one of each kind, of a few pixels.
 
-mod common;
-
-use common::run;
+use crate::common::run;
 use std::path::Path;
 
 fn scene(name: &str) -> String {

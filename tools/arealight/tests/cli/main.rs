@@ -1,0 +1,16 @@
+//! The program as a user runs it, in one binary, since each links the engine.
+
+mod command_line;
+mod common;
+#[cfg(target_os = "linux")]
+mod compile_budget;
+mod compiled;
+mod eval;
+mod export;
+mod outputs;
+mod pictures;
+mod studio;
+mod table;
+mod view_record;
+#[cfg(feature = "view")]
+mod view_window;

@@ -1,0 +1,6 @@
+//! The oracle and the hard cases against references.
+
+mod anisotropy;
+mod ellipse;
+mod materials;
+mod reference;
