@@ -13,17 +13,19 @@
 //! cargo run -p xtask -- packages                 # is what would be published whole?
 //! cargo run -p xtask -- dependencies             # does the product stand without the laboratory?
 //! cargo run -p xtask -- types                    # has the crate arealight few public types?
+//! cargo run -p xtask -- circles                  # do modules need each other?
+//! cargo run -p xtask -- size                     # how much there is, and is a line too wide?
 //! ```
 
 #![forbid(unsafe_code)]
 
 mod cargo;
+mod circles;
 mod compile;
 mod dependencies;
 mod header;
 mod includes;
 mod library;
-mod licences;
 mod links;
 mod lint;
 mod manifest;
@@ -32,6 +34,7 @@ mod packages;
 mod parallel;
 mod quotes;
 mod shaders;
+mod size;
 mod types;
 
 use clap::{Parser, Subcommand};
@@ -63,8 +66,10 @@ enum Task {
     /// Check that no crate under crates/ depends on tools, tests, benches or examples, and none for engines
     /// on those for fitting.
     Dependencies,
-    /// Check that what others made comes from the registry, under licences that allow what ours do
-    Licences,
+    /// Check that no modules of the library, the recorder and the scenes need each other.
+    Circles,
+    /// Count lines of code and words of documents, and check that no line is too wide.
+    Size,
     /// Check that the crate arealight has no more public types than a programmer cares to know.
     Types,
 }
@@ -110,7 +115,8 @@ fn main() -> ExitCode {
         Task::Links => links::run(&root),
         Task::Packages => packages::run(&root),
         Task::Dependencies => dependencies::run(&root),
-        Task::Licences => licences::run(&root),
+        Task::Circles => circles::run(&root),
+        Task::Size => size::run(&root),
         Task::Types => types::run(&root),
     };
     match outcome {

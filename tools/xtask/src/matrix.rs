@@ -2,8 +2,9 @@
 //!
 //! The kinds are stages (fragment, compute), images and samplers (apart, combined), and each option of the
 //! library, alone and with every kind of light. They are read from the library itself, so that a new one is
-//! in the matrix from its first day. Every module goes through spirv-val. Cases that must fail, and say why,
-//! show that the matrix can.
+//! in the matrix from its first day. Each compiler gets every option in one stage with one way of images;
+//! with `--all`, in every stage with each. Every module goes through spirv-val. Cases that must fail, and say
+//! why, show that the matrix can.
 
 use crate::TaskError;
 use crate::library::Library;
@@ -23,6 +24,9 @@ pub struct Arguments {
     /// A folder that `arealight export` wrote; without it, the library is exported for the purpose.
     #[arg(long, value_name = "DIR")]
     library: Option<PathBuf>,
+    /// Compile each option in every stage, with images and samplers apart and combined.
+    #[arg(long)]
+    all: bool,
     /// Print what is compiled.
     #[arg(long)]
     verbose: bool,
@@ -59,7 +63,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
     let include = folder.join("include");
     let library = Library::read(&include.join("arealight"))?;
 
-    let mut cases = hosts(&root.join(HOST), &library);
+    let mut cases = hosts(&root.join(HOST), &library, arguments.all);
     cases.extend(examples(&root.join(EXAMPLES))?);
     cases.extend(host_g_buffer(&folder));
     cases.extend(host_bridges(&folder));
@@ -88,7 +92,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Result<bool, TaskError> {
 }
 
 /// The hosts of the matrix.
-fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
+fn hosts(shader: &Path, library: &Library, all: bool) -> Vec<Case> {
     let mut cases = vec![];
     let mut add = |tool, compute, combined, name: &str, mut macros: Vec<(String, String)>, lacks| {
         macros.push(("COMPUTE".into(), u32::from(compute).to_string()));
@@ -96,10 +100,12 @@ fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
         let name = format!("{name}, {}", if combined { "combined samplers" } else { "separate samplers" });
         cases.push(Case { tool, compute, shader: shader.to_owned(), name, macros, lacks });
     };
-    for tool in [Tool::Glslang, Tool::Glslc] {
-        for (compute, combined) in [(false, false), (false, true), (true, false), (true, true)] {
-            for (name, macros) in variants(library) {
-                add(tool, compute, combined, &name, macros, None);
+    for (first, tool) in [Tool::Glslang, Tool::Glslc].into_iter().enumerate() {
+        for (kind, (compute, combined)) in KINDS.into_iter().enumerate() {
+            for (index, (name, macros)) in variants(library).into_iter().enumerate() {
+                if all || index < IN_ALL_KINDS || (first + index) % KINDS.len() == kind {
+                    add(tool, compute, combined, &name, macros, None);
+                }
             }
         }
         for bridge in library.files.iter().flat_map(|(_, text)| bridges(text)) {
@@ -110,6 +116,12 @@ fn hosts(shader: &Path, library: &Library) -> Vec<Case> {
     }
     cases
 }
+
+/// Stages and images: whether they are compute, and combined with their samplers.
+const KINDS: [(bool, bool); 4] = [(false, false), (false, true), (true, false), (true, true)];
+
+/// So many variants, the first, are compiled in every stage: defaults, every kind of light, everything.
+const IN_ALL_KINDS: usize = 3;
 
 /// What a host may switch: in words, and as macros of the host.
 fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
@@ -130,8 +142,11 @@ fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
         .filter(|(name, _)| has_bridges(name))
         .map(|(name, _)| (name.as_str(), 1))
         .collect();
-    let mut variants =
-        vec![("defaults".to_owned(), set(&[])), ("every kind of light".to_owned(), set(&every_kind))];
+    let mut variants = vec![
+        ("defaults".to_owned(), set(&[])),
+        ("every kind of light".to_owned(), set(&every_kind)),
+        ("everything".to_owned(), everything(library)),
+    ];
     for (name, default) in &library.options {
         let changed = (name.as_str(), 1 - default.min(&1));
         variants.push((format!("{name} {} alone", changed.1), set(&[changed])));
@@ -144,7 +159,6 @@ fn variants(library: &Library) -> Vec<(String, Vec<(String, String)>)> {
     }
     let split = [&every_kind[..], &[("AREALIGHT_FOOTPRINT", 2)]].concat();
     variants.push(("AREALIGHT_FOOTPRINT 2 with every kind of light".to_owned(), set(&split)));
-    variants.push(("everything".to_owned(), everything(library)));
     variants
 }
 
