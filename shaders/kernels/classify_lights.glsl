@@ -99,7 +99,8 @@ vec2 contribution(uint index) {
     heights.surface = tile_heights(tile_planes(SURFACE_PAIR), light);
     heights.lobe = HAS_HORIZON ? tile_heights(tile_planes(LOBE_PAIR), light).y : 0.0;
     // A rough diffuse lobe leans, and its horizon with it
-    bool is_below = !tile_is_diffuse() || (heights.surface.y < 0.0 && (!AREALIGHT_HAS_ROUGH_DIFFUSE || AREALIGHT_CLIPS_AT_SURFACE));
+    bool is_below = !tile_is_diffuse() || (heights.surface.y < 0.0 && (!AREALIGHT_HAS_ROUGH_DIFFUSE
+        || AREALIGHT_CLIPS_AT_SURFACE));
     // Horizons of fitted lobes lean; GGX over half vectors ends where the surface does, and a coat where its
     // own does
     bool ends_at_surface = AREALIGHT_CLIPS_AT_SURFACE || light.over_half_vectors;
@@ -128,7 +129,8 @@ vec2 contribution(uint index) {
             : 0.0;
         vec2 bounds = tile_contribution(tile_reflection(), tile_position(), light, heights, behind);
         // NaN is neither little nor much
-        bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && !AREALIGHT_RESCATTERS && tile_has_lobe() && tile_has_coat_horizon();
+        bool is_known = tile_is_known() && !AREALIGHT_HAS_ROUGH_DIFFUSE && !AREALIGHT_RESCATTERS
+            && tile_has_lobe() && tile_has_coat_horizon();
         bool is_sure = light.is_bounded && is_known && bounds.x >= 0.0 && bounds.y < TILE_FAR;
         sent = is_sure ? bounds : sent;
     }

@@ -5,7 +5,8 @@
 //! use arealight_fit::{GgxBrdf, Settings, fit};
 //!
 //! // Your own BRDF: implement `Brdf`
-//! let table = fit(&GgxBrdf, &Settings { size: 32, ..Settings::default() }, &|done, steps| eprintln!("{done} of {steps}"))?;
+//! let settings = Settings { size: 32, ..Settings::default() };
+//! let table = fit(&GgxBrdf, &settings, &|done, steps| eprintln!("{done} of {steps}"))?;
 //! assert_eq!(table.size(), 32);
 //! # Ok::<(), arealight_fit::FitError>(())
 //! ```

@@ -6,10 +6,10 @@
 //! way.
 //!
 //! # Accuracy
-//! [`form_factor`]: 1e-14 where the point is not closer to the rim than a thousandth of the ellipse's size, 1e-9 in
-//! contact at a millionth, relative to the ellipse as given; for far ellipses 1e-12 of what one that faces
-//! the origin sends. [`contour_form_factor`] 1e-12, where its subdivision suffices (rims down to 1e-6 of the
-//! size away).
+//! [`form_factor`]: 1e-14 where the point is not closer to the rim than a thousandth of the ellipse's size,
+//! 1e-9 in contact at a millionth, relative to the ellipse as given; for far ellipses 1e-12 of what one that
+//! faces the origin sends. [`contour_form_factor`] 1e-12, where its subdivision suffices (rims down to 1e-6
+//! of the size away).
 
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};

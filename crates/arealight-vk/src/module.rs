@@ -60,7 +60,8 @@ fn check_ids(module: &Module, bound: u32) -> Result<(), String> {
 fn check_entry_point(module: &Module, kernel: &Kernel) -> Result<(), String> {
     let is_main = |entry: &&Instruction| {
         matches!(entry.operands.as_slice(),
-            [Operand::ExecutionModel(ExecutionModel::GLCompute), _, Operand::LiteralString(name), ..] if name == "main")
+            [Operand::ExecutionModel(ExecutionModel::GLCompute), _, Operand::LiteralString(name), ..]
+                if name == "main")
     };
     let Some(main) = module.entry_points.iter().find(is_main) else {
         return Err("has no compute entry point 'main'".into());

@@ -18,7 +18,8 @@ impl Light {
     /// ```
     /// # use arealight::{Light, LightShape};
     /// # use glam::DVec3;
-    /// let square = |size: f64| vec![DVec3::ZERO, DVec3::X * size, DVec3::new(size, size, 0.0), DVec3::Y * size];
+    /// let square =
+    ///     |size: f64| vec![DVec3::ZERO, DVec3::X * size, DVec3::new(size, size, 0.0), DVec3::Y * size];
     /// let hole = square(1.0).into_iter().map(|vertex| vertex + DVec3::new(1.0, 1.0, 0.0)).collect();
     /// let mut frame = Light { shape: LightShape::Polygon(square(3.0)), ..Light::default() };
     /// frame.cut_holes(&[hole])?;

@@ -14,8 +14,8 @@
 //!   with a bright frame would be a fifth too bright, and a far light must show the image's mean. It also
 //!   needs no margin, which would take half as many texels again.
 //! - The last three levels are 2.29 times apart instead, so that the last, which is four texels a side, has
-//!   [`WIDEST_BLUR`]: a level of two texels could not show a gradient. Footprints of far lights are a little wider, and are
-//!   given this one.
+//!   [`WIDEST_BLUR`]: a level of two texels could not show a gradient. Footprints of far lights are a little
+//!   wider, and are given this one.
 //! - Level 0 is sharp: a mirror shows the image, and updating it costs one copy.
 //! - Levels are mixed a little towards the sharper one ([`PyramidSize::level_of`]), which is nearer to a
 //!   Gaussian than mixing by the logarithm of the blur.

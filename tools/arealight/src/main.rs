@@ -22,7 +22,8 @@ use std::process::ExitCode;
 /// Render, measure and export analytic area lights: a polygon, a material and a view go in; radiance comes
 /// out.
 #[derive(Parser)]
-#[command(name = "arealight", version, max_term_width = 100, after_help = AFTER_HELP, arg_required_else_help = true)]
+#[command(name = "arealight", version, max_term_width = 100, after_help = AFTER_HELP,
+    arg_required_else_help = true)]
 struct CommandLine {
     /// Hide progress.
     #[arg(short, long, global = true)]

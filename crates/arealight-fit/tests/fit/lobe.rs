@@ -54,7 +54,9 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
 
     #[test]
-    fn its_share_above_the_surface_is_the_table_s_and_has_derivatives(lobe in lobes(), cos_view in 0.01..1.0) {
+    fn its_share_above_the_surface_is_the_table_s_and_has_derivatives(
+        lobe in lobes(), cos_view in 0.01..1.0,
+    ) {
         let frame = mirror_frame(cos_view);
         let normal = frame.transpose() * DVec3::Z;
         let (share, gradient) = lobe.share_above(normal);

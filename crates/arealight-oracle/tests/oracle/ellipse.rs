@@ -38,7 +38,8 @@ proptest! {
         // The quadrature's own tolerance, times its pieces
         prop_assert!((closed - contour).abs() < 2e-11, "{closed:e} and {contour:e}");
         // The twin: an ellipse a hundred thousandth larger is noticed where there is any light to speak of
-        let larger = Ellipse { axis_u: ellipse.axis_u * 1.00001, axis_v: ellipse.axis_v * 1.00001, ..ellipse };
+        let larger = Ellipse { axis_u: ellipse.axis_u * 1.00001, axis_v: ellipse.axis_v * 1.00001,
+            ..ellipse };
         prop_assert!(closed.abs() < 1e-4 || (form_factor(&larger) - contour).abs() > 2e-11);
     }
 
@@ -70,7 +71,8 @@ proptest! {
             axis_v: ellipse.axis_v * cos - ellipse.axis_u * sin,
             ..ellipse
         };
-        for other in [form_factor(&turned), form_factor(&scaled), -form_factor(&swapped), form_factor(&again)] {
+        for other in [form_factor(&turned), form_factor(&scaled), -form_factor(&swapped),
+            form_factor(&again)] {
             // Roundings, which a rim 1e-3 away magnifies
             prop_assert!((value - other).abs() < 1e-11, "{value:e} and {other:e}");
         }
@@ -86,7 +88,9 @@ proptest! {
     }
 
     #[test]
-    fn the_vector_is_the_sum_over_the_whole_outline(ellipse in ellipse(), matrix in matrix(), up in direction()) {
+    fn the_vector_is_the_sum_over_the_whole_outline(
+        ellipse in ellipse(), matrix in matrix(), up in direction(),
+    ) {
         let ellipse = ellipse.transformed(&matrix);
         prop_assume!(nearness(&ellipse) > 1e-2);
         // In a frame whose z axis is `up`, and lifted so far that nothing is below: the same component

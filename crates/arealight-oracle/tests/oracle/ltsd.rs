@@ -52,7 +52,8 @@ proptest! {
         // z is the median vector of the clamped cosine: every plane that holds it halves the distribution
         let transformed = distribution(Original::ClampedCosine, matrix);
         let median = matrix * DVec3::Z;
-        let half = |plane: DVec3| integral(&Region::sphere().clipped(plane), transformed.inverse(), |w| transformed.evaluate(w));
+        let half = |plane: DVec3| integral(&Region::sphere().clipped(plane), transformed.inverse(),
+            |w| transformed.evaluate(w));
         let plane = median.cross(aside).normalize_or(DVec3::X);
         prop_assert!((half(plane) - 0.5).abs() < CUBATURE);
         // the twin: a plane that the vector lies off
@@ -65,9 +66,11 @@ proptest! {
         prop_assume!(star.relative_distance() > 1e-2);
         let transformed = distribution(original, matrix);
         let back: Vec<DVec3> = star.vertices.iter().map(|v| *transformed.inverse() * *v).collect();
-        let here = integral(&Region::polygon(&star.vertices), transformed.inverse(), |w| transformed.evaluate(w));
+        let here = integral(&Region::polygon(&star.vertices), transformed.inverse(),
+            |w| transformed.evaluate(w));
         // A transform that mirrors turns the polygon's front away
-        let there = integral(&Region::polygon(&back), &DMat3::IDENTITY, |w| original.evaluate(w)) * matrix.determinant().signum();
+        let there = integral(&Region::polygon(&back), &DMat3::IDENTITY,
+            |w| original.evaluate(w)) * matrix.determinant().signum();
         prop_assert!((here - there).abs() < CUBATURE, "{here} and {there}");
     }
 
@@ -78,7 +81,8 @@ proptest! {
         prop_assert!((norm - 1.0).abs() < CUBATURE, "{norm}");
         // the twin: without the Jacobian it is not
         prop_assume!(original == Original::UniformSphere);
-        let bare = integral(&Region::sphere(), transformed.inverse(), |w| transformed.evaluate(w) / transformed.jacobian(w).sqrt());
+        let bare = integral(&Region::sphere(), transformed.inverse(),
+            |w| transformed.evaluate(w) / transformed.jacobian(w).sqrt());
         let stretch = matrix * matrix.transpose() - DMat3::IDENTITY;
         prop_assume!(stretch.to_cols_array().iter().any(|e| e.abs() > 0.3));
         prop_assert!((bare - 1.0).abs() > CUBATURE, "{bare}");
@@ -86,7 +90,8 @@ proptest! {
 
     #[test]
     fn rotations_compose(
-        original in original(), matrix in matrix(), rotation in rotation(), direction in direction(), angle in 0.0..6.0_f64,
+        original in original(), matrix in matrix(), rotation in rotation(), direction in direction(),
+        angle in 0.0..6.0_f64,
     ) {
         let plain = distribution(original, matrix);
         let close = |a: f64, b: f64| (a - b).abs() < 1e-12;
@@ -102,7 +107,8 @@ proptest! {
     #[test]
     fn samples_follow_the_density(original in original(), matrix in matrix(), cut in direction()) {
         let transformed = distribution(original, matrix);
-        let density = integral(&Region::sphere().clipped(cut), transformed.inverse(), |w| transformed.evaluate(w));
+        let density = integral(&Region::sphere().clipped(cut), transformed.inverse(),
+            |w| transformed.evaluate(w));
         let count = 1 << 14;
         let inside = |u: &[f64; 2]| cut.dot(transformed.sample(*u)) > 0.0;
         let share = square_points(count).filter(inside).count() as f64 / count as f64;

@@ -82,7 +82,8 @@ proptest! {
 
     #[test]
     fn a_box_around_the_point_sums_to_one_for_any_matrix(
-        low in prop::array::uniform3(0.05..3.0_f64), high in prop::array::uniform3(0.05..3.0_f64), matrix in matrix(),
+        low in prop::array::uniform3(0.05..3.0_f64), high in prop::array::uniform3(0.05..3.0_f64),
+        matrix in matrix(),
     ) {
         let faces = box_around(-DVec3::from_array(low), DVec3::from_array(high));
         let sum: f64 = faces.iter().map(|face| transformed_form_factor(&matrix, face)).sum();
@@ -95,18 +96,23 @@ proptest! {
     }
 
     #[test]
-    fn a_part_sends_no_more_than_the_whole(star in star(2.0), factors in prop::collection::vec(0.0..1.0_f64, 10)) {
+    fn a_part_sends_no_more_than_the_whole(
+        star in star(2.0), factors in prop::collection::vec(0.0..1.0_f64, 10),
+    ) {
         let (whole, part) = (form_factor(&star.vertices), form_factor(&star.shrunk(&factors)));
         prop_assert!(part * whole.signum() <= whole.abs() + slack(&star), "{part} and {whole}");
     }
 
     #[test]
-    fn any_bits_give_a_finite_share(bits in prop::collection::vec(any::<[u64; 3]>(), 0..6), entries in any::<[u64; 9]>()) {
+    fn any_bits_give_a_finite_share(
+        bits in prop::collection::vec(any::<[u64; 3]>(), 0..6), entries in any::<[u64; 9]>(),
+    ) {
         let vertices: Vec<DVec3> = bits.iter().map(|b| DVec3::from_array(b.map(f64::from_bits))).collect();
         let matrix = DMat3::from_cols_array(&entries.map(f64::from_bits));
         for factor in [form_factor(&vertices), transformed_form_factor(&matrix, &vertices)] {
             prop_assert!((-1.0..=1.0).contains(&factor), "{factor}");
-            prop_assert!((0.0..=1.0).contains(&emitted(factor, false)) && (0.0..=1.0).contains(&emitted(factor, true)));
+            prop_assert!((0.0..=1.0).contains(&emitted(factor, false))
+                && (0.0..=1.0).contains(&emitted(factor, true)));
         }
     }
 }
@@ -134,7 +140,8 @@ proptest! {
         let lobe = TransformedDistribution::from_inverse(Original::ClampedCosine, matrix).unwrap();
         // Cut at the horizon of cosine space, where the transformed cosine has a kink
         let region = Region::polygon(&star.vertices).clipped(matrix.row(2));
-        let integral = region.integrate(&Settings::default(), |t| lengths_through(&matrix, t), |w| [lobe.evaluate(w)]).value[0];
+        let integral = region.integrate(&Settings::default(), |t| lengths_through(&matrix, t),
+            |w| [lobe.evaluate(w)]).value[0];
         let closed = transformed_form_factor(&matrix, &star.vertices);
         prop_assert!((integral - closed).abs() < 1e-7, "{integral} and {closed}");
     }

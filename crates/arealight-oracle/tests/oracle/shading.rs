@@ -64,7 +64,8 @@ proptest! {
 
     #[test]
     fn narrow_lobes_are_not_missed(
-        log_alpha in MIN_ALPHA.ln()..0.0, theta in view_angle(), log_size in -7.0..0.5_f64, aside in direction(),
+        log_alpha in MIN_ALPHA.ln()..0.0, theta in view_angle(), log_size in -7.0..0.5_f64,
+        aside in direction(),
         shift in -1.5..1.5_f64,
     ) {
         let (alpha, size) = (log_alpha.exp(), log_size.exp());
@@ -73,7 +74,8 @@ proptest! {
         let mirror = DVec3::new(-view.x, 0.0, view.z);
         let axis = (mirror + aside * (shift * size)).normalize_or(DVec3::Z);
         let square = square_around(axis, size);
-        let answer = truth(&glossy(alpha, 1.0), DVec3::Z, view, &light(square.to_vec(), false), &Settings::default());
+        let answer = truth(&glossy(alpha, 1.0), DVec3::Z, view, &light(square.to_vec(), false),
+            &Settings::default());
         let expected = sampled(alpha, view, &square);
         // 32768 even points, of which a small light receives few: 5e-3 of the lobe
         prop_assert!((answer.radiance.x - expected).abs() < 5e-3, "{} and {expected}", answer.radiance.x);
@@ -111,7 +113,8 @@ proptest! {
 
     #[test]
     fn the_tables_answer_is_the_integral_of_its_lobe(
-        star in star(2.0), normal in direction(), view in direction(), roughness in 0.2..1.0_f64, f0 in 0.0..1.0_f64,
+        star in star(2.0), normal in direction(), view in direction(), roughness in 0.2..1.0_f64,
+        f0 in 0.0..1.0_f64,
     ) {
         prop_assume!(star.relative_distance() > 1e-2);
         let (table, surface) = (table(), glossy(roughness * roughness, f0));

@@ -26,11 +26,14 @@ proptest! {
         prop_assert!((closed - contour).abs() < 2e-11, "{closed:e} and {contour:e}");
         // The twin: the disk through the center, which is smaller in the sky
         let flat = ellipse::Ellipse::disk(sphere.center, -sphere.center, sphere.radius);
-        prop_assert!(sphere.radius < 0.1 || closed < 1e-3 || (ellipse::form_factor(&flat) - closed).abs() > 1e-6);
+        prop_assert!(sphere.radius < 0.1 || closed < 1e-3
+            || (ellipse::form_factor(&flat) - closed).abs() > 1e-6);
     }
 
     #[test]
-    fn far_spheres_keep_relative_precision(angle in 0.0..TAU, height in -0.9..0.9_f64, log in -30.0..-3.0_f64) {
+    fn far_spheres_keep_relative_precision(
+        angle in 0.0..TAU, height in -0.9..0.9_f64, log in -30.0..-3.0_f64,
+    ) {
         let radius = log.exp();
         let center = DVec3::new(angle.cos(), angle.sin(), height * radius);
         let sphere = Sphere { center, radius };
@@ -38,7 +41,8 @@ proptest! {
         // over r
         let z = center.z / radius;
         let (sine, angle) = ((1.0 - z * z).sqrt(), (1.0 - z * z).sqrt().atan2(-z));
-        let expected = radius.powi(3) * (2.0 / 3.0 * sine.powi(3) + z * (angle + z * sine)) / std::f64::consts::PI;
+        let solid = 2.0 / 3.0 * sine.powi(3) + z * (angle + z * sine);
+        let expected = radius.powi(3) * solid / std::f64::consts::PI;
         // The sky's curvature
         let bound = 4.0 * radius * radius + 1e-13;
         prop_assert!((form_factor(&sphere) / expected - 1.0).abs() < bound, "{:e}, \

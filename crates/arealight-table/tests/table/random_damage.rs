@@ -74,7 +74,8 @@ proptest! {
     #[test]
     fn anything_after_the_magic_number(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
         let exr = exr::meta::magic_number::BYTES;
-        for start in [&[&exr[..], &[2, 0, 0, 0]].concat(), &[&exr[..], &[2, 16, 0, 0]].concat(), &ktx2::MAGIC[..], b"DDS "] {
+        for start in [&[&exr[..], &[2, 0, 0, 0]].concat(), &[&exr[..], &[2, 16, 0, 0]].concat(),
+            &ktx2::MAGIC[..], b"DDS "] {
             read_all(&[start, &bytes].concat());
         }
     }

@@ -108,7 +108,8 @@ pub fn run(arguments: &Arguments) -> Result<ExitCode, Failure> {
     let Difference { error, ratio, largest: (largest, [x, y]), mean } = found;
     let text = if *json {
         let value = json!({
-            "rmse_over_mean": error, "mean_ratio": ratio, "largest": largest, "largest_at": [x, y], "mean": mean,
+            "rmse_over_mean": error, "mean_ratio": ratio, "largest": largest, "largest_at": [x, y],
+            "mean": mean,
             "output": output,
         });
         format!("{value:#}\n")

@@ -57,7 +57,8 @@ pub struct Arguments {
     surfaces: SurfaceChoice,
     /// Shade by tiles of 8 x 8 pixels, each by the lights that contribute to it; with FRACTION, less than 1,
     /// without the lights that together contribute less than this fraction of what the others do
-    #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true, default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
+    #[arg(long, value_name = "FRACTION", num_args = 0..=1, require_equals = true,
+        default_missing_value = "0", value_parser = parse_part, conflicts_with = "reference")]
     tiles: Option<f32>,
     /// Shadows: off; or by N rays a pixel, from 1 to 4, as they are (rays:N) or filtered over the penumbra
     /// (filtered:N). With --reference they are exact, or off [default: filtered:4; off with --tiles]
@@ -313,7 +314,8 @@ impl Summary<'_> {
             "device": device,
             "reference_samples": arguments.reference_samples(),
             "tiles": outcome.tiles.as_ref().map(|tiles| json!({
-                "classes": tiles.classes.iter().map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
+                "classes": tiles.classes.iter()
+                    .map(|(class, count)| (class.name(), count)).collect::<BTreeMap<_, _>>(),
                 "lights_per_tile": tiles.lights_per_tile(),
             })),
             "gpu_seconds": { "visibility": seconds(outcome.visibility), "shading": seconds(outcome.shading) },

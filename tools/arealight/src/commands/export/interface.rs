@@ -89,7 +89,8 @@ fn layout(module: &Module, of: naga::Handle<naga::Type>) -> Option<(String, Valu
             let fields: Vec<_> = members
                 .iter()
                 .map(|member| {
-                    json!({ "name": member.name, "offset": member.offset, "type": type_name(&module.types[member.ty].inner) })
+                    json!({ "name": member.name, "offset": member.offset,
+                        "type": type_name(&module.types[member.ty].inner) })
                 })
                 .collect();
             Some((named.name.clone().unwrap_or_default(), json!({ "size": span, "fields": fields })))

@@ -29,7 +29,8 @@ pub fn manifest(files: &[File], library: &[(&str, &str)], targets: &Map<String, 
         "headers": by_header(library),
         "effects": effects(),
         "memory": memory(),
-        "kernels": kernels::ALL.iter().map(|kernel| (kernel.name.to_owned(), of_kernel(kernel))).collect::<Map<_, _>>(),
+        "kernels": kernels::ALL.iter()
+            .map(|kernel| (kernel.name.to_owned(), of_kernel(kernel))).collect::<Map<_, _>>(),
         "targets": targets,
     })
 }
